@@ -1,0 +1,242 @@
+"""Touch, release, slip-off, pass-through: defined at their edges, located, and undone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tsm
+from tsm.contact import Projection, nearest_chord, owner_at, project, slide
+from tsm.model import Model
+
+SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
+
+
+def cantilever(path, *, elements=10, side="right", element="mixed", offset=0.0):
+    return tsm.Structure(
+        beams=(
+            tsm.Beam(
+                name="b",
+                start=(0.0, 0.0),
+                end=(1.0, 0.0),
+                section=SECTION,
+                elements=elements,
+                element=element,
+            ),
+        ),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=path),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side=side, offset=offset),),
+    )
+
+
+def kinds(result):
+    return [event.kind for event in result.events if event.kind is not tsm.EventKind.PASS_THROUGH]
+
+
+TENTHS = np.arange(1, 11) / 10
+
+
+@pytest.mark.parametrize("element", ["mixed", "timoshenko"])
+def test_touch_is_located(element):
+    result = tsm.solve(cantilever(((0.83, -0.3), (0.83, 0.1)), element=element), TENTHS)
+    assert kinds(result) == [tsm.EventKind.TOUCH]
+    assert result.events[0].load_parameter == pytest.approx(0.75, abs=1e-9)
+    assert result.events[0].arc_position == pytest.approx(0.83, abs=1e-9)
+    contact = result.contacts["p->b"]
+    assert (contact.force[:7] == 0).all()
+    assert (contact.force[7:] > 0).all()
+    assert contact.gap[:7] == pytest.approx(0.3 - 0.4 * TENTHS[:7])
+    assert np.isnan(contact.arc_position[:7]).all()
+
+
+def test_offset_surface_is_touched_earlier():
+    result = tsm.solve(cantilever(((0.83, -0.3), (0.83, 0.1)), offset=0.05), TENTHS)
+    assert result.events[0].load_parameter == pytest.approx(0.625, abs=1e-9)
+
+
+@pytest.mark.parametrize("element", ["mixed", "timoshenko"])
+def test_release_and_touch_again(element):
+    path = ((0.83, 0.0), (0.83, 0.1), (0.83, -0.1), (0.83, 0.1))
+    result = tsm.solve(cantilever(path, element=element), TENTHS)
+    assert kinds(result) == [tsm.EventKind.RELEASE, tsm.EventKind.TOUCH]
+    assert [e.load_parameter for e in result.events if e.kind in kinds(result)] == pytest.approx(
+        [0.4, 0.8], abs=1e-7
+    )
+    open_ = result.contacts["p->b"].force == 0
+    assert open_[4:7].all()
+    assert np.abs(result.tips["b"][4:7] - [1.0, 0.0]).max() <= 1e-9
+
+
+def test_slip_off_frees_the_beam():
+    result = tsm.solve(cantilever(((0.9, 0.0), (0.9, 1.0))), TENTHS)
+    assert kinds(result) == [tsm.EventKind.SLIP_OFF]
+    event = next(e for e in result.events if e.kind is tsm.EventKind.SLIP_OFF)
+    assert event.arc_position == pytest.approx(1.0, abs=1e-9)
+    assert event.force > 1
+    assert event.load_parameter == pytest.approx(0.39, abs=0.02)
+    assert (result.contacts["p->b"].force[4:] == 0).all()
+    assert np.abs(result.tips["b"][4:] - [1.0, 0.0]).max() <= 1e-9
+    assert np.isnan(result.contacts["p->b"].gap[4:]).all()
+
+
+def test_slip_off_of_a_stiff_beam_is_the_elasticas():
+    """Displacement at which a pin slips off an elastica of length 1, from x = .8, .9, .95, .99."""
+    stiff = tsm.Section(EA=1e6, GA=1e6, EI=1.0)
+    for x, exact in (
+        (0.8, 0.538697355156334),
+        (0.9, 0.394866206259796),
+        (0.95, 0.283990753739304),
+        (0.99, 0.128683691340723),
+    ):
+        base = cantilever(((x, 0.0), (x, 0.6)), elements=40)
+        beam = tsm.Beam(name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=stiff, elements=40)
+        result = tsm.solve(
+            tsm.Structure(beams=(beam,), supports=base.supports, pins=base.pins, contacts=base.contacts),
+            TENTHS,
+        )
+        event = next(e for e in result.events if e.kind is tsm.EventKind.SLIP_OFF)
+        assert event.load_parameter * 0.6 == pytest.approx(exact, abs=1e-5)
+
+
+def test_a_pin_that_moves_away_at_once_is_released_at_the_start():
+    result = tsm.solve(cantilever(((0.8, 0.0), (0.8, -0.1))), TENTHS)
+    assert kinds(result) == [tsm.EventKind.RELEASE]
+    assert result.events[0].load_parameter == 0
+    assert result.contacts["p->b"].gap == pytest.approx(0.1 * TENTHS)
+
+
+def test_a_pin_that_slides_along_without_pushing_never_pushes():
+    result = tsm.solve(cantilever(((0.8, 0.0), (0.3, 0.0))), TENTHS)
+    assert result.status is tsm.Status.COMPLETED
+    assert np.abs(result.contacts["p->b"].force).max() <= 1e-9
+
+
+def test_a_pin_that_passes_beyond_the_tip_never_touches():
+    result = tsm.solve(cantilever(((1.1, -0.2), (1.1, 0.2), (0.7, 0.2))), TENTHS)
+    assert kinds(result) == []
+    assert (result.contacts["p->b"].force == 0).all()
+
+
+def test_a_pin_that_comes_from_beyond_the_tip_below_touches():
+    result = tsm.solve(cantilever(((1.2, -0.2), (0.8, 0.1))), TENTHS)
+    assert kinds(result)[0] is tsm.EventKind.TOUCH
+    assert result.contacts["p->b"].force[-1] > 0
+
+
+def test_a_passed_pin_is_armed_again_when_it_returns():
+    """After slip-off the pin goes round the tip and below the beam, then pushes again."""
+    path = ((0.9, 0.0), (0.9, 0.5), (1.3, 0.5), (1.3, -0.2), (0.9, -0.2), (0.9, 0.1))
+    result = tsm.solve(cantilever(path), np.arange(1, 41) / 40)
+    assert kinds(result) == [tsm.EventKind.SLIP_OFF, tsm.EventKind.TOUCH]
+    assert result.contacts["p->b"].force[-1] > 0
+
+
+@pytest.mark.parametrize("x", [0.5, np.nextafter(0.5, 0), np.nextafter(0.5, 1), 0.05, 1e-3])
+@pytest.mark.parametrize("element", ["mixed", "timoshenko"])
+def test_pins_on_nodes_and_near_the_clamp(x, element):
+    """A pin exactly on a node, one ulp beside it or close to the clamp pushes like a point load.
+
+    The paper's element has no digits left on a node and says so.
+    """
+    d = 1e-3 * x**2
+    structure = cantilever(((x, 0.0), (x * (1 - 1e-9), d)), element=element)
+    result = tsm.solve(structure, np.array([0.5, 1.0]), throw=False)
+    if element == "timoshenko" and x not in {0.05, 1e-3}:
+        assert result.status is tsm.Status.CUTBACK_FLOOR
+        return
+    assert result.status is tsm.Status.COMPLETED
+    stiffness = 1 / (x**3 / (3 * SECTION.EI) + x / SECTION.GA)
+    assert result.contacts["p->b"].force == pytest.approx(stiffness * d * np.array([0.5, 1.0]), rel=1e-4)
+
+
+def test_a_pin_behind_the_surface_is_bad_input():
+    with pytest.raises(ValueError, match=r"side = 'right': the node starts at \(0.8, 0.1\), 0.1 behind"):
+        tsm.solve(cantilever(((0.8, 0.1), (0.8, 0.2))), TENTHS)
+
+
+def test_two_pins_on_one_beam():
+    """Between two pins that push with the same displacement from both sides nothing is left to chance."""
+    base = cantilever(((0.5, 0.0), (0.5, 0.05)))
+    both = tsm.Structure(
+        beams=base.beams,
+        supports=base.supports,
+        pins=(*base.pins, tsm.Pin(name="q", path=((0.9, 0.02), (0.9, -0.02)))),
+        contacts=(*base.contacts, tsm.ContactPair(node="q", beam="b", side="left")),
+    )
+    result = tsm.solve(both, TENTHS)
+    assert result.status is tsm.Status.COMPLETED
+    assert (result.contacts["p->b"].force > 0).all()
+    assert result.contacts["q->b"].force[-1] > 0
+    total = -result.supports["b"].force[-1]
+    assert np.hypot(*total) < result.contacts["p->b"].force[-1]
+
+
+def test_owner_of_a_position():
+    model = Model(cantilever(((0.8, 0.0), (0.8, 0.1))))
+    beam = model.beams["b"]
+    assert owner_at(model, beam, 0.25) == (2, pytest.approx(0.5))
+    assert owner_at(model, beam, 1.05) == (9, pytest.approx(1.5))
+    assert owner_at(model, beam, -0.05) == (0, pytest.approx(-0.5))
+    assert slide(beam, 4, 1.25) == (5, pytest.approx(0.25))
+    assert slide(beam, 4, -2.25) == (1, pytest.approx(0.75))
+    assert slide(beam, 4, 1.0) == (4, 1.0)
+    assert slide(beam, 9, 1.5) == (9, 1.5)
+
+
+@pytest.mark.parametrize("bend", [0.3, -0.3])
+@pytest.mark.parametrize("ulps", [-1, 0, 1])
+def test_one_owner_at_a_kink(bend, ulps):
+    """On the convex side of a kink no projection falls inside, on the concave side both do: one owner either way."""
+    model = Model(cantilever(((0.8, 0.0), (0.8, 0.1)), elements=2))
+    q = np.zeros(model.dof_count)
+    q[7] = bend / 2
+    x = 0.5 + ulps * np.finfo(float).eps
+    element, xi = nearest_chord(model, model.beams["b"], q, (x, -0.01))
+    assert element in {0, 1}
+    assert nearest_chord(model, model.beams["b"], q, (x, -0.01)) == (element, xi)
+
+
+def test_projection_is_the_closest_point():
+    """Against a search over a fine division of the deflected axis."""
+    structure = cantilever(((0.8, 0.0), (0.8, 0.3)))
+    result = tsm.solve(structure, TENTHS)
+    model, q = result.model, result.equilibria[-1].state.q
+    pair = model.pairs[0]
+    for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
+        moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
+        seen = project(model, replace_pin(pair, moved), q, 0.0)
+        arc, xy = result.axis_line("b", -1, points_per_element=2000)
+        distance = np.hypot(*(xy - np.array(target)).T)
+        nearest = int(np.argmin(distance))
+        assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)
+        assert (seen.element + seen.xi) / 10 == pytest.approx(arc[nearest], abs=1e-3)
+        assert isinstance(seen, Projection)
+
+
+def replace_pin(pair, pin):
+    from dataclasses import replace
+
+    return replace(pair, pin=pin)
+
+
+def test_bad_structures_are_refused():
+    good = cantilever(((0.8, 0.0), (0.8, 0.1)))
+    with pytest.raises(ValueError, match="beam = 'x': names no beam"):
+        tsm.Structure(beams=good.beams, pins=good.pins, contacts=(tsm.ContactPair(node="p", beam="x"),))
+    with pytest.raises(ValueError, match="names no pin"):
+        tsm.Structure(beams=good.beams, contacts=(tsm.ContactPair(node="x", beam="b"),))
+    with pytest.raises(ValueError, match="does not touch itself"):
+        tsm.Structure(beams=good.beams, contacts=(tsm.ContactPair(node="b.end", beam="b"),))
+    with pytest.raises(ValueError, match="more than one"):
+        tsm.Structure(beams=(*good.beams, *good.beams))
+    with pytest.raises(ValueError, match="must be positive"):
+        tsm.Section(EA=1.0, GA=-1.0, EI=1.0)
+    with pytest.raises(ValueError, match="must differ"):
+        tsm.Beam(name="b", start=(0, 0), end=(0, 0), section=SECTION)
+    with pytest.raises(ValueError, match="must be one of mixed"):
+        tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=SECTION, element="cubic")
+    with pytest.raises(ValueError, match="must not repeat"):
+        tsm.Pin(name="p", path=((0, 0), (0, 0)))
+    with pytest.raises(ValueError, match="finite"):
+        tsm.Support(beam="b", end="start", ux=float("nan"))

@@ -1,0 +1,231 @@
+"""Every element alone: gradients, tangents, limits, equivalences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+from tsm.elements import ELEMENTS, beam, chord_contact, mixed_contact
+from tsm.elements.curve import Curve
+from tsm.elements.properties import Properties
+
+STEP = 1e-30j
+CHORD = [name for name, kind in ELEMENTS.items() if not kind.carries_force]
+
+
+def random_properties(rng, n=None):
+    angle, l0 = rng.uniform(0, 2 * np.pi, n), 10 ** rng.uniform(-1, 1, n)
+    EA, EI, Phi = (10 ** rng.uniform(low, high, n) for low, high in ((0, 3), (-2, 2), (-8, 2)))
+    return Properties(l0 * np.cos(angle), l0 * np.sin(angle), l0, EA, EI, Phi)
+
+
+def random_contact(rng):
+    p = random_properties(rng)
+    x = rng.normal(size=6) * np.array([0.1 * p.l0, 0.1 * p.l0, 0.4] * 2)
+    d = np.array([p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]])
+    xi = rng.choice([rng.uniform(0.01, 0.99), 1e-9, 1 - 1e-9])
+    lever = -(xi * d + 0.05 * rng.normal() * np.array([-d[1], d[0]]))
+    return p, x, lever, xi, rng.normal(size=2), rng.choice([-1.0, 1.0]), rng.choice([0.0, 0.1 * p.l0])
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+def test_beam_tangent_is_the_derivative_of_its_force(name):
+    rng = np.random.default_rng(1)
+    for _ in range(100):
+        p = random_properties(rng, 10)
+        c = ELEMENTS[name].coefficients(p)
+        x, direction = rng.normal(size=(10, 6)) * 0.3, rng.normal(size=(10, 6))
+        force, tangent = beam.response(p, c, x)
+        stepped, _ = beam.response(p, c, x + STEP * direction)
+        expected = stepped.imag / abs(STEP)
+        assert (
+            np.abs(np.einsum("nij,nj->ni", tangent, direction) - expected).max()
+            <= 1e-12 * np.abs(expected).max()
+        )
+        assert np.abs(tangent - tangent.transpose(0, 2, 1)).max() <= 1e-13 * np.abs(tangent).max()
+        assert force.shape == (10, 6)
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+def test_contact_tangent_is_the_derivative_of_its_gradient(name):
+    """1,000 random states, among them contacts within 1e-9 of both ends."""
+    rng = np.random.default_rng(2)
+    kind = ELEMENTS[name]
+    for _ in range(1000):
+        p, x, lever, xi, force, side, offset = random_contact(rng)
+        direction = rng.normal(size=11 if kind.carries_force else 8)
+        slid = direction[10] / p.l0 if kind.carries_force else 0.0
+        pushed = direction[8:10] if kind.carries_force else np.zeros(2)
+        # tangent and derivative from one call: 1e-9 from an end, a last bit of the position moves both by 1e-7
+        stepped, tangent = kind.contact(
+            p,
+            x + STEP * direction[:6],
+            lever + STEP * (direction[:2] - direction[6:8]),
+            xi + STEP * slid,
+            force + STEP * pushed,
+            side,
+            offset,
+        )
+        expected = stepped.imag / abs(STEP)
+        assert np.abs(tangent.real @ direction - expected).max() <= 1e-8 * np.abs(expected).max()
+
+
+def test_mixed_contact_tangent_is_symmetric():
+    rng = np.random.default_rng(3)
+    for _ in range(100):
+        _, tangent = mixed_contact.response(*random_contact(rng))
+        assert np.abs(tangent - tangent.T).max() <= 1e-13 * np.abs(tangent).max()
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+def test_rigid_motion_gives_no_force(name):
+    rng = np.random.default_rng(4)
+    for _ in range(100):
+        p = random_properties(rng, 10)
+        turn, shift = rng.uniform(-3, 3, 10), rng.normal(size=(10, 2))
+        d = np.stack([p.dx0, p.dy0], axis=1)
+        turned = np.stack(
+            [
+                np.cos(turn) * d[:, 0] - np.sin(turn) * d[:, 1],
+                np.sin(turn) * d[:, 0] + np.cos(turn) * d[:, 1],
+            ],
+            axis=1,
+        )
+        x = np.concatenate([shift, turn[:, None], shift + turned - d, turn[:, None]], axis=1)
+        force, _ = beam.response(p, ELEMENTS[name].coefficients(p), x)
+        scale = (p.EA + p.EI / p.l0**2).max() * (1 + 1 / p.l0.min())
+        assert np.abs(force).max() <= 1e-14 * scale
+
+
+def test_contact_forces_of_an_element_balance_themselves():
+    """Force and moment of element and node add up to nothing in any configuration."""
+    rng = np.random.default_rng(5)
+    for name, kind in ELEMENTS.items():
+        for _ in range(100):
+            p, x, lever, xi, force, side, offset = random_contact(rng)
+            gradient, _ = kind.contact(p, x, lever, xi, force, side, offset)
+            f = gradient[:8]
+            d = np.array([p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]])
+            total = f[:2] + f[3:5] + f[6:8]
+            moment = f[2] + f[5] + d[0] * f[4] - d[1] * f[3] - lever[0] * f[7] + lever[1] * f[6]
+            bound = 1e-12 * np.abs(f).max() * (1 + p.l0)
+            if not kind.carries_force:
+                assert max(np.abs(total).max(), abs(moment)) <= bound, name
+                continue
+            # out of equilibrium the node is not on the curve: the force acts over that distance
+            assert np.abs(total).max() <= bound, name
+            miss = gradient[8:10]
+            assert abs(moment - (miss[0] * f[7] - miss[1] * f[6])) <= bound, name
+
+
+def test_linear_beam_is_timoshenkos():
+    """Bending stiffnesses (4 + Phi)/(1 + Phi) EI/l0 and (2 - Phi)/(1 + Phi) EI/l0, for every element."""
+    p = Properties(*(np.array([value]) for value in (2.0, 0.0, 2.0, 30.0, 5.0, 0.7)))
+    for kind in ELEMENTS.values():
+        _, K = beam.response(p, kind.coefficients(p), np.zeros((1, 6)))
+        assert K[0, 2, 2] == pytest.approx(4.7 / 1.7 * 2.5, rel=1e-14)
+        assert K[0, 2, 5] == pytest.approx(1.3 / 1.7 * 2.5, rel=1e-14)
+        assert K[0, 0, 0] == pytest.approx(15.0, rel=1e-14)
+
+
+def rod_energy(p, theta_i, theta_j, e, points=12):
+    """Energy of a Reissner rod with given end rotations and elongation of its chord, by Ritz's method."""
+    node, weight = np.polynomial.legendre.leggauss(points)
+    s, weight = (node + 1) / 2, weight / 2
+    GA = 12 * p.EI / (p.Phi * p.l0**2)
+    bubbles = np.stack([s * (1 - s) * (2 * s - 1) ** k for k in range(4)])
+    dbubbles = np.stack(
+        [
+            (1 - 2 * s) * (2 * s - 1) ** k + 2 * k * s * (1 - s) * (2 * s - 1) ** max(k - 1, 0)
+            for k in range(4)
+        ]
+    )
+
+    def functional(z):
+        N, V, c = z[0], z[1], z[2:]
+        theta = theta_i * (1 - s) + theta_j * s + c @ bubbles
+        kappa = (theta_j - theta_i + c @ dbubbles) / p.l0
+        along, across = N * np.cos(theta) + V * np.sin(theta), V * np.cos(theta) - N * np.sin(theta)
+        inside = along + along**2 / (2 * p.EA) + across**2 / (2 * GA) - p.EI / 2 * kappa**2
+        return N * (p.l0 + e) - p.l0 * (weight @ inside)
+
+    def gradient(z):
+        return np.array([functional(z + STEP * unit).imag / abs(STEP) for unit in np.eye(len(z))])
+
+    z = root(gradient, np.zeros(6), tol=1e-14).x
+    assert np.abs(gradient(z)).max() < 1e-9
+    return functional(z)
+
+
+def test_energy_is_the_reissner_rods_to_fourth_order():
+    """Halving all rotations and strains divides the energy's error by 2^6, the energy itself by 4."""
+    p = Properties(1.0, 0.0, 1.0, 50.0, 2.0, 0.8)
+    c = beam.bowed_coefficients(Properties(*(np.array([v]) for v in p)))
+    errors = []
+    for scale in (0.2, 0.1, 0.05):
+        theta_i, theta_j, e = 0.9 * scale, 0.3 * scale, 0.4 * scale**2
+        u, d = theta_i + theta_j, theta_i - theta_j
+        stretch = e + c.eu * u * u + c.ed * d * d
+        compliance = c.c0 + c.cu * u * u + c.cd * d * d
+        ours = (
+            stretch**2 / compliance / 2
+            + (c.ku * u * u + c.kd * d * d) / 2
+            + c.r4 * u**4
+            + c.r2 * u * u * d * d
+        )
+        errors.append(abs(float(ours[0]) - rod_energy(p, theta_i, theta_j, e)))
+    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert (orders > 5.5).all(), (errors, orders)
+
+
+@pytest.mark.parametrize("xi", [1e-6, 0.1, 0.37, 0.5, 0.93])
+@pytest.mark.parametrize("Phi", [1e-9, 0.3, 40.0])
+def test_eliminating_the_force_gives_the_papers_matrix(xi, Phi):
+    """``k + g g^T / C`` with the chord-normal gap's gradient g is [P] (9), corrected, to round-off."""
+    p = Properties(1.3, 0.0, 1.3, 10.0, 2.0, Phi)
+    k = p.EI / p.l0 / (1 + Phi) * np.array([[4 + Phi, 2 - Phi, 0], [2 - Phi, 4 + Phi, 0], [0, 0, 0]])
+    half = Phi / 2
+    w = p.l0 * xi * (1 - xi) / (1 + Phi) * np.array([1 - xi + half, -(xi + half), 0])
+    g = np.array([0.0, 0.0, 1.0]) - w
+    C = mixed_contact.compliance(p, xi)[0]
+    K, _ = chord_contact.timoshenko(p, xi)
+    assert np.abs(K - (k + np.outer(g, g) / C)).max() <= 1e-12 * np.abs(K).max()
+
+
+def test_printed_entry_of_the_paper_has_the_wrong_dimension():
+    """The entry M_i-theta_j of (9) scales with lengths only as corrected."""
+    for factor in (2.0, 10.0):
+        small, large = (Properties(s, 0.0, s, 1.0, s * s, 0.5) for s in (1.0, factor))
+        corrected = [chord_contact.timoshenko(p, 0.3)[0][0, 1] for p in (small, large)]
+        printed = []
+        for p in (small, large):
+            a, b, Psi = 0.3 * p.l0, 0.7 * p.l0, p.Phi * p.l0**2 / 12
+            omega = (a * b) ** 2 + 3 * Psi * (p.l0**2 + a * b) + 36 * Psi**2
+            printed.append((9 * (p.l0**2 - b * Psi) - omega) * p.EI / (p.l0 * omega))
+        assert corrected[1] / corrected[0] == pytest.approx(factor, rel=1e-12)
+        assert abs(printed[1] / printed[0] / factor - 1) > 0.1
+
+
+def test_compliance_vanishes_at_both_ends_and_matches_its_limits():
+    bending = Properties(2.0, 0.0, 2.0, 1.0, 3.0, 1e-14)
+    assert mixed_contact.compliance(bending, 0.0)[0] == 0
+    assert mixed_contact.compliance(bending, 1.0)[0] == 0
+    assert mixed_contact.compliance(bending, 0.5)[0] == pytest.approx(2.0**3 / (192 * 3.0), rel=1e-12)
+    shear = Properties(2.0, 0.0, 2.0, 1.0, 3.0, 1e9)
+    GA = 12 * 3.0 / (1e9 * 4.0)
+    assert mixed_contact.compliance(shear, 0.25)[0] == pytest.approx(0.5 * 1.5 / (2.0 * GA), rel=1e-8)
+
+
+def test_curve_meets_the_nodes_in_position_and_slope():
+    """Without shear the tangent at an end is the node's rotation, whatever its size: slopes are continuous."""
+    rng = np.random.default_rng(6)
+    for _ in range(50):
+        p = random_properties(rng)._replace(Phi=1e-15)
+        x = rng.normal(size=6) * np.array([0.05 * p.l0, 0.05 * p.l0, 0.5] * 2)
+        curve = Curve(p, x)
+        start = np.arctan2(p.dy0, p.dx0)
+        for xi, theta in ((0.0, x[2]), (1.0, x[5])):
+            assert curve.deflection(xi)[0] == 0
+            angle = curve.slope_angle(xi)[0]
+            assert np.cos(angle - start - theta) == pytest.approx(1, abs=1e-14)

@@ -1,0 +1,29 @@
+"""Planar beams by the tangent stiffness method with frictionless node-element contact."""
+
+from tsm.elements import ELEMENTS
+from tsm.events import Event, EventKind
+from tsm.result import ContactHistory, Result, SupportHistory
+from tsm.settings import Settings
+from tsm.solve import SolveError, march, solve
+from tsm.status import Status
+from tsm.structure import Beam, ContactPair, Pin, Section, Structure, Support
+
+__all__ = [
+    "ELEMENTS",
+    "Beam",
+    "ContactHistory",
+    "ContactPair",
+    "Event",
+    "EventKind",
+    "Pin",
+    "Result",
+    "Section",
+    "Settings",
+    "SolveError",
+    "Status",
+    "Structure",
+    "Support",
+    "SupportHistory",
+    "march",
+    "solve",
+]

@@ -1,0 +1,124 @@
+"""Geometry of contact: where a node lies relative to a beam, and which element owns it.
+
+A node has exactly one owner. While the arc position is an unknown, the owner is the element that holds it: passing
+a beam node is a change of owner inside the iteration, and both neighbours describe the same point. Where the
+position follows from a projection on chords, the owner is the element whose projection falls inside; on the convex side
+of a kink, where none does, and on the concave side, where two do, it is the nearer one, the first of two equals.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements.curve import Curve
+from tsm.elements.properties import Array
+from tsm.model import BeamModel, Model, PairModel
+from tsm.state import State, Touch
+
+
+class Projection(NamedTuple):
+    """Closest point of a beam's deflected axis to a node.
+
+    Attributes
+    ----------
+    element : int
+        Global number of the owner.
+    xi : float
+        Position on it.
+    gap : float
+        Distance from the contact surface to the node, positive on the stated side.
+    overshoot : float
+        How far the closest point lies beyond the beam's ends, along the axis [length]; 0 within.
+    """
+
+    element: int
+    xi: float
+    gap: float
+    overshoot: float
+
+
+def node_position(model: Model, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
+    """Current position of the contacting node."""
+    if pair.pin is not None:
+        return pair.pin.position(load_parameter)
+    x, y = model.coordinates[pair.node] + q[3 * pair.node : 3 * pair.node + 2]
+    return float(x), float(y)
+
+
+def arc_position(model: Model, target: BeamModel, element: int, xi: float) -> float:
+    """Distance along the undeformed axis from the beam's start."""
+    return float((element - target.first + xi) * model.element[element].l0)
+
+
+def owner_at(model: Model, target: BeamModel, arc: float) -> tuple[int, float]:
+    """Element and position in it of an arc position; the end elements own what lies beyond."""
+    along = arc / model.element[target.first].l0
+    local = min(max(math.floor(along), 0), target.beam.elements - 1)
+    return target.first + local, along - local
+
+
+def slide(target: BeamModel, element: int, xi: float) -> tuple[int, float]:
+    """Hand a position that left its element over to the neighbour."""
+    steps = math.floor(xi) if not 0.0 <= xi <= 1.0 else 0
+    owner = min(max(element + steps, target.first), target.last)
+    return owner, xi - (owner - element)
+
+
+def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:
+    """Owner by projection on the chords."""
+    positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
+    d = np.diff(positions, axis=0)
+    r = np.array(node) - positions[:-1]
+    xi = np.einsum("ij,ij->i", d, r) / np.einsum("ij,ij->i", d, d)
+    miss = r - np.clip(xi, 0.0, 1.0)[:, None] * d
+    owner = int(np.argmin(np.einsum("ij,ij->i", miss, miss)))
+    return target.first + owner, float(xi[owner])
+
+
+def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
+    """Touch with its owner and position renewed by projection on the chords."""
+    node = node_position(model, pair, state.q, state.load_parameter)
+    element, xi = nearest_chord(model, pair.target, state.q, node)
+    return Touch(element=element, xi=min(max(xi, 0.0), 1.0), force=touch.force)
+
+
+def project(model: Model, pair: PairModel, q: Array, load_parameter: float) -> Projection:
+    """Closest point of the deflected axis, unloaded by this node.
+
+    The chords give the owner, Newton's method on the owner's curve the point.
+    """
+    node = node_position(model, pair, q, load_parameter)
+    element, xi = nearest_chord(model, pair.target, q, node)
+    for _ in range(20):
+        rx, ry, curve = _lever(model, element, q, node)
+        (w, dw, ddw), dx, dy = _deflection(curve, xi), curve.dx, curve.dy
+        px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
+        tx, ty = dx - dw * dy, dy + dw * dx
+        step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
+        element, xi = slide(pair.target, element, xi - step)
+        if abs(step) < 1e-14:
+            break
+    height = (py * tx - px * ty) / math.hypot(tx, ty)
+    local = element - pair.target.first + xi
+    beyond = max(local - pair.target.beam.elements, -local, 0.0) * model.element[element].l0
+    return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
+
+
+def _deflection(curve: Curve, xi: float) -> tuple[float, float, float]:
+    a, b, eta = float(curve.tan_i), float(curve.tan_j), 1 - xi
+    return (
+        xi * eta * (eta * a - xi * b),
+        eta * (1 - 3 * xi) * a + xi * (3 * xi - 2) * b,
+        (6 * xi - 4) * a + (6 * xi - 2) * b,
+    )
+
+
+def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:
+    x = q[model.dofs[element]]
+    i = model.element_nodes[element, 0]
+    rx = float(model.coordinates[i, 0] + x[0]) - node[0]
+    ry = float(model.coordinates[i, 1] + x[1]) - node[1]
+    return rx, ry, Curve(model.element[element], x)

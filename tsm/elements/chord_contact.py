@@ -1,0 +1,137 @@
+"""The contact elements of the paper: force by a stiffness times the deflection, normal to the chord.
+
+Basic system simply supported on the chord, element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)), contact
+point at the distances a and b from the ends, measured on the chord. Nodal forces ``U = J S`` with J the
+transposed derivative of the basic deformations; the tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``, whose last part
+([P] leaves it open) is what makes Newton's method quadratic while the node slides. It is not symmetric.
+
+Everything is divided by a and b, which is what the paper calls the critical area.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+
+Stiffness = Callable[[Properties, Any], tuple[Array, Array]]
+
+INSIDE = 1e-15
+"""Contact points are kept this far inside the element, in parts of its length: at its ends K is infinite."""
+
+# element displacements (6), node (2)  ->  r = x_c - x_i, chord d, theta_i, theta_j
+_REDUCE = np.zeros((6, 8))
+_REDUCE[0, [0, 6]] = _REDUCE[1, [1, 7]] = -1, 1
+_REDUCE[2, [0, 3]] = _REDUCE[3, [1, 4]] = -1, 1
+_REDUCE[4, 2] = _REDUCE[5, 5] = 1
+
+
+def response(
+    stiffness: Stiffness, p: Properties, x: Any, lever: Any, side: float, offset: float
+) -> tuple[Array, Array]:
+    """Forces and exact tangent of an element together with the node that touches it.
+
+    Parameters
+    ----------
+    stiffness : callable
+        Matrix of ``[M_i, M_j, Y_c]`` over ``[theta_i, theta_j, y_c]`` and its derivative in a, at a given ``xi = a/l0``.
+    p : Properties
+        Constants of the element.
+    x : sequence of 6 numbers
+        Its displacements.
+    lever : sequence of 2 numbers
+        ``x_i - x_c``, from the contacting node to the element's end i.
+    side : float
+        +1 where the node comes from the right, -1 from the left.
+    offset : float
+        Distance of the contact surface from the axis.
+
+    Returns
+    -------
+    force : ndarray, shape (8,)
+        On the element (6) and the node (2).
+    tangent : ndarray, shape (8, 8)
+        Its derivative.
+    """
+    (dx, dy), (rx, ry) = (p.dx0 + (x[3] - x[0]), p.dy0 + (x[4] - x[1])), (-lever[0], -lever[1])
+    length = np.sqrt(dx * dx + dy * dy)
+    t = np.array([dx, dy]) / length
+    n = np.array([-t[1], t[0]])
+    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    y = n[0] * rx + n[1] * ry
+    xi = (dx * rx + dy * ry) / (dx * dx + dy * dy)
+    xi = xi + (min(max(np.real(xi), INSIDE), 1 - INSIDE) - np.real(xi))
+    du, dv = x[3] - x[0], x[4] - x[1]
+    elongation = (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
+    deformation = np.array([unwind(x[2] - turn), unwind(x[5] - turn), y + side * offset])
+    K, dK = stiffness(p, xi)
+    S = K @ deformation
+    N = p.EA / p.l0 * elongation
+
+    B = np.zeros((3, 6), dtype=S.dtype)
+    B[:2, 2:4] = -n / length
+    B[0, 4] = B[1, 5] = 1
+    B[2, :2], B[2, 2:4] = n, -xi * n
+    stretch = np.zeros(6, dtype=S.dtype)
+    stretch[2:4] = t
+    slide = np.zeros(6, dtype=S.dtype)
+    slide[:2], slide[2:4] = t / length, (y * n - xi * length * t) / length**2
+
+    nn, tn = np.outer(n, n), np.outer(t, n)
+    tn = tn + tn.T
+    geometric = np.zeros((6, 6), dtype=S.dtype)
+    geometric[2:4, 2:4] = (
+        N / length * nn + (S[0] + S[1]) / length**2 * tn + S[2] * (xi * tn / length - y * nn / length**2)
+    )
+    geometric[:2, 2:4] = -S[2] / length * np.outer(t, n)
+    geometric[2:4, :2] = geometric[:2, 2:4].T
+
+    force = N * stretch + S @ B
+    tangent = p.EA / p.l0 * np.outer(stretch, stretch) + B.T @ K @ B + geometric
+    tangent += np.outer((dK @ deformation) @ B, p.l0 * slide)
+    return force @ _REDUCE, _REDUCE.T @ tangent @ _REDUCE
+
+
+def timoshenko(p: Properties, xi: Any) -> tuple[Array, Array]:
+    """Matrix of [P] (9)-(12), corrected, over ``[theta_i, theta_j, y_c]`` and its derivative in a.
+
+    ``M_i-theta_j`` is ``(9 Psi (l0^2 - ab) - Omega) k_c``; as printed it mixes dimensions. ``Psi = 0`` gives the
+    Euler-Bernoulli element (5)-(6).
+    """
+    l0, EI = p.l0, p.EI
+    Psi = p.Phi * l0 * l0 / 12
+    a, b = xi * l0, (1 - xi) * l0
+    z, dz = a * b, b - a
+    omega = z * z + 3 * Psi * (l0 * l0 + z) + 36 * Psi * Psi
+    kc = EI / (l0 * omega)
+    dkc = -kc / omega * (2 * z + 3 * Psi) * dz
+    dOmega = (2 * z + 3 * Psi) * dz
+    square = 108 * Psi * Psi
+    yy = 3 * l0 * l0 * (l0 * l0 + 12 * Psi)
+    N = np.array(
+        [
+            [
+                4 * omega + 3 * z * b * b - square,
+                9 * Psi * (l0 * l0 - z) - omega,
+                -3 * l0 * (b * l0 + 6 * Psi),
+            ],
+            [
+                9 * Psi * (l0 * l0 - z) - omega,
+                4 * omega + 3 * z * a * a - square,
+                3 * l0 * (a * l0 + 6 * Psi),
+            ],
+            [-3 * l0 * (b * l0 + 6 * Psi), 3 * l0 * (a * l0 + 6 * Psi), yy / z],
+        ]
+    )
+    dij = -9 * Psi * dz - dOmega
+    dN = np.array(
+        [
+            [4 * dOmega + 3 * b * b * (dz - 2 * a), dij, 3 * l0 * l0],
+            [dij, 4 * dOmega + 3 * a * a * (dz + 2 * b), 3 * l0 * l0],
+            [3 * l0 * l0, 3 * l0 * l0, -yy / (z * z) * dz],
+        ]
+    )
+    return kc * N, dkc * N + kc * dN

@@ -1,0 +1,154 @@
+"""Contact events: what changes between two configurations, and where exactly it does.
+
+============= ==============================================================================
+touch         the gap of an open pair falls below zero, its node on the stated side
+release       the force of a closed pair falls below zero
+slip-off      the position of a closed pair leaves the beam past an end
+pass-through  the owner of a closed pair changes from an element to its neighbour
+============= ==============================================================================
+
+The first three change the set of closed contacts. Each has a margin, positive before and negative after, and
+lies where its margin is zero. A pass-through changes nothing and is interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+from tsm.contact import arc_position, project
+from tsm.model import Model
+from tsm.newton import Equilibrium
+
+ROUND_OFF = 1e-10
+"""Margins smaller than this are zero."""
+
+_SOLVES = 80
+
+
+class EventKind(Enum):
+    """Kind of a contact event."""
+
+    TOUCH = "touch"
+    RELEASE = "release"
+    SLIP_OFF = "slip-off"
+    PASS_THROUGH = "pass-through"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """A located contact event.
+
+    Attributes
+    ----------
+    kind : EventKind
+        What happened.
+    load_parameter : float
+        Where.
+    pair : str
+        Name of the pair.
+    element : int
+        The owner, counted from 0 at the beam's start; after a pass-through, the new owner.
+    arc_position : float
+        Distance along the undeformed axis [length].
+    force : float
+        Contact force, before the event.
+    """
+
+    kind: EventKind
+    load_parameter: float
+    pair: str
+    element: int
+    arc_position: float
+    force: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Margin:
+    """A dimensionless quantity that is positive until its event happens."""
+
+    kind: EventKind
+    pair: int
+    value: float
+
+
+def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
+    """Contact force of closed pair k, positive where it pushes the beam away from the node's side."""
+    fx, fy = equilibrium.system.forces[k]
+    touch = equilibrium.state.touches[k]
+    assert touch is not None, "a closed pair has a touch"
+    i, j = model.element_nodes[touch.element]
+    q = equilibrium.state.q
+    dx, dy = model.coordinates[j] - model.coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
+    push = model.pairs[k].side * (fy * dx - fx * dy)
+    size = float((fx * fx + fy * fy) ** 0.5)
+    return size if push >= 0 else -size
+
+
+def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:
+    """Margins of the events that may come next, those of forces over the solution's own tolerance."""
+    state = equilibrium.state
+    found: list[Margin] = []
+    for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
+        if touch is not None:
+            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            inside = min(arc, pair.target.beam.length - arc) / model.length
+            force = normal_force(model, equilibrium, k) / model.force_scale
+            found.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
+            found.append(
+                Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
+            )
+        elif state.armed[k]:
+            seen = project(model, pair, state.q, state.load_parameter)
+            over = seen.overshoot <= ROUND_OFF * model.length
+            found.append(Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0))
+    return found
+
+
+def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:
+    """Margins that have become negative, as they were before and after."""
+    return [(a, b) for a, b in zip(before, after, strict=True) if b.value < -ROUND_OFF]
+
+
+def locate(
+    before: tuple[float, Margin],
+    after: tuple[float, Margin],
+    solve: Callable[[float], Equilibrium | None],
+    measure: Callable[[Equilibrium], list[Margin]],
+) -> tuple[Equilibrium, Margin] | None:
+    """Equilibrium at which a margin is zero, by false position (Illinois) with a bisection every third time.
+
+    Parameters
+    ----------
+    before, after : tuple
+        Load parameter and margin on both sides of the event.
+    solve : callable
+        Equilibrium at a load parameter, None where none is found.
+    measure : callable
+        Margins of an equilibrium.
+
+    Returns
+    -------
+    tuple or None
+        Where the margin is zero, or where it jumps below zero at a load parameter that is exact to round-off.
+    """
+    (t0, first), (t1, last) = before, after
+    y0, y1 = first.value, last.value
+    found: tuple[Equilibrium, Margin] | None = None
+    for count in range(_SOLVES):
+        t = (t0 + t1) / 2 if count % 3 == 2 else t0 + (t1 - t0) * y0 / (y0 - y1)
+        equilibrium = solve(t)
+        if equilibrium is None:
+            return None
+        margin = next(m for m in measure(equilibrium) if (m.kind, m.pair) == (first.kind, first.pair))
+        found = equilibrium, margin
+        if abs(margin.value) <= ROUND_OFF:
+            return found
+        if margin.value > 0:
+            t0, y0, y1 = t, margin.value, y1 / 2
+        else:
+            t1, y1, y0 = t, margin.value, y0 / 2
+        if abs(t1 - t0) < 1e-14 and margin.value < 0:
+            return found
+    return found

@@ -1,0 +1,224 @@
+"""What a solution states: histories over the prescribed load parameters, shapes, section forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tsm.contact import arc_position, project
+from tsm.elements.curve import Curve
+from tsm.elements.properties import Array
+from tsm.events import Event, normal_force
+from tsm.model import Model
+from tsm.newton import Equilibrium
+from tsm.status import Status
+from tsm.stepping import Step
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactHistory:
+    """One contact pair over the load.
+
+    Attributes
+    ----------
+    force : ndarray, shape (s,)
+        Contact force, 0 where the pair is open.
+    arc_position : ndarray, shape (s,)
+        Distance along the undeformed axis from the beam's start, nan where the pair is open.
+    gap : ndarray, shape (s,)
+        Distance of the node from the contact surface; what Newton's method left where the pair is closed, nan
+        where the node is not over the beam or has slipped past it.
+    """
+
+    force: Array
+    arc_position: Array
+    gap: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class SupportHistory:
+    """What the supports of a beam exert on it.
+
+    Attributes
+    ----------
+    force : ndarray, shape (s, 2)
+        Force (x, y).
+    moment : ndarray, shape (s,)
+        Moment about the supported node, anticlockwise; of both ends, the first that is supported.
+    """
+
+    force: Array
+    moment: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """Outcome of a solution.
+
+    Attributes
+    ----------
+    status : Status
+        COMPLETED or the reason for the stop.
+    message : str
+        One sentence: the status and what was reached.
+    load_parameter : ndarray, shape (s,)
+        Prescribed load parameters that were reached.
+    contacts : dict of ContactHistory
+        By pair name, ``node->beam``.
+    supports : dict of SupportHistory
+        By beam.
+    tips : dict of ndarray, shape (s, 2)
+        Position of the beam's end, by beam.
+    newton_iterations : ndarray of int, shape (s,)
+        Iterations since the previous prescribed load parameter.
+    cutbacks : int
+        Steps given up.
+    events : tuple of Event
+        Contact events in order.
+    unknowns : int
+        Number of unknowns.
+    wall_seconds : float
+        Duration of the solution.
+    """
+
+    status: Status
+    message: str
+    load_parameter: Array
+    contacts: dict[str, ContactHistory]
+    supports: dict[str, SupportHistory]
+    tips: dict[str, Array]
+    newton_iterations: Array
+    cutbacks: int
+    events: tuple[Event, ...]
+    unknowns: int
+    wall_seconds: float
+    model: Model = field(repr=False)
+    equilibria: tuple[Equilibrium, ...] = field(repr=False)
+
+    def shape(self, beam: str, k: int) -> Array:
+        """Deformed nodes of a beam at accepted load parameter k: x, y, rotation; shape (elements + 1, 3)."""
+        nodes = self.model.beams[beam].nodes
+        shape = self.equilibria[k].state.q.reshape(-1, 3)[nodes].copy()
+        shape[:, :2] += self.model.coordinates[nodes]
+        return shape
+
+    def axis_line(self, beam: str, k: int, points_per_element: int = 10) -> tuple[Array, Array]:
+        """Deflected axis of a beam at accepted load parameter k.
+
+        Returns
+        -------
+        arc : ndarray, shape (m,)
+            Distance along the undeformed axis.
+        xy : ndarray, shape (m, 2)
+            Deformed position, without the dent of a contact inside its element.
+        """
+        place = self.model.beams[beam]
+        q = self.equilibria[k].state.q
+        xi = np.linspace(0, 1, points_per_element + 1)
+        arcs, points = [], []
+        for e in range(place.first, place.last + 1):
+            x = q[self.model.dofs[e]]
+            curve = Curve(self.model.element[e], x)
+            w = xi * (1 - xi) * ((1 - xi) * curve.tan_i - xi * curve.tan_j)
+            start = self.model.coordinates[self.model.element_nodes[e, 0]] + x[:2]
+            d = np.array([curve.dx, curve.dy])
+            xy = start + xi[:, None] * d + w[:, None] * np.array([-d[1], d[0]])
+            keep = slice(None) if e == place.last else slice(-1)
+            points.append(xy[keep])
+            arcs.append((e - place.first + xi[keep]) * self.model.element[e].l0)
+        return np.concatenate(arcs), np.concatenate(points)
+
+    def section_forces(self, beam: str, k: int) -> Array:
+        """Axial force, shear force and moment at both ends of the elements of a beam.
+
+        Positive are tension, a force to the left of the beam's direction on the right-hand cut, and an anticlockwise
+        moment on it. Axial and shear force are along and across the chord.
+
+        Returns
+        -------
+        ndarray, shape (elements, 2, 3)
+        """
+        place = self.model.beams[beam]
+        part = slice(place.first, place.last + 1)
+        force = self.equilibria[k].system.element_force[part]
+        d = np.diff(self.shape(beam, k)[:, :2], axis=0)
+        t = d / np.linalg.norm(d, axis=1)[:, None]
+        out = np.empty((len(force), 2, 3))
+        for end, sign in ((0, -1), (1, 1)):
+            f = sign * force[:, 3 * end : 3 * end + 3]
+            out[:, end, 0] = f[:, 0] * t[:, 0] + f[:, 1] * t[:, 1]
+            out[:, end, 1] = f[:, 1] * t[:, 0] - f[:, 0] * t[:, 1]
+            out[:, end, 2] = f[:, 2]
+        return out
+
+
+def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:
+    """Result of the accepted steps."""
+    requested = [step for step in steps if step.requested]
+    equilibria = tuple(step.equilibrium for step in requested)
+    spent = np.cumsum([step.iterations for step in steps])
+    upto = spent[[k for k, step in enumerate(steps) if step.requested]] if steps else np.zeros(0, int)
+    reached = equilibria[-1].state.load_parameter if equilibria else 0.0
+    stopped = steps[-1].equilibrium.state.load_parameter if steps else 0.0
+    where = (
+        ""
+        if status is Status.COMPLETED
+        else f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
+    )
+    return Result(
+        status=status,
+        message=status.value + where,
+        load_parameter=np.array([e.state.load_parameter for e in equilibria]),
+        contacts={pair.pair.name: _contact(model, equilibria, k) for k, pair in enumerate(model.pairs)},
+        supports={name: _support(model, equilibria, name) for name in _supported(model)},
+        tips={
+            name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
+            for name, place in model.beams.items()
+        },
+        newton_iterations=np.diff(upto, prepend=0),
+        cutbacks=sum(step.cutbacks for step in steps),
+        events=tuple(event for step in steps for event in step.events),
+        unknowns=model.unknowns,
+        wall_seconds=seconds,
+        model=model,
+        equilibria=equilibria,
+    )
+
+
+def _position(model: Model, equilibrium: Equilibrium, node: int) -> Array:
+    position: Array = model.coordinates[node] + equilibrium.state.q[3 * node : 3 * node + 2]
+    return position
+
+
+def _contact(model: Model, equilibria: tuple[Equilibrium, ...], k: int) -> ContactHistory:
+    rows = [_contact_at(model, equilibrium, k) for equilibrium in equilibria]
+    force, arc, gap = np.array(rows).reshape(-1, 3).T
+    return ContactHistory(force=force, arc_position=arc, gap=gap)
+
+
+def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:
+    pair, state = model.pairs[k], equilibrium.state
+    touch = state.touches[k]
+    if touch is not None:
+        left = 0.0
+        if pair.slot >= 0:
+            own = equilibrium.system.residual[model.equations + pair.slot :]
+            left = float(np.hypot(own[0], own[1]))
+        arc = arc_position(model, pair.target, touch.element, touch.xi)
+        return normal_force(model, equilibrium, k), arc, left
+    seen = project(model, pair, state.q, state.load_parameter)
+    over = state.armed[k] and seen.overshoot <= 0
+    return 0.0, np.nan, seen.gap if over else np.nan
+
+
+def _supported(model: Model) -> list[str]:
+    return list(dict.fromkeys(name.rpartition(".")[0] for name in model.support_node))
+
+
+def _support(model: Model, equilibria: tuple[Equilibrium, ...], beam: str) -> SupportHistory:
+    nodes = [node for name, node in model.support_node.items() if name.rpartition(".")[0] == beam]
+    held = np.isin(np.arange(model.dof_count), model.fixed)
+    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3)[nodes] for e in equilibria]
+    table = np.array(reactions).reshape(-1, len(nodes), 3)
+    return SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])

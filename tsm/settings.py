@@ -1,0 +1,38 @@
+"""Numerical settings of a solution."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How hard to try.
+
+    Parameters
+    ----------
+    tolerance : float
+        Bound on the scaled residual, see `Newton`.
+    max_iterations : int
+        Newton iterations before a step is cut back.
+    smallest_step : float
+        Floor of the load step, as a part of the whole load.
+    max_chatter : int
+        Contact events allowed at one load parameter, per contact pair.
+    """
+
+    tolerance: float = 1e-11
+    max_iterations: int = 25
+    smallest_step: float = 1e-7
+    max_chatter: int = 6
+
+    def __post_init__(self) -> None:
+        for field in ("tolerance", "smallest_step"):
+            value = getattr(self, field)
+            if not (math.isfinite(value) and 0 < value < 1):
+                raise ValueError(f"Settings.{field} = {value!r}: must lie between 0 and 1")
+        for field in ("max_iterations", "max_chatter"):
+            value = getattr(self, field)
+            if value < 1:
+                raise ValueError(f"Settings.{field} = {value!r}: must be at least 1")

@@ -1,0 +1,113 @@
+"""The two ways to solve: `march` yields accepted steps, `solve` collects them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsm.elements.properties import Array
+from tsm.model import Model
+from tsm.result import Result, collect
+from tsm.settings import Settings
+from tsm.status import Status
+from tsm.stepping import Step, Stepper
+from tsm.structure import Structure
+
+
+class SolveError(RuntimeError):
+    """A solution stopped; `result` holds what was reached.
+
+    Attributes
+    ----------
+    result : Result
+        With the status that names the reason.
+    """
+
+    def __init__(self, result: Result) -> None:
+        super().__init__(f"{result.status.name}: {result.message}")
+        self.result = result
+
+
+def march(structure: Structure, load_parameters: Array, settings: Settings | None = None) -> Iterator[Step]:
+    """Yield accepted steps; those with `requested` lie on the load parameters exactly.
+
+    Parameters
+    ----------
+    structure : Structure
+        What to solve.
+    load_parameters : array_like
+        Increasing values in (0, 1].
+    settings : Settings, optional
+        Numerical settings.
+
+    Raises
+    ------
+    ValueError
+        If the load parameters are not increasing in (0, 1], or a node starts behind the surface it touches.
+    """
+    yield from Stepper(Model(structure), settings or Settings()).march(_checked(load_parameters))
+
+
+def solve(
+    structure: Structure,
+    load_parameters: Array,
+    settings: Settings | None = None,
+    *,
+    throw: bool = True,
+) -> Result:
+    """Equilibrium at all load parameters.
+
+    Parameters
+    ----------
+    structure, load_parameters, settings
+        As for `march`.
+    throw : bool
+        Whether to raise where the solution stops.
+
+    Returns
+    -------
+    Result
+        With status COMPLETED, or, if not `throw`, with what was reached and why it stopped.
+
+    Raises
+    ------
+    SolveError
+        Where the solution stops; carries the partial result.
+    ValueError
+        As for `march`.
+
+    Examples
+    --------
+    >>> import numpy as np, tsm
+    >>> section = tsm.Section(EA=8.4, GA=2.7, EI=2.8e-4)
+    >>> cantilever = tsm.Structure(
+    ...     beams=(tsm.Beam(name="cantilever", start=(0, 0), end=(1, 0), section=section, elements=10),),
+    ...     supports=(tsm.Support(beam="cantilever", end="start"),),
+    ...     pins=(tsm.Pin(name="pin", path=((1, 0), (0, 0.6366))),),
+    ...     contacts=(tsm.ContactPair(node="pin", beam="cantilever", side="right"),),
+    ... )
+    >>> result = tsm.solve(cantilever, np.linspace(0.02, 1, 50))
+    >>> f"{result.contacts['pin->cantilever'].force[-1]:.6f} N"
+    '0.002288 N'
+    """
+    targets = _checked(load_parameters)
+    begin = time.perf_counter()
+    model = Model(structure)
+    steps = list(Stepper(model, settings or Settings()).march(targets))
+    status = steps[-1].status
+    if status is Status.CONVERGED:
+        status = Status.COMPLETED
+    result = collect(model, steps, status, time.perf_counter() - begin)
+    if throw and result.status is not Status.COMPLETED:
+        raise SolveError(result)
+    return result
+
+
+def _checked(load_parameters: Array) -> Array:
+    targets = np.asarray(load_parameters, dtype=float)
+    ok = targets.ndim == 1 and targets.size > 0 and bool(np.isfinite(targets).all())
+    if not (ok and targets[0] > 0 and targets[-1] <= 1 and bool((np.diff(targets) > 0).all())):
+        raise ValueError(f"load_parameters = {load_parameters!r}: must increase within (0, 1]")
+    return targets

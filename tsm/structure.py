@@ -1,0 +1,283 @@
+"""What a user states: sections, beams, supports, pins, contact pairs.
+
+Everything here is immutable, holds plain numbers and checks itself; nothing is computed yet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from tsm.elements import ELEMENTS
+
+Point = tuple[float, float]
+End = Literal["start", "end"]
+Side = Literal["left", "right"]
+
+
+def _check(ok: bool, owner: str, field: str, value: object, rule: str) -> None:
+    if not ok:
+        raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
+
+
+def _between(a: Point, b: Point, part: float) -> Point:
+    return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
+
+
+def _finite(*values: float) -> bool:
+    return all(math.isfinite(value) for value in values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """Stiffnesses of a cross-section.
+
+    Parameters
+    ----------
+    EA : float
+        Axial stiffness [force].
+    GA : float
+        Shear stiffness ``G A_e`` with the effective area ``A_e = kappa A`` [force].
+    EI : float
+        Bending stiffness [force length^2].
+
+    Raises
+    ------
+    ValueError
+        If a stiffness is not positive and finite.
+    """
+
+    EA: float
+    GA: float
+    EI: float
+
+    def __post_init__(self) -> None:
+        for field in ("EA", "GA", "EI"):
+            value = getattr(self, field)
+            _check(_finite(value) and value > 0, "Section", field, value, "must be positive and finite")
+
+    @classmethod
+    def rectangle(
+        cls, *, width: float, height: float, youngs_modulus: float, shear_modulus: float
+    ) -> Section:
+        """Solid rectangle ``width x height``, bent in the plane of its height, ``A_e = 5/6 A``.
+
+        >>> Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=8e3).EA
+        8.4
+        """
+        area = width * height
+        return cls(
+            EA=youngs_modulus * area,
+            GA=shear_modulus * area * 5 / 6,
+            EI=youngs_modulus * width * height**3 / 12,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beam:
+    """A straight, initially stress-free beam divided into equal elements.
+
+    Parameters
+    ----------
+    name : str
+        Unique name.
+    start, end : tuple of float
+        End points of the axis [length]; the beam's direction is start to end.
+    section : Section
+        Stiffnesses.
+    elements : int
+        Number of elements.
+    element : str
+        Element type, a key of `tsm.ELEMENTS`.
+    """
+
+    name: str
+    start: Point
+    end: Point
+    section: Section
+    elements: int = 20
+    element: str = "mixed"
+
+    def __post_init__(self) -> None:
+        owner = f"Beam({self.name})"
+        for field in ("start", "end"):
+            value = getattr(self, field)
+            _check(len(value) == 2 and _finite(*value), owner, field, value, "must be two finite numbers")
+        _check(self.length > 0, owner, "end", self.end, "must differ from start")
+        _check(
+            isinstance(self.elements, int) and self.elements >= 1,
+            owner,
+            "elements",
+            self.elements,
+            "at least 1",
+        )
+        _check(
+            self.element in ELEMENTS, owner, "element", self.element, f"must be one of {', '.join(ELEMENTS)}"
+        )
+
+    @property
+    def length(self) -> float:
+        """Length of the undeformed axis."""
+        return math.dist(self.start, self.end)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """Prescribed displacement of a beam end at load parameter 1; ``None`` leaves the component free.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end.
+    ux, uy : float or None
+        Prescribed displacement [length].
+    rotation : float or None
+        Prescribed rotation, anticlockwise [rad].
+    """
+
+    beam: str
+    end: End
+    ux: float | None = 0.0
+    uy: float | None = 0.0
+    rotation: float | None = 0.0
+
+    def __post_init__(self) -> None:
+        owner = f"Support({self.beam}.{self.end})"
+        _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        for field in ("ux", "uy", "rotation"):
+            value = getattr(self, field)
+            _check(value is None or _finite(value), owner, field, value, "must be finite or None")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A control node: a frictionless point that follows a prescribed path.
+
+    Parameters
+    ----------
+    name : str
+        Unique name.
+    path : sequence of tuple of float
+        Corners of a polyline [length], traversed at constant speed while the load parameter goes from 0 to 1.
+    """
+
+    name: str
+    path: tuple[Point, ...]
+
+    def __post_init__(self) -> None:
+        owner = f"Pin({self.name})"
+        _check(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
+        _check(
+            all(len(point) == 2 and _finite(*point) for point in self.path),
+            owner, "path", self.path, "must hold pairs of finite numbers",
+        )  # fmt: skip
+        _check(
+            all(a != b for a, b in zip(self.path, self.path[1:], strict=False)),
+            owner, "path", self.path, "must not repeat a point at once",
+        )  # fmt: skip
+
+    @property
+    def length(self) -> float:
+        """Length of the path."""
+        return sum(math.dist(a, b) for a, b in zip(self.path, self.path[1:], strict=False))
+
+    def position(self, load_parameter: float) -> Point:
+        """Position at a load parameter in [0, 1].
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
+        (2.0, 1.0)
+        """
+        left = load_parameter * self.length
+        for a, b in zip(self.path[:-2], self.path[1:-1], strict=True):
+            leg = math.dist(a, b)
+            if left <= leg:
+                return _between(a, b, left / leg)
+            left -= leg
+        a, b = self.path[-2:]
+        return _between(a, b, left / math.dist(a, b))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactPair:
+    """A node that may touch a beam, without friction and from one side only.
+
+    Parameters
+    ----------
+    node : str
+        Name of a pin, or ``"beam.start"`` / ``"beam.end"`` for a beam's end.
+    beam : str
+        Name of the beam that is touched.
+    side : {"left", "right"}
+        Side of the beam's direction from which the node comes.
+    offset : float
+        Distance from the axis to the contact surface [length], 0 for contact on the axis.
+    """
+
+    node: str
+    beam: str
+    side: Side = "right"
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
+        _check(
+            _finite(self.offset) and self.offset >= 0,
+            self.name,
+            "offset",
+            self.offset,
+            "must not be negative",
+        )
+
+    @property
+    def name(self) -> str:
+        """Name of the pair, ``node->beam``."""
+        return f"{self.node}->{self.beam}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Structure:
+    """Beams with their supports, the pins that push them and the contacts that may close.
+
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and the rule, for names that are not unique or not known, a beam that would
+        touch itself, or a structure without beams.
+    """
+
+    beams: tuple[Beam, ...]
+    supports: tuple[Support, ...] = ()
+    pins: tuple[Pin, ...] = ()
+    contacts: tuple[ContactPair, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
+        names = [beam.name for beam in self.beams] + [pin.name for pin in self.pins]
+        _unique(names, "a beam or pin")
+        _unique([pair.name for pair in self.contacts], "a contact")
+        _unique([f"{support.beam}.{support.end}" for support in self.supports], "a support")
+        beams = {beam.name for beam in self.beams}
+        ends = {f"{beam}.{end}" for beam in beams for end in ("start", "end")}
+        nodes = {pin.name for pin in self.pins} | ends
+        for support in self.supports:
+            _check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
+        for pair in self.contacts:
+            _check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
+            _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
+            own = pair.node.rpartition(".")[0] == pair.beam
+            _check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
+
+    def beam(self, name: str) -> Beam:
+        """Beam of that name."""
+        return next(beam for beam in self.beams if beam.name == name)
+
+
+def _unique(names: Iterable[str], what: str) -> None:
+    seen: set[str] = set()
+    for name in names:
+        _check(name not in seen, "Structure", "names", name, f"names more than one of {what}")
+        seen.add(name)
