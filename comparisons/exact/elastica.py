@@ -1,0 +1,281 @@
+"""The elastica: an inextensible, shear-rigid cantilever in closed form.
+
+Clamp at the origin, undeformed beam along +x, a frictionless pin below pushes to +y. The part between clamp and pin
+carries the constant force `F (-sin tc, cos tc)`, normal to the tangent at the pin; the tail beyond the pin is straight.
+With `u = tc - theta` the bending energy integral is `EI theta'^2 = 2 F sin u`, hence, with `lam = sqrt(EI / 2F)`,
+
+    I0 = int_0^tc du/sqrt(sin u),   I1 = int_0^tc cos u/sqrt(sin u) du = 2 sqrt(sin tc),   I2 = int_0^tc sqrt(sin u) du
+    s = lam I0,   x = lam (cos tc I1 + sin tc I2),   y = lam (sin tc I1 - cos tc I2)
+
+so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` up to a fold beyond `tc = 2.49` (the pin
+then is a little behind the clamp): the branch below the fold is the one that starts at the straight beam.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import ellipj, elliprd, elliprf
+
+from comparisons.exact.checks import require_positive
+from comparisons.exact.outcome import Outcome
+
+Array = NDArray[np.float64]
+
+
+class LimitPoint(NamedTuple):
+    """Largest load along a path of growing displacement."""
+
+    load: float
+    displacement: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticaState:
+    """Equilibrium of the elastica under a pin.
+
+    Attributes
+    ----------
+    outcome : Outcome
+        Whether the pin touches; if it does not, the beam is straight and all forces are zero (`LOST`: not computed).
+    tangent_angle : float
+        Angle `tc` of the tangent at the pin and of the tail [rad].
+    arc_position : float
+        Distance `s` of the pin from the clamp along the axis; nan without contact.
+    magnitude : float
+        Contact force `F >= 0`.
+    force : ndarray, shape (2,)
+        Force of the pin on the beam.
+    clamp_moment : float
+        Moment of the clamp on the beam, anticlockwise positive: `-(r x force)`.
+    tip : ndarray, shape (2,)
+        Position of the free tip.
+    length : float
+        Length of the beam.
+    """
+
+    outcome: Outcome
+    tangent_angle: float
+    arc_position: float
+    magnitude: float
+    force: Array
+    clamp_moment: float
+    tip: Array
+    length: float
+
+    def shape(self, n: int) -> Array:
+        """Points of the axis at `n` equal distances along it, clamp and tip included.
+
+        Between clamp and pin `sqrt(sin u)` is the lemniscate sine of `(s - arc)/(2 lam)`.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+        """
+        arc = np.linspace(0.0, self.length, n)
+        if self.magnitude == 0.0:
+            return np.stack([arc, np.zeros(n)], axis=1)
+        tc, lam = self.tangent_angle, self.arc_position / _integrals(self.tangent_angle)[0]
+        from_pin = np.maximum(self.arc_position - arc, 0.0)
+        sn, cn, dn, _ = ellipj(from_pin / (np.sqrt(2.0) * lam), 0.5)
+        u = np.arctan2((sn / dn) ** 2 / 2.0, cn / dn**2)
+        tail = np.maximum(arc - self.arc_position, 0.0)
+        tangent = np.array([np.cos(tc), np.sin(tc)])
+        pin = self.tip - (self.length - self.arc_position) * tangent
+        return np.asarray(pin + np.outer(tail, tangent) - lam * _chord(tc, u), dtype=np.float64)
+
+
+def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
+    """`I0, I1, I2` for `0 <= u <= pi`, as Carlson's symmetric elliptic integrals of `z = sqrt(sin u)`."""
+    sine = np.abs(np.sin(u))
+    below = np.cos(u) ** 2 / (1.0 + sine)
+    z = np.sqrt(sine)
+    first, second = (
+        2.0 * z * elliprf(below, 1.0 + sine, 1.0),
+        2.0 / 3.0 * z**3 * elliprd(below, 1.0 + sine, 1.0),
+    )
+    whole_first, whole_second = 4.0 * elliprf(0.0, 2.0, 1.0), 4.0 / 3.0 * elliprd(0.0, 2.0, 1.0)
+    beyond = np.asarray(u) > np.pi / 2
+    return (
+        np.where(beyond, whole_first - first, first),
+        2.0 * z,
+        np.where(beyond, whole_second - second, second),
+    )
+
+
+def _chord(tc: float, u: NDArray[np.float64] | float) -> Array:
+    """Vector from the point with `theta = tc - u` to the pin, in units of `lam`; shape (..., 2)."""
+    _, I1, I2 = _integrals(u)
+    c, s = np.cos(tc), np.sin(tc)
+    return np.stack([c * I1 + s * I2, s * I1 - c * I2], axis=-1)
+
+
+def _polar_angle(tc: float) -> float:
+    """Polar angle of the pin seen from the clamp."""
+    _, I1, I2 = _integrals(tc)
+    return tc - float(np.arctan2(I2, I1))
+
+
+@cache
+def fold_angle() -> float:
+    """Tangent angle `tc` at which the polar angle of the pin is largest: the end of the branch from the straight beam.
+
+    Root of `1 + 2 k^2 + k cot tc = 0`, `k = I2/I1`, which is the derivative of `tc - arctan k`.
+
+    Examples
+    --------
+    >>> round(fold_angle(), 9)
+    2.983418482
+    """
+
+    def slope(tc: float) -> float:
+        _, I1, I2 = _integrals(tc)
+        k = float(I2 / I1)
+        return float(1.0 + 2.0 * k**2 + k / np.tan(tc))
+
+    return float(brentq(slope, 2.0, 3.1, xtol=1e-15))
+
+
+def _straight(outcome: Outcome, length: float, arc_position: float = np.nan) -> ElasticaState:
+    """Return the beam without load."""
+    return ElasticaState(
+        outcome=outcome,
+        tangent_angle=0.0,
+        arc_position=arc_position,
+        magnitude=0.0,
+        force=np.zeros(2),
+        clamp_moment=0.0,
+        tip=np.array([length, 0.0]),
+        length=length,
+    )
+
+
+def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1.0) -> ElasticaState:
+    """Equilibrium of the elastica under a frictionless pin at `(x, y)`.
+
+    The state is the one connected with the straight beam through growing `y/x`: `0 < tc < fold_angle()`. It depends
+    on the pin's position alone: `SLIPPED` also stands for a pin that is beyond the tip from the start.
+
+    Parameters
+    ----------
+    x, y : float
+        Position of the pin. On the straight beam it is in contact without force.
+    EI, length : float
+        Bending stiffness and length.
+
+    Returns
+    -------
+    ElasticaState
+        With outcome `CONTACT`, `OPEN` (below the straight beam), `SLIPPED` (`s > length`) or `LOST` (beyond the fold).
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or `EI` or `length` is not positive.
+
+    Examples
+    --------
+    >>> state = elastica_under_pin(0.0, 2 / np.pi)
+    >>> round(state.magnitude, 12), round(state.arc_position, 12), round(state.clamp_moment, 12)
+    (8.182128140184, 0.89572169201, -3.14159265359)
+    """
+    require_positive(EI=EI, length=length)
+    for name, value in (("x", x), ("y", y)):
+        if not np.isfinite(value):
+            raise ValueError(f"{name} = {value}: must be finite")
+    if y == 0.0 and 0.0 < x <= length:
+        return _straight(Outcome.CONTACT, length, x)
+    if y <= 0.0:
+        return _straight(Outcome.OPEN, length)
+    polar, fold = float(np.arctan2(y, x)), fold_angle()
+    if polar >= _polar_angle(fold):
+        return _straight(Outcome.LOST, length)
+    tc = float(brentq(lambda angle: _polar_angle(angle) - polar, polar, fold, xtol=1e-300, rtol=1e-15))
+    I0, I1, I2 = map(float, _integrals(tc))
+    lam = float(np.hypot(x, y)) / float(np.hypot(I1, I2))
+    s = lam * I0
+    if s > length:
+        return _straight(Outcome.SLIPPED, length)
+    tangent, normal = np.array([np.cos(tc), np.sin(tc)]), np.array([-np.sin(tc), np.cos(tc)])
+    F = EI / (2.0 * lam**2)
+    return ElasticaState(
+        outcome=Outcome.CONTACT,
+        tangent_angle=tc,
+        arc_position=s,
+        magnitude=F,
+        force=F * normal,
+        clamp_moment=-F * lam * I1,
+        tip=np.array([x, y]) + (length - s) * tangent,
+        length=length,
+    )
+
+
+def slip_off_displacement(x: float, *, length: float = 1.0) -> float:
+    """Height at which a pin raised at `x` leaves the beam over its tip: `s = length`, so `x/length = X(tc)/I0(tc)`.
+
+    Raises
+    ------
+    ValueError
+        If `x` is not between zero and `length`.
+
+    Examples
+    --------
+    >>> round(slip_off_displacement(0.8), 12)
+    0.538697355156
+    """
+    require_positive(length=length)
+    if not 0.0 < x < length:
+        raise ValueError(f"x = {x}: must lie between 0 and length = {length}")
+    tc = float(
+        brentq(lambda tc: _chord(tc, tc)[0] / _integrals(tc)[0] - x / length, 1e-12, fold_angle(), xtol=1e-15)
+    )
+    return float(length * _chord(tc, tc)[1] / _integrals(tc)[0])
+
+
+def contact_force_limit(x: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
+    """Largest contact force of a pin raised at `x` under a beam long enough, and the height where it occurs.
+
+    `F = EI X(tc)^2 / (2 x^2)` is stationary where `X' = cos(2 tc)/sqrt(sin tc) + I2 cos tc = 0`.
+
+    Examples
+    --------
+    >>> round(contact_force_limit().load, 9)
+    1.178533619
+    """
+    require_positive(x=x, EI=EI)
+    tc = float(
+        brentq(
+            lambda tc: np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc),
+            0.1,
+            1.5,
+            xtol=1e-15,
+        )
+    )
+    X, Y = _chord(tc, tc)
+    return LimitPoint(float(EI * X**2 / (2.0 * x**2)), float(x * Y / X))
+
+
+def three_point_bending_limit(half_span: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
+    """Largest mid-span load `P` on a long beam over two frictionless pins, and the deflection where it occurs.
+
+    Each half is a cantilever under a pin at `half_span`, so `P = 2 F cos tc = EI cos tc X^2 / half_span^2`, stationary
+    where `2 X' cos tc = X sin tc`.
+
+    Examples
+    --------
+    >>> limit = three_point_bending_limit()
+    >>> round(limit.load, 12), round(limit.displacement, 12)
+    (1.667952108595, 0.476377597825)
+    """
+    require_positive(half_span=half_span, EI=EI)
+
+    def slope(tc: float) -> float:
+        growth = np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc)
+        return float(2.0 * growth * np.cos(tc) - _chord(tc, tc)[0] * np.sin(tc))
+
+    tc = float(brentq(slope, 0.1, 1.5, xtol=1e-15))
+    X, Y = _chord(tc, tc)
+    return LimitPoint(float(EI * np.cos(tc) * X**2 / half_span**2), float(half_span * Y / X))

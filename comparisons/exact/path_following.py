@@ -1,0 +1,150 @@
+"""Equilibrium of a dimensionless rod followed along the path of a pin: touch, contact, release, slip-off.
+
+At every position `p` of the pin the unknowns `z = (q, ell)` of `comparisons.exact.reissner` solve `r(z) - offset f(z) = p`, with r the
+point of the axis under the pin and f the direction of the contact force. Newton's method with complex-step derivatives starts from the
+last position; a step along the path is halved unless the corrections fall monotonically from a small first one, so that the branch
+from the straight rod is never left.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from comparisons.exact.outcome import Outcome
+from comparisons.exact.reissner import COMPLEX_STEP, Flexibility, loaded_part, normal, position
+
+Array = NDArray[np.float64]
+
+_TOUCH = 1e-12  # distance, in lengths of the rod, below which the pin touches
+_SMALLEST_STEP = 1e-9
+
+
+class State(NamedTuple):
+    """Contact state and unknowns at one position of the pin."""
+
+    outcome: Outcome
+    unknowns: Array = np.full(2, np.nan)
+
+
+class Rod(NamedTuple):
+    """Dimensionless rod and offset."""
+
+    flexibility: Flexibility
+    offset: float
+
+    def residual(self, z: NDArray[np.complex128] | Array, pin: Array) -> NDArray[np.complex128]:
+        """Distance from the pin to where the unknowns put it; `z` has shape (2, ...), the result (..., 2)."""
+        part = loaded_part(z[0], z[1], self.flexibility)
+        return np.asarray(position(part) - self.offset * normal(part) - pin, dtype=np.complex128)
+
+    def jacobian(self, z: Array) -> Array:
+        """Differentiate `residual` by complex steps, shape (2, 2)."""
+        steps = z[:, None] + 1j * COMPLEX_STEP * np.eye(2)
+        return np.asarray(self.residual(steps, np.zeros(2)).imag.T / COMPLEX_STEP, dtype=np.float64)
+
+    def arc(self, z: Array) -> float:
+        """Arc position of the contact."""
+        return float(loaded_part(z[0], z[1], self.flexibility).arc.real)
+
+
+def newton(rod: Rod, z: Array, pin: Array) -> tuple[Array, int, bool]:
+    """Unknowns for a pin nearby, iterations, and whether the corrections fell monotonically from a small first one."""
+    last = 0.5
+    for iteration in range(1, 13):
+        residual = rod.residual(z, pin)
+        matrix = rod.jacobian(z)
+        if not (
+            np.all(np.isfinite(matrix))
+            and np.all(np.abs(residual.imag) < 1e-9)
+            and np.linalg.det(matrix) != 0.0
+        ):
+            return z, iteration, False
+        change = np.linalg.solve(matrix, -residual.real)
+        size = float(max(abs(change[0]), abs(change[1] / z[1])))
+        if not size <= last:
+            return z, iteration, False
+        z = z + change
+        if size < 1e-10:
+            return z, iteration, True
+        last = size / 2.0
+    return z, iteration, False
+
+
+def _touch(start: Array, end: Array, offset: float) -> float | None:
+    """Fraction of the way at which the pin reaches the straight rod from below."""
+    gap_start, gap_end = -(start[1] + offset), -(end[1] + offset)
+    if gap_start <= _TOUCH or gap_end > _TOUCH:
+        return None
+    fraction = min(gap_start / (gap_start - gap_end), 1.0)
+    x = start[0] + fraction * (end[0] - start[0])
+    return float(fraction) if 0.0 < x <= 1.0 + _TOUCH else None
+
+
+def _touching(x: float) -> State:
+    """Contact without force at `x`."""
+    return State(Outcome.CONTACT, np.array([0.0, min(x, 1.0) / np.sqrt(np.pi)]))
+
+
+def first_state(rod: Rod, pin: Array) -> State:
+    """State at the start of the path."""
+    x, gap = pin[0], -(pin[1] + rod.offset)
+    if gap > _TOUCH or x > 1.0 + _TOUCH:
+        return State(Outcome.OPEN)
+    if gap < -_TOUCH or x <= 0.0:
+        raise ValueError(
+            f"points[0] = {pin} length: the path must start below the rod, on its surface or beyond its tip"
+        )
+    return _touching(x)
+
+
+def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, int, float]:
+    """State after a straight piece of the path, Newton iterations, and the fraction of the piece at slip-off or nan."""
+    done, step, spent = 0.0, 1.0, 0
+    while done < 1.0:
+        here = start + done * (end - start)
+        if state.outcome is Outcome.OPEN:
+            touch = _touch(here, end, rod.offset)
+            if touch is None:
+                break
+            done = 1.0 if touch == 1.0 else done + touch * (1.0 - done)
+            state = _touching(float((start + done * (end - start))[0]))
+            continue
+        if state.outcome is not Outcome.CONTACT:
+            break
+        following = min(done + step, 1.0)
+        height, height_end = here[1] + rod.offset, end[1] + rod.offset
+        if height_end < -_TOUCH:
+            if height <= _TOUCH:
+                state = State(Outcome.OPEN)
+                continue
+            following = min(following, done + (1.0 - done) * height / (height - height_end))
+        pin = start + following * (end - start)
+        z, iterations, converged = newton(rod, state.unknowns, pin)
+        spent += iterations
+        if not converged:
+            step /= 2.0
+            if step < _SMALLEST_STEP:
+                return State(Outcome.LOST), spent, np.nan
+            continue
+        if rod.arc(z) > 1.0 + _TOUCH:
+            slip = _slip_off(rod, state.unknowns, z, (done, following), (start, end))
+            return State(Outcome.SLIPPED), spent, slip
+        state, done, step = State(Outcome.CONTACT, z), following, 2.0 * step
+    return state, spent, np.nan
+
+
+def _slip_off(
+    rod: Rod, z_before: Array, z_after: Array, bracket: tuple[float, float], piece: tuple[Array, Array]
+) -> float:
+    """Fraction of the piece at which the arc position equals the length."""
+
+    def excess(fraction: float) -> float:
+        share = (fraction - bracket[0]) / (bracket[1] - bracket[0])
+        guess = z_before + share * (z_after - z_before)
+        return rod.arc(newton(rod, guess, piece[0] + fraction * (piece[1] - piece[0]))[0]) - 1.0
+
+    if rod.arc(z_before) >= 1.0:
+        return bracket[0]
+    return float(brentq(excess, *bracket, xtol=1e-15))

@@ -1,0 +1,122 @@
+"""The loaded part of a Reissner rod under a frictionless pin, by quadrature.
+
+Rod: stretch EA, shear GA, bending EI; section axes `d1 = (cos theta, sin theta)`, `d2 = (-sin theta, cos theta)`:
+
+    theta' = m/EI,   r' = (1 + N/EA) d1 + (Q/GA) d2,   m' = -r' x n,   N = n.d1,  Q = n.d2
+
+Between clamp and pin the internal force is the constant contact force `n = F f`, `f = (-sin beta, cos beta)`. With
+`w = beta - theta`, `N = -F sin w`, `Q = F cos w` and `c = 1/EA - 1/GA` the moment equation is `m' = -F cos w (1 - F c sin w)`.
+Its integral, with `m = 0` at the pin, where `w = wc` and `S = sin wc`, is
+
+    m^2 = 2 EI F (sin w - S) (1 - F c (sin w + S)/2)
+
+so that `ds = -EI dw/m` and everything is an integral over `w` from `wc` to `beta` (the clamp, `theta = 0`). The component of
+`r' x n = -m'` integrates to the lever arm `m/F` along `e = (cos beta, sin beta)`. No friction: the force does no work on a slide
+of the pin, `f.(r'_- + r'_+) = 0` with the strained tangent `r'_-` and the unit tangent `r'_+` of the load-free tail, hence
+
+    F c S^2 - 2 S + F/GA = 0,   S = (F/GA)/(1 + sqrt(1 - F^2 c/GA))
+
+The substitution `w = wc + A sin^2(psi/2)`, `A = pi - 2 wc`, makes the integrands analytic over the whole range up to the turning
+point `w = pi - wc`, where the clamp moment vanishes (`sinc x = sin x/x`):
+
+    ds = lam sqrt(2) dpsi / sqrt(sinc(A sin^2(psi/2)/2) sinc(A cos^2(psi/2)/2) (1 - F c (sin w + S)/2)),   lam = sqrt(EI/2F)
+
+The two unknowns are `q = psi(clamp)^2` and `ell = lam psi(clamp)`: with them the solution is analytic through the touch, `q = 0`, where
+`s = ell sqrt(pi)`; `q < 0` would be a pulling pin. Lengths are in units of the rod's length L, forces in EI/L^2, moments in EI/L.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]  # real or complex: derivatives are complex steps
+
+COMPLEX_STEP = 1e-60
+
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(28)
+_FRACTIONS = np.append((_GAUSS + 1.0) / 2.0, 1.0)  # the last one is the end of the part, without weight
+_WEIGHTS = np.append(_WEIGHTS / 2.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flexibility:
+    """Stretch and shear flexibility of a rod, `EI/(EA L^2)` and `EI/(GA L^2)`; zero is rigid."""
+
+    stretch: float
+    shear: float
+
+
+class LoadedPart(NamedTuple):
+    """A part of the rod between the pin and some section nearer to the clamp; arrays of the shape of the unknowns.
+
+    `force` F, its `direction` beta, the angle `slip = wc` between force normal and section at the pin, `lag = w` at the section, the
+    `arc` of the part, and the components `along` e and `across` (along f) of the vector from the section to the pin.
+    """
+
+    force: Array
+    direction: Array
+    slip: Array
+    lag: Array
+    arc: Array
+    along: Array
+    across: Array
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def loaded_part(q: ArrayLike, ell: ArrayLike, flexibility: Flexibility, upto: ArrayLike = 1.0) -> LoadedPart:
+    """Integrals over the part of the rod from the pin to `psi = upto psi(clamp)`; `upto = 1` is the whole loaded part.
+
+    Parameters
+    ----------
+    q, ell, upto : array_like
+        Unknowns of the module's text and fraction of `psi`; they broadcast and may be complex.
+    flexibility : Flexibility
+        Of the rod.
+
+    Returns
+    -------
+    LoadedPart
+        Complex arrays; nan or a finite imaginary part of a real input marks a state that does not exist.
+    """
+    q, ell, upto = (np.asarray(value, dtype=np.complex128)[..., None] for value in (q, ell, upto))
+    F = q / (2.0 * ell**2)
+    c = flexibility.stretch - flexibility.shear
+    S = F * flexibility.shear / (1.0 + np.sqrt(1.0 - F**2 * c * flexibility.shear))
+    wc = np.arcsin(S)
+    A = np.pi - 2.0 * wc
+    psi = np.sqrt(q) * upto * _FRACTIONS
+    lower, upper = A * np.sin(psi / 2.0) ** 2 / 2.0, A * np.cos(psi / 2.0) ** 2 / 2.0
+    w = wc + 2.0 * lower
+    sine, cosine = np.sin(w), np.cos(w)
+    root = np.sqrt(_sinc(lower) * _sinc(upper) * (1.0 - F * c * (sine + S) / 2.0))
+    rate = np.sqrt(2.0) * ell * upto * _WEIGHTS / root
+    across = F * flexibility.shear * cosine**2 - (1.0 - F * flexibility.stretch * sine) * sine
+    along = ell * upto * A * _sinc(psi) * root / np.sqrt(2.0)
+    return LoadedPart(
+        force=F[..., 0],
+        direction=(wc + A * np.sin(np.sqrt(q) / 2.0) ** 2)[..., 0],
+        slip=wc[..., 0],
+        lag=w[..., -1],
+        arc=rate.sum(axis=-1),
+        along=along[..., -1],
+        across=(rate * across).sum(axis=-1),
+    )
+
+
+def position(part: LoadedPart) -> Array:
+    """Vector from the section to the pin's point of the axis, shape (..., 2)."""
+    c, s = np.cos(part.direction), np.sin(part.direction)
+    return np.stack([c * part.along - s * part.across, s * part.along + c * part.across], axis=-1)
+
+
+def normal(part: LoadedPart) -> Array:
+    """Direction f of the contact force, shape (..., 2)."""
+    return np.stack([-np.sin(part.direction), np.cos(part.direction)], axis=-1)
+
+
+def _sinc(x: Array) -> Array:
+    """`sin x/x`; near zero as the series in `x^2`, which keeps a complex step in `q = psi^2` at `q = 0`."""
+    small = np.abs(x) < 1e-3
+    return np.where(small, 1.0 - x**2 / 6.0 * (1.0 - x**2 / 20.0), np.sin(x) / np.where(small, 1.0, x))

@@ -1,0 +1,322 @@
+"""The Reissner rod under a pin: printed values, shooting, elastica limit, energy, events, units."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from comparisons.exact.elastica import elastica_under_pin, slip_off_displacement
+from comparisons.exact.outcome import Outcome
+from comparisons.exact.path_following import Rod
+from comparisons.exact.reissner import Flexibility, loaded_part
+from comparisons.exact.rod import rod_under_pin
+
+E, A, INERTIA, HEIGHT = 2.1e4, 4e-4, 0.02**4 / 12.0, 0.02
+KS = {"EA": E * A, "GA": 5.0 / 6.0 * E / 2.6 * A, "EI": E * INERTIA, "length": 1.0}
+SHORT = {"EA": 2.1e11 * 0.005, "GA": 7.5e10 * 0.005, "EI": 2.1e11 * 0.001, "length": 4.5}
+STEPS = np.linspace(0.0, 1.0, 21)
+PRINTED = [0.1, 0.25, 0.5, 0.75, 1.0]
+
+
+def ks_pins(t, offset=0.0):
+    t = np.asarray(t)
+    return np.stack([1.0 - t, 2.0 * t / np.pi - offset], axis=1)
+
+
+def integrate(path, k, stiffness):
+    """Integrate the rod's equations from the clamp to the contact; `x, y, theta, m` and strain energy there."""
+    nx, ny = path.force[k]
+    EA, GA, EI = (stiffness[name] for name in ("EA", "GA", "EI"))
+
+    def rate(_, state):
+        c, s = np.cos(state[2]), np.sin(state[2])
+        N, Q = nx * c + ny * s, -nx * s + ny * c
+        dx, dy = (1.0 + N / EA) * c - Q / GA * s, (1.0 + N / EA) * s + Q / GA * c
+        return [
+            dx,
+            dy,
+            state[3] / EI,
+            -(dx * ny - dy * nx),
+            (N**2 / EA + Q**2 / GA + state[3] ** 2 / EI) / 2.0,
+        ]
+
+    start = [0.0, 0.0, 0.0, -path.clamp_moment[k], 0.0]
+    scale = np.array([1.0, 1.0, 1.0, abs(path.clamp_moment[k]), abs(path.clamp_moment[k])])
+    solution = solve_ivp(
+        rate,
+        (0.0, path.arc_position[k]),
+        start,
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-15 * scale,
+        dense_output=True,
+    )
+    return solution.y[:, -1], rate(0.0, solution.y[:, -1])[:2], solution.sol
+
+
+@pytest.mark.parametrize(
+    ("offset", "F", "s"),
+    [
+        (
+            0.0,
+            [
+                7.279980308998e-05,
+                2.971723827275e-04,
+                1.304991984260e-03,
+                2.717905910938e-03,
+                2.288274307175e-03,
+            ],
+            [0.9026989400, 0.7700720074, 0.6126214853, 0.6155108916, 0.8960220975],
+        ),
+        (
+            HEIGHT / 2.0,
+            [
+                7.299229040762e-05,
+                2.999095335254e-04,
+                1.346233117025e-03,
+                2.881130179598e-03,
+                2.423414546757e-03,
+            ],
+            [0.9016399646, 0.7669419948, 0.6042648292, 0.6002969972, 0.8766313645],
+        ),
+    ],
+)
+def test_printed_values_of_the_ks_cantilever(offset, F, s):
+    path = rod_under_pin(ks_pins([0.0, *PRINTED], offset), offset=offset, **KS)
+    np.testing.assert_allclose(path.magnitude[1:], F, rtol=5e-13)  # half a unit of the last digit
+    np.testing.assert_allclose(path.arc_position[1:], s, rtol=0, atol=6e-11)
+
+
+@pytest.mark.parametrize(
+    ("x", "d"),
+    [
+        (4.05, 1.7814439389),
+        (4.1, 1.6861593947),
+        (4.2, 1.4716026278),
+        (4.3, 1.2107350431),
+        (4.35, 1.0524732309),
+        (4.4, 0.8625478871),
+    ],
+)
+def test_slip_off_of_the_short_cantilever(x, d):
+    path = rod_under_pin([[x, 0.0], [x, 0.5], [x, 2.5]], **SHORT)
+    assert path.outcome == (Outcome.CONTACT, Outcome.CONTACT, Outcome.SLIPPED)
+    assert path.slip_off * 2.5 == pytest.approx(d, abs=6e-11)
+    close = rod_under_pin([[x, 0.0], [x, 2.5 * path.slip_off - 1e-9]], **SHORT)
+    assert close.arc_position[-1] == pytest.approx(4.5, abs=2e-9)
+    assert close.arc_position[-1] < 4.5
+
+
+def test_short_cantilever_before_slip_off():
+    path = rod_under_pin([[4.05, 0.0], [4.05, 0.8]], **SHORT)
+    assert path.magnitude[1] == pytest.approx(6.53728737e6, rel=1e-9)
+    assert path.arc_position[1] == pytest.approx(4.143278182, abs=1e-9)
+
+
+@pytest.mark.parametrize("offset", [0.0, HEIGHT / 2.0])
+def test_against_integration_from_the_clamp(offset):
+    """The four conditions of the shooting problem hold for a path integrated by another method."""
+    path = rod_under_pin(ks_pins(STEPS, offset), offset=offset, **KS)
+    for k in range(1, len(STEPS)):
+        end, before, sol = integrate(path, k, KS)
+        after = np.array([np.cos(end[2]), np.sin(end[2])])
+        f = path.force[k] / path.magnitude[k]
+        assert f @ (np.array(before) + after) == pytest.approx(0.0, abs=2e-12)
+        assert end[3] == pytest.approx(0.0, abs=3e-12 * abs(path.clamp_moment[k]))
+        np.testing.assert_allclose(end[:2] - offset * f, ks_pins(STEPS, offset)[k], rtol=0, atol=2e-12)
+        shape = path.shape(k, 33)
+        arc = np.linspace(0.0, 1.0, 33)
+        loaded = arc <= path.arc_position[k]
+        np.testing.assert_allclose(shape[loaded], sol(arc[loaded])[:3].T, rtol=0, atol=1e-11)
+        tail = end[:2] + np.outer(arc[~loaded] - path.arc_position[k], after)
+        np.testing.assert_allclose(shape[~loaded, :2], tail, rtol=0, atol=2e-12)
+        np.testing.assert_allclose(shape[-1], [*path.tip[k], path.tip_rotation[k]], rtol=0, atol=1e-14)
+
+
+def test_shooting_from_scratch_finds_the_same_state():
+    """Force, clamp moment and arc length as unknowns, integrated and solved without the quadratures."""
+    path = rod_under_pin(ks_pins([0.0, 0.6]), **KS)
+    EI = KS["EI"]
+
+    def residual(z):
+        trial = {"force": [z[:2] * EI], "clamp_moment": [-z[2] * EI], "arc_position": [z[3]]}
+        end, before, _ = integrate(type("Trial", (), trial), 0, KS)
+        return [
+            *(end[:2] - ks_pins([0.6])[0]),
+            end[3] / EI,
+            z[:2] @ (before + np.array([np.cos(end[2]), np.sin(end[2])])),
+        ]
+
+    found = root(residual, [-4.5, 4.0, 3.0, 0.6], tol=1e-13).x
+    np.testing.assert_allclose(found[:2] * EI, path.force[1], rtol=1e-10)
+    np.testing.assert_allclose(found[2:], [-path.clamp_moment[1] / EI, path.arc_position[1]], rtol=1e-10)
+
+
+@pytest.mark.parametrize("t", [0.05, 0.3, 0.6, 0.8, 1.0])
+def test_stiff_limit_is_the_elastica(t):
+    stiff = KS | {"EA": 1e8 * KS["EA"], "GA": 1e8 * KS["GA"]}
+    path = rod_under_pin(ks_pins([0.0, t]), **stiff)
+    state = elastica_under_pin(*ks_pins([t])[0], EI=KS["EI"])
+    assert path.magnitude[1] == pytest.approx(state.magnitude, rel=1e-8, abs=0.0)
+    assert path.arc_position[1] == pytest.approx(state.arc_position, rel=1e-8)
+    assert path.clamp_moment[1] == pytest.approx(state.clamp_moment, rel=1e-8, abs=0.0)
+    np.testing.assert_allclose(path.tip[1], state.tip, atol=1e-8)
+    np.testing.assert_allclose(path.shape(1, 51)[:, :2], state.shape(51), atol=1e-8)
+
+
+@pytest.mark.parametrize("offset", [0.0, HEIGHT / 2.0])
+def test_equilibrium_and_work_of_the_pin(offset):
+    """The clamp balances the pin, and the pin's work is the strain energy."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    t = np.concatenate([[0.0], (nodes + 1.0) / 2.0, [1.0]])
+    pins = ks_pins(t, offset)
+    path = rod_under_pin(pins, offset=offset, **KS)
+    np.testing.assert_array_equal(path.clamp_force, -path.force)
+    moment = pins[:, 0] * path.force[:, 1] - pins[:, 1] * path.force[:, 0]
+    np.testing.assert_allclose(path.clamp_moment, -moment, rtol=0, atol=1e-13 * np.max(moment))
+    work = weights / 2.0 @ (path.force[1:-1] @ [-1.0, 2.0 / np.pi])
+    assert work == pytest.approx(integrate(path, -1, KS)[0][4], rel=1e-11, abs=0.0)
+
+
+@pytest.mark.parametrize("q", [0.0, 0.3, 4.9])
+def test_derivative_of_the_residual(q):
+    rod, z = Rod(Flexibility(stretch=2e-3, shear=7e-3), 0.01), np.array([q, 0.5])
+    pin, h = np.array([0.2, 0.4]), 1e-3
+
+    def central(step):
+        return np.stack(
+            [
+                (rod.residual(z + d, pin) - rod.residual(z - d, pin)).real / (2.0 * step)
+                for d in step * np.eye(2)
+            ],
+            axis=1,
+        )
+
+    coarse, middle, fine = (central(h / 2**k) for k in range(3))
+    first, second = (4.0 * middle - coarse) / 3.0, (4.0 * fine - middle) / 3.0
+    np.testing.assert_allclose(rod.jacobian(z), (16.0 * second - first) / 15.0, rtol=0, atol=1e-11)
+
+
+def test_answers_do_not_depend_on_the_steps():
+    few, many = (rod_under_pin(ks_pins(np.linspace(0.0, 1.0, n)), **KS) for n in (2, 401))
+    assert few.magnitude[-1] == pytest.approx(many.magnitude[-1], rel=1e-13, abs=0.0)
+    assert few.arc_position[-1] == pytest.approx(many.arc_position[-1], rel=1e-13)
+
+
+@pytest.mark.parametrize("start", [np.nextafter([1.0, 0.0], [s, t]) for s in (0.0, 2.0) for t in (-1.0, 1.0)])
+def test_start_moved_by_one_unit_in_the_last_place(start):
+    path = rod_under_pin([start, *ks_pins(PRINTED)], **KS)
+    reference = rod_under_pin(ks_pins([0.0, *PRINTED]), **KS)
+    np.testing.assert_allclose(path.magnitude, reference.magnitude, rtol=1e-13, atol=1e-18)
+
+
+def test_start_of_the_ks_path():
+    path = rod_under_pin(ks_pins([0.0, 1e-9]), **KS)
+    assert path.outcome == (Outcome.CONTACT, Outcome.CONTACT)
+    assert path.arc_position[0] == 1.0
+    assert path.magnitude[0] == 0.0
+    timoshenko = 1.0 / (1.0 / (3.0 * KS["EI"]) + 1.0 / KS["GA"])
+    assert path.magnitude[1] == pytest.approx(2e-9 / np.pi * timoshenko, rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize(("E_scale", "L"), [(1e-6, 1e-9), (1e-6, 1e6), (1e15, 1e-9), (1e15, 1e6)])
+def test_units(E_scale, L):
+    stiffness = {"EA": E_scale * L**2 * 4e-4, "GA": E_scale * L**2 * 1.3e-4, "EI": E_scale * L**4 * 1.3e-8}
+    one = rod_under_pin(ks_pins(STEPS, 0.01), offset=0.01, EA=4e-4, GA=1.3e-4, EI=1.3e-8, length=1.0)
+    path = rod_under_pin(L * ks_pins(STEPS, 0.01), offset=0.01 * L, length=L, **stiffness)
+    np.testing.assert_allclose(path.magnitude / (E_scale * L**2), one.magnitude, rtol=1e-12, atol=1e-24)
+    np.testing.assert_allclose(path.clamp_moment / (E_scale * L**3), one.clamp_moment, rtol=1e-12, atol=1e-24)
+    np.testing.assert_allclose(path.arc_position / L, one.arc_position, rtol=1e-13)
+    np.testing.assert_allclose(path.shape(7, 9)[:, :2] / L, one.shape(7, 9)[:, :2], rtol=0, atol=1e-13)
+    np.testing.assert_array_equal(path.iterations, one.iterations)
+
+
+def test_touch_release_and_touch_again():
+    pins = [[0.8, -0.3], [0.8, -0.1], [0.8, 0.2], [0.7, -0.2], [0.6, 0.1], [0.6, 0.0], [0.6, -0.1]]
+    path = rod_under_pin(pins, **KS)
+    closed = [False, False, True, False, True, True, False]
+    assert path.outcome == tuple(Outcome.CONTACT if item else Outcome.OPEN for item in closed)
+    np.testing.assert_array_equal(np.isnan(path.arc_position), ~np.array(closed))
+    again = rod_under_pin([[0.6, 0.0], [0.6, 0.1]], **KS)
+    assert path.magnitude[4] == pytest.approx(again.magnitude[1], rel=1e-13, abs=0.0)
+    assert path.magnitude[5] == pytest.approx(0.0, abs=1e-15 * KS["EI"])
+    np.testing.assert_array_equal(path.shape(0, 3), [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]])
+
+
+def test_touch_on_the_surface():
+    path = rod_under_pin([[0.8, -0.5], [0.8, -0.01], [0.8, 0.1]], offset=0.01, **KS)
+    direct = rod_under_pin([[0.8, -0.01], [0.8, 0.1]], offset=0.01, **KS)
+    assert path.arc_position[1] == pytest.approx(0.8, abs=1e-15)
+    np.testing.assert_allclose(path.magnitude[1:], direct.magnitude, rtol=1e-13)
+
+
+def test_slip_off_is_final_and_free():
+    path = rod_under_pin([[0.8, -0.1], [0.8, 0.7], [0.8, -0.1], [0.8, 0.1]], **KS)
+    assert path.outcome == (Outcome.OPEN, *3 * [Outcome.SLIPPED])
+    np.testing.assert_array_equal(path.magnitude, 0.0)
+    np.testing.assert_array_equal(path.tip, 4 * [[1.0, 0.0]])
+
+
+def test_slip_off_over_the_tip_on_the_way_down():
+    path = rod_under_pin([[0.8, 0.0], [0.8, 0.3], [1.5, -0.1]], **KS)
+    assert path.outcome[-1] is Outcome.SLIPPED
+    assert 0.3 / (0.3 + np.hypot(0.7, 0.4)) < path.slip_off < 1.0
+
+
+def test_slip_off_of_the_stiff_rod_is_the_elasticas():
+    path = rod_under_pin([[0.9, 0.0], [0.9, 0.5]], EA=np.inf, GA=np.inf, EI=3.0, length=1.0)
+    assert path.slip_off * 0.5 == pytest.approx(slip_off_displacement(0.9), abs=1e-13)
+
+
+def test_slip_off_at_the_touch():
+    path = rod_under_pin([[1.0, -0.1], [1.0, 0.1]], **KS)
+    assert path.outcome[-1] is Outcome.SLIPPED
+    assert path.slip_off == pytest.approx(0.5, abs=1e-12)
+
+
+def test_pin_that_passes_beyond_the_tip_or_behind_the_clamp():
+    path = rod_under_pin([[1.1, -0.1], [1.1, 0.1], [0.5, 0.1], [-0.1, 0.1], [-0.1, -0.1]], **KS)
+    assert set(path.outcome) == {Outcome.OPEN}
+
+
+def test_lost_equilibrium_is_named():
+    path = rod_under_pin([*ks_pins([0.0, 0.5, 1.0]), [-0.3, 0.3], [-0.3, 0.2]], **KS)
+    assert path.outcome == (*3 * [Outcome.CONTACT], *2 * [Outcome.LOST])
+    assert np.all(np.isfinite(path.magnitude[:3]))
+    assert np.all(np.isnan(path.magnitude[3:]))
+    assert np.all(np.isnan(path.shape(3, 4)))
+    assert np.isnan(path.slip_off)
+
+
+def test_contact_normal_is_the_mean_tangents():
+    """`S` solves `F c S^2 - 2 S + F/GA = 0`: the rule of frictionless sliding, not the tail's or the loaded side's normal."""
+    flexibility = Flexibility(stretch=1e-3, shear=5e-3)
+    part = loaded_part(3.0, 0.4, flexibility)
+    F, S = part.force.real, np.sin(part.slip.real)
+    c = flexibility.stretch - flexibility.shear
+    assert F * c * S**2 - 2.0 * S + F * flexibility.shear == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"EA": 0.0}, "EA = 0.0: must be positive"),
+        ({"GA": np.nan}, "GA = nan: must be positive"),
+        ({"EI": np.inf}, "EI = inf: must be positive and finite"),
+        ({"length": -1.0}, "length = -1.0: must be positive and finite"),
+        ({"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
+        ({"points": [[0.8, np.nan]]}, "points"),
+        ({"points": [0.8, 0.1]}, "points"),
+        ({"points": [[0.8, 0.1]]}, "must start below the rod"),
+    ],
+)
+def test_bad_input(change, message):
+    arguments = {"points": [[0.8, 0.0]], **KS} | change
+    with pytest.raises(ValueError, match=message):
+        rod_under_pin(**arguments)
+
+
+def test_iterations_are_few():
+    path = rod_under_pin(ks_pins(np.linspace(0.0, 1.0, 51)), **KS)
+    assert path.iterations[0] == 0
+    assert all(0 < count <= 5 for count in path.iterations[1:])
