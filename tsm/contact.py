@@ -94,7 +94,7 @@ def project(model: Model, pair: PairModel, q: Array, load_parameter: float) -> P
     element, xi = nearest_chord(model, pair.target, q, node)
     for _ in range(20):
         rx, ry, curve = _lever(model, element, q, node)
-        (w, dw, ddw), dx, dy = _deflection(curve, xi), curve.dx, curve.dy
+        (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
         px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
         tx, ty = dx - dw * dy, dy + dw * dx
         step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
@@ -107,18 +107,8 @@ def project(model: Model, pair: PairModel, q: Array, load_parameter: float) -> P
     return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
 
 
-def _deflection(curve: Curve, xi: float) -> tuple[float, float, float]:
-    a, b, eta = float(curve.tan_i), float(curve.tan_j), 1 - xi
-    return (
-        xi * eta * (eta * a - xi * b),
-        eta * (1 - 3 * xi) * a + xi * (3 * xi - 2) * b,
-        (6 * xi - 4) * a + (6 * xi - 2) * b,
-    )
-
-
 def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:
-    x = q[model.dofs[element]]
-    i = model.element_nodes[element, 0]
-    rx = float(model.coordinates[i, 0] + x[0]) - node[0]
-    ry = float(model.coordinates[i, 1] + x[1]) - node[1]
+    x = q[model.dofs[:, element]].tolist()
+    start_x, start_y = model.element_start[element]
+    rx, ry = start_x + x[0] - node[0], start_y + x[1] - node[1]
     return rx, ry, Curve(model.element[element], x)

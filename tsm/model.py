@@ -74,16 +74,6 @@ class PairModel:
     slot: int
 
 
-@dataclass(frozen=True, kw_only=True)
-class Group:
-    """Elements of one type: their numbers, constants and energy."""
-
-    element_type: ElementType
-    elements: slice
-    properties: Properties
-    coefficients: Coefficients
-
-
 class Model:
     """Numbering and constants of a structure.
 
@@ -91,7 +81,7 @@ class Model:
     ----------
     coordinates : ndarray, shape (nodes, 2)
         Undeformed node positions.
-    dofs : ndarray of int, shape (elements, 6)
+    dofs : ndarray of int, shape (6, elements)
         Degrees of freedom of the elements, three per node.
     free : ndarray of int, shape (equations,)
         Degree of freedom of every equation, banded ones first.
@@ -108,7 +98,7 @@ class Model:
         self._place_pairs(structure)
         self._number_equations()
         self.properties = self._properties()
-        self.groups = self._group()
+        self.coefficients = self._coefficients()
         longest = max(structure.beams, key=lambda beam: beam.length)
         self.length = longest.length
         self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
@@ -128,7 +118,8 @@ class Model:
         self.element_nodes = np.concatenate(
             [np.stack([beam.nodes[:-1], beam.nodes[1:]], axis=1) for beam in self.beams.values()]
         )
-        self.dofs = (3 * self.element_nodes[:, :, None] + np.arange(3)).reshape(-1, 6)
+        self.dofs = (3 * self.element_nodes[:, :, None] + np.arange(3)).reshape(-1, 6).T.copy()
+        self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
 
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}
@@ -202,8 +193,8 @@ class Model:
     def bandwidth(self) -> int:
         """Largest distance of two coupled banded equations."""
         rows = np.where(self.element_equations < self.banded, self.element_equations, -1)
-        least = np.where(rows < 0, self.banded, rows).min(axis=1)
-        return int(max((rows.max(axis=1) - least).max(), 0))
+        least = np.where(rows < 0, self.banded, rows).min(axis=0)
+        return int(max((rows.max(axis=0) - least).max(), 0))
 
     def _properties(self) -> Properties:
         d = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0]
@@ -215,24 +206,12 @@ class Model:
         )
         return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=12 * EI / (GA * l0**2))
 
-    def _group(self) -> list[Group]:
-        groups: list[Group] = []
+    def _coefficients(self) -> Coefficients:
+        parts = []
         for beam in self.beams.values():
-            element_type = ELEMENTS[beam.beam.element]
-            start = beam.first
-            if groups and groups[-1].element_type is element_type:
-                start = groups.pop().elements.start
-            elements = slice(start, beam.last + 1)
-            properties = Properties(*(column[elements] for column in self.properties))
-            groups.append(
-                Group(
-                    element_type=element_type,
-                    elements=elements,
-                    properties=properties,
-                    coefficients=element_type.coefficients(properties),
-                )
-            )
-        return groups
+            own = Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
+            parts.append(ELEMENTS[beam.beam.element].coefficients(own))
+        return Coefficients(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
     @cached_property
     def element(self) -> list[Properties]:

@@ -67,7 +67,7 @@ class Newton:
         own = np.array([1 / (_SHARP * length), 1 / (_SHARP * length), 1 / force])
         self.scale = np.concatenate([scale[model.free % 3], np.tile(own, model.contact_unknowns // 3)])
         limit = np.array([0.3 * length, 0.3 * length, 0.7])
-        self.limit = limit[model.free % 3]
+        self.per_limit = 1 / limit[model.free % 3]
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
@@ -106,26 +106,28 @@ class Newton:
     def update(self, state: State, dq: Array, dz: Array) -> State:
         """State after a step, shortened so that no node and no contact moves too far at once."""
         model = self.model
-        largest = float((np.abs(dq) / self.limit).max())
-        slides = np.abs(dz[2::3]) / (0.3 * model.length)
-        if len(slides):
-            largest = max(largest, float(slides.max()))
-        if not np.isfinite(largest):
-            return replace(state, q=np.full_like(state.q, np.nan))
+        largest = float(np.abs(dq * self.per_limit).max(initial=0.0))
+        if len(dz):
+            largest = max(largest, float(np.abs(dz[2::3]).max()) / (0.3 * model.length))
         factor = 1 / largest if largest > 1 else 1.0
         q = state.q.copy()
         q[model.free] += factor * dq
-        moved = replace(state, q=q)
-        touches = [
-            self._moved(k, moved, touch, factor * dz) if touch is not None else None
-            for k, touch in enumerate(state.touches)
-        ]
-        return replace(moved, touches=tuple(touches))
+        moved = State(load_parameter=state.load_parameter, q=q, touches=state.touches, armed=state.armed)
+        if not state.touches or not np.isfinite(largest):
+            return moved
+        own = (factor * dz).tolist()
+        return replace(
+            moved,
+            touches=tuple(
+                self._moved(k, moved, touch, own) if touch is not None else None
+                for k, touch in enumerate(state.touches)
+            ),
+        )
 
-    def _moved(self, k: int, state: State, touch: Touch, dz: Array) -> Touch:
+    def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
         pair = self.model.pairs[k]
         if pair.slot < 0:
             return chord_owner(self.model, pair, state, touch)
-        dFx, dFy, ds = dz[pair.slot : pair.slot + 3].tolist()
+        dFx, dFy, ds = dz[pair.slot : pair.slot + 3]
         element, xi = slide(pair.target, touch.element, touch.xi + ds / self.model.element[touch.element].l0)
         return Touch(element=element, xi=xi, force=(touch.force[0] + dFx, touch.force[1] + dFy))

@@ -118,10 +118,10 @@ class Result:
         xi = np.linspace(0, 1, points_per_element + 1)
         arcs, points = [], []
         for e in range(place.first, place.last + 1):
-            x = q[self.model.dofs[e]]
+            x = q[self.model.dofs[:, e]]
             curve = Curve(self.model.element[e], x)
-            w = xi * (1 - xi) * ((1 - xi) * curve.tan_i - xi * curve.tan_j)
-            start = self.model.coordinates[self.model.element_nodes[e, 0]] + x[:2]
+            w = curve.deflection(xi)[0]
+            start = self.model.element_start[e] + x[:2]
             d = np.array([curve.dx, curve.dy])
             xy = start + xi[:, None] * d + w[:, None] * np.array([-d[1], d[0]])
             keep = slice(None) if e == place.last else slice(-1)
@@ -141,7 +141,7 @@ class Result:
         """
         place = self.model.beams[beam]
         part = slice(place.first, place.last + 1)
-        force = self.equilibria[k].system.element_force[part]
+        force = self.equilibria[k].system.element_force[:, part].T
         d = np.diff(self.shape(beam, k)[:, :2], axis=0)
         t = d / np.linalg.norm(d, axis=1)[:, None]
         out = np.empty((len(force), 2, 3))

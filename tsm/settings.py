@@ -22,7 +22,7 @@ class Settings:
         Contact events allowed at one load parameter, per contact pair.
     """
 
-    tolerance: float = 1e-11
+    tolerance: float = 1e-10
     max_iterations: int = 25
     smallest_step: float = 1e-7
     max_chatter: int = 6

@@ -22,8 +22,8 @@ from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
 
-_MEMORY = 3
-"""States that the predictor extrapolates from: a parabola in the load parameter."""
+_MEMORY = 4
+"""States that the predictor extrapolates from: a cubic in the load parameter."""
 
 
 @dataclass(frozen=True, kw_only=True)

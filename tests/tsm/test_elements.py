@@ -35,16 +35,17 @@ def test_beam_tangent_is_the_derivative_of_its_force(name):
     for _ in range(100):
         p = random_properties(rng, 10)
         c = ELEMENTS[name].coefficients(p)
-        x, direction = rng.normal(size=(10, 6)) * 0.3, rng.normal(size=(10, 6))
-        force, tangent = beam.response(p, c, x)
-        stepped, _ = beam.response(p, c, x + STEP * direction)
+        x, direction = rng.normal(size=(6, 10)) * 0.3, rng.normal(size=(6, 10))
+        force, tangent = beam.response(c, x)
+        tangent = tangent.reshape(6, 6, 10)
+        stepped, _ = beam.response(c, x + STEP * direction)
         expected = stepped.imag / abs(STEP)
         assert (
-            np.abs(np.einsum("nij,nj->ni", tangent, direction) - expected).max()
+            np.abs(np.einsum("ijn,jn->in", tangent, direction) - expected).max()
             <= 1e-12 * np.abs(expected).max()
         )
-        assert np.abs(tangent - tangent.transpose(0, 2, 1)).max() <= 1e-13 * np.abs(tangent).max()
-        assert force.shape == (10, 6)
+        assert np.abs(tangent - tangent.transpose(1, 0, 2)).max() <= 1e-13 * np.abs(tangent).max()
+        assert force.shape == (6, 10)
 
 
 @pytest.mark.parametrize("name", ELEMENTS)
@@ -83,17 +84,13 @@ def test_rigid_motion_gives_no_force(name):
     rng = np.random.default_rng(4)
     for _ in range(100):
         p = random_properties(rng, 10)
-        turn, shift = rng.uniform(-3, 3, 10), rng.normal(size=(10, 2))
-        d = np.stack([p.dx0, p.dy0], axis=1)
-        turned = np.stack(
-            [
-                np.cos(turn) * d[:, 0] - np.sin(turn) * d[:, 1],
-                np.sin(turn) * d[:, 0] + np.cos(turn) * d[:, 1],
-            ],
-            axis=1,
+        turn, shift = rng.uniform(-3, 3, 10), rng.normal(size=(2, 10))
+        d = np.array([p.dx0, p.dy0])
+        turned = np.array(
+            [np.cos(turn) * d[0] - np.sin(turn) * d[1], np.sin(turn) * d[0] + np.cos(turn) * d[1]]
         )
-        x = np.concatenate([shift, turn[:, None], shift + turned - d, turn[:, None]], axis=1)
-        force, _ = beam.response(p, ELEMENTS[name].coefficients(p), x)
+        x = np.concatenate([shift, turn[None], shift + turned - d, turn[None]])
+        force, _ = beam.response(ELEMENTS[name].coefficients(p), x)
         scale = (p.EA + p.EI / p.l0**2).max() * (1 + 1 / p.l0.min())
         assert np.abs(force).max() <= 1e-14 * scale
 
@@ -123,10 +120,11 @@ def test_linear_beam_is_timoshenkos():
     """Bending stiffnesses (4 + Phi)/(1 + Phi) EI/l0 and (2 - Phi)/(1 + Phi) EI/l0, for every element."""
     p = Properties(*(np.array([value]) for value in (2.0, 0.0, 2.0, 30.0, 5.0, 0.7)))
     for kind in ELEMENTS.values():
-        _, K = beam.response(p, kind.coefficients(p), np.zeros((1, 6)))
-        assert K[0, 2, 2] == pytest.approx(4.7 / 1.7 * 2.5, rel=1e-14)
-        assert K[0, 2, 5] == pytest.approx(1.3 / 1.7 * 2.5, rel=1e-14)
-        assert K[0, 0, 0] == pytest.approx(15.0, rel=1e-14)
+        _, K = beam.response(kind.coefficients(p), np.zeros((6, 1)))
+        K = K.reshape(6, 6)
+        assert K[2, 2] == pytest.approx(4.7 / 1.7 * 2.5, rel=1e-14)
+        assert K[2, 5] == pytest.approx(1.3 / 1.7 * 2.5, rel=1e-14)
+        assert K[0, 0] == pytest.approx(15.0, rel=1e-14)
 
 
 def rod_energy(p, theta_i, theta_j, e, points=12):
@@ -165,16 +163,12 @@ def test_energy_is_the_reissner_rods_to_fourth_order():
     errors = []
     for scale in (0.2, 0.1, 0.05):
         theta_i, theta_j, e = 0.9 * scale, 0.3 * scale, 0.4 * scale**2
-        u, d = theta_i + theta_j, theta_i - theta_j
-        stretch = e + c.eu * u * u + c.ed * d * d
-        compliance = c.c0 + c.cu * u * u + c.cd * d * d
-        ours = (
-            stretch**2 / compliance / 2
-            + (c.ku * u * u + c.kd * d * d) / 2
-            + c.r4 * u**4
-            + c.r2 * u * u * d * d
-        )
-        errors.append(abs(float(ours[0]) - rod_energy(p, theta_i, theta_j, e)))
+        m, h = (theta_i + theta_j) / 2, (theta_i - theta_j) / 2
+        polynomial = (c.constant + c.of_mm * m * m + c.of_hh * h * h)[:2, 0]
+        bending = float(c.constant[2, 0] * m * m + c.constant[3, 0] * h * h) / 2
+        quartic = float(c.r4[0] * m**4 / 8 + c.r2[0] * m * m * h * h / 4)
+        ours = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
+        errors.append(abs(ours - rod_energy(p, theta_i, theta_j, e)))
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     assert (orders > 5.5).all(), (errors, orders)
 
@@ -227,5 +221,5 @@ def test_curve_meets_the_nodes_in_position_and_slope():
         start = np.arctan2(p.dy0, p.dx0)
         for xi, theta in ((0.0, x[2]), (1.0, x[5])):
             assert curve.deflection(xi)[0] == 0
-            angle = curve.slope_angle(xi)[0]
+            angle = curve.slope_angle_jet(xi).value
             assert np.cos(angle - start - theta) == pytest.approx(1, abs=1e-14)

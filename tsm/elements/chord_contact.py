@@ -63,7 +63,8 @@ def response(
     turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
     y = n[0] * rx + n[1] * ry
     xi = (dx * rx + dy * ry) / (dx * dx + dy * dy)
-    xi = xi + (min(max(np.real(xi), INSIDE), 1 - INSIDE) - np.real(xi))
+    if not INSIDE <= xi.real <= 1 - INSIDE:
+        xi = min(max(xi.real, INSIDE), 1 - INSIDE)
     du, dv = x[3] - x[0], x[4] - x[1]
     elongation = (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
     deformation = np.array([unwind(x[2] - turn), unwind(x[5] - turn), y + side * offset])

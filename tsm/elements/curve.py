@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
+from tsm.elements.properties import Properties, chord_rotation, tangent_of, unwind
 
-from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+
+class Jet(NamedTuple):
+    """A value with first and second derivatives in ``(dx, dy, theta_i, theta_j, xi)``.
+
+    `gradient` has those five entries, `hessian` the fifteen of the upper triangle, row by row.
+    """
+
+    value: Any
+    gradient: tuple[Any, ...]
+    hessian: tuple[Any, ...]
 
 
 class Curve:
@@ -29,11 +38,20 @@ class Curve:
         theta_i, theta_j = unwind(x[2] - turn), unwind(x[5] - turn)
         self.near = (1 + p.Phi / 2) / (1 + p.Phi)
         self.far = -(p.Phi / 2) / (1 + p.Phi)
-        self.tan_i = np.tan(self.near * theta_i + self.far * theta_j)
-        self.tan_j = np.tan(self.far * theta_i + self.near * theta_j)
+        self.tan_i = tangent_of(self.near * theta_i + self.far * theta_j)
+        self.tan_j = tangent_of(self.far * theta_i + self.near * theta_j)
 
-    def deflection(self, xi: Any) -> tuple[Any, Array, Array]:
-        """Return w with gradient and Hessian in ``(dx, dy, theta_i, theta_j, F_x, F_y, xi)``."""
+    def deflection(self, xi: Any) -> tuple[Any, Any, Any]:
+        """Return w and its first two derivatives in xi."""
+        a, b, eta = self.tan_i, self.tan_j, 1 - xi
+        return (
+            xi * eta * (eta * a - xi * b),
+            eta * (1 - 3 * xi) * a + xi * (3 * xi - 2) * b,
+            (6 * xi - 4) * a + (6 * xi - 2) * b,
+        )
+
+    def deflection_jet(self, xi: Any) -> Jet:
+        """Return w with its derivatives."""
         eta = 1 - xi
         return self._blend(
             (xi * eta * eta, -xi * xi * eta),
@@ -41,54 +59,51 @@ class Curve:
             (6 * xi - 4, 6 * xi - 2),
         )
 
-    def slope_angle(self, xi: Any) -> tuple[Any, Array, Array]:
-        """Angle of the tangent from the x axis, with gradient and Hessian in the same variables."""
+    def slope_angle_jet(self, xi: Any) -> Jet:
+        """Angle of the tangent from the x axis with its derivatives."""
         eta = 1 - xi
-        slope, gradient, hessian = self._blend(
+        slope, g, h = self._blend(
             (eta * (1 - 3 * xi), xi * (3 * xi - 2)), (6 * xi - 4, 6 * xi - 2), (6.0, 6.0)
         )
-        turn_gradient, turn_hessian = self._turn()
+        turn_x, turn_y, turn_xx, turn_xy = self._turn()
         angle = chord_rotation(self.dy + slope * self.dx, self.dx - slope * self.dy)
         scale = 1 / (1 + slope * slope)
-        hessian = scale * hessian - 2 * slope * scale * scale * np.outer(gradient, gradient)
-        gradient = scale * gradient
-        gradient[:2] += turn_gradient
-        hessian[:2, :2] += turn_hessian
-        return angle, gradient, hessian
+        bend = 2 * slope * scale * scale
+        pairs = [(i, j) for i in range(5) for j in range(i, 5)]
+        hessian = [scale * value - bend * g[i] * g[j] for value, (i, j) in zip(h, pairs, strict=True)]
+        hessian[0] += turn_xx
+        hessian[1] += turn_xy
+        hessian[5] -= turn_xx
+        gradient = (scale * g[0] + turn_x, scale * g[1] + turn_y, scale * g[2], scale * g[3], scale * g[4])
+        return Jet(angle, gradient, tuple(hessian))
 
-    def _turn(self) -> tuple[Array, Array]:
-        """Gradient and Hessian of the chord's angle in ``(dx, dy)``."""
+    def _turn(self) -> tuple[Any, Any, Any, Any]:
+        """Derivatives of the chord's angle: x, y, xx = -yy, xy."""
         dx, dy = self.dx, self.dy
         l2 = dx * dx + dy * dy
         gx, gy = -dy / l2, dx / l2
-        same = -2 * gx * gy
-        return np.array([gx, gy]), np.array([[same, gx * gx - gy * gy], [gx * gx - gy * gy, -same]])
+        return gx, gy, -2 * gx * gy, gx * gx - gy * gy
 
-    def _blend(self, h: Any, dh: Any, ddh: Any) -> tuple[Any, Array, Array]:
-        """Value, gradient and Hessian of ``h_i(xi) tan s_i + h_j(xi) tan s_j``."""
+    def _blend(self, h: Any, dh: Any, ddh: Any) -> Jet:
+        """Jet of ``h_i(xi) tan s_i + h_j(xi) tan s_j``."""
         near, far, a, b = self.near, self.far, self.tan_i, self.tan_j
         both = near + far
         da, db = 1 + a * a, 1 + b * b
         i, j = h[0] * da, h[1] * db
         ii, jj = 2 * a * i, 2 * b * j
         si, sj = dh[0] * da, dh[1] * db
-        turn, turn_slide = -both * (i + j), -both * (si + sj)
-        with_i, with_j = near * ii + far * jj, far * ii + near * jj
-        (gx, gy), turn_hessian = self._turn()
-        gradient = np.array(
-            [turn * gx, turn * gy, near * i + far * j, far * i + near * j, 0, 0, dh[0] * a + dh[1] * b]
-        )
-        hessian = np.zeros((7, 7), dtype=gradient.dtype)
-        both2 = both * both * (ii + jj)
-        hessian[0, :4] = both2 * gx * gx, both2 * gx * gy, -both * with_i * gx, -both * with_j * gx
-        hessian[1, :4] = both2 * gx * gy, both2 * gy * gy, -both * with_i * gy, -both * with_j * gy
-        hessian[:2, :2] += turn * turn_hessian
-        hessian[2:4, :2] = hessian[:2, 2:4].T
-        hessian[2, 2] = near * near * ii + far * far * jj
-        hessian[3, 3] = far * far * ii + near * near * jj
-        hessian[2, 3] = hessian[3, 2] = near * far * (ii + jj)
-        slide = (turn_slide * gx, turn_slide * gy, near * si + far * sj, far * si + near * sj)
-        hessian[6, :4] = slide
-        hessian[:4, 6] = slide
-        hessian[6, 6] = ddh[0] * a + ddh[1] * b
-        return h[0] * a + h[1] * b, gradient, hessian
+        turn, slid = -both * (i + j), -both * (si + sj)
+        with_i, with_j = -both * (near * ii + far * jj), -both * (far * ii + near * jj)
+        twice = both * both * (ii + jj)
+        gx, gy, gxx, gxy = self._turn()
+        return Jet(
+            h[0] * a + h[1] * b,
+            (turn * gx, turn * gy, near * i + far * j, far * i + near * j, dh[0] * a + dh[1] * b),
+            (
+                twice * gx * gx + turn * gxx, twice * gx * gy + turn * gxy, with_i * gx, with_j * gx, slid * gx,
+                twice * gy * gy - turn * gxx, with_i * gy, with_j * gy, slid * gy,
+                near * near * ii + far * far * jj, near * far * (ii + jj), near * si + far * sj,
+                far * far * ii + near * near * jj, far * si + near * sj,
+                ddh[0] * a + ddh[1] * b,
+            ),
+        )  # fmt: skip

@@ -30,16 +30,18 @@ from tsm.elements.properties import Array, Properties
 _REDUCE = np.zeros((7, 11))
 _REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
 _REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
-# second derivatives of a = F . perp(d) and of F . (x_i - x_c)
-_HESSIAN_A = np.zeros((7, 7))
-_HESSIAN_A[[0, 5], [5, 0]] = 1
-_HESSIAN_A[[1, 4], [4, 1]] = -1
-_HESSIAN_LEVER = np.zeros((11, 11))
-_HESSIAN_LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
-_HESSIAN_LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
-
-
-UNKNOWNS = 3
+# the 28 entries of the upper triangle over those seven, spread over the eleven
+_SPREAD = np.array(
+    [
+        (np.outer(_REDUCE[a], _REDUCE[b]) + (a != b) * np.outer(_REDUCE[b], _REDUCE[a])).ravel()
+        for a in range(7)
+        for b in range(a, 7)
+    ]
+)
+# second derivatives of F . (x_i - x_c)
+_LEVER = np.zeros((11, 11))
+_LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
+_LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
 
 
 def response(
@@ -74,67 +76,89 @@ def response(
     curve = Curve(p, x)
     dx, dy, (Fx, Fy) = curve.dx, curve.dy, force
     C, dC, ddC, dddC = compliance(p, xi)
-    w, w_gradient, w_hessian = curve.deflection(xi)
-    a = Fy * dx - Fx * dy
-    a_gradient = np.array([Fy, -Fx, 0, 0, -dy, dx, 0])
-
-    gradient = w * a_gradient + a * w_gradient
-    gradient += np.array([xi * Fx, xi * Fy, 0, 0, xi * dx + C * Fx, xi * dy + C * Fy, 0])
-    gradient[6] += Fx * dx + Fy * dy + dC * (Fx * Fx + Fy * Fy) / 2
-
-    cross = np.outer(w_gradient, a_gradient)
-    hessian = a * w_hessian + cross + cross.T + w * _HESSIAN_A
-    hessian[[0, 1, 4, 5], [4, 5, 0, 1]] += xi
-    hessian[[4, 5], [4, 5]] += C
-    hessian[6, :6] += np.array([Fx, Fy, 0, 0, dx + dC * Fx, dy + dC * Fy])
-    hessian[:6, 6] = hessian[6, :6]
-    hessian[6, 6] += ddC * (Fx * Fx + Fy * Fy) / 2
+    w, (wx, wy, wi, wj, ws), h = curve.deflection_jet(xi)
+    hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = h
+    a, half = Fy * dx - Fx * dy, (Fx * Fx + Fy * Fy) / 2
+    gradient = np.array(
+        [
+            xi * Fx + a * wx + w * Fy,
+            xi * Fy + a * wy - w * Fx,
+            a * wi,
+            a * wj,
+            xi * dx - w * dy + C * Fx,
+            xi * dy + w * dx + C * Fy,
+            Fx * dx + Fy * dy + a * ws + dC * half,
+        ]
+    )
+    hessian = np.array(
+        [
+            a * hxx + 2 * wx * Fy, a * hxy + wy * Fy - wx * Fx, a * hxi + wi * Fy, a * hxj + wj * Fy,
+            xi - wx * dy, w + wx * dx, Fx + a * hxs + ws * Fy,
+            a * hyy - 2 * wy * Fx, a * hyi - wi * Fx, a * hyj - wj * Fx,
+            -w - wy * dy, xi + wy * dx, Fy + a * hys - ws * Fx,
+            a * hii, a * hij, -wi * dy, wi * dx, a * his,
+            a * hjj, -wj * dy, wj * dx, a * hjs,
+            C, 0.0, dx - ws * dy + dC * Fx,
+            C, dy + ws * dx + dC * Fy,
+            a * hss + ddC * half,
+        ]
+    )  # fmt: skip
     if offset:
         on_surface = _surface(curve, xi, force, (dC, ddC, dddC), p.l0)
-        gradient -= side * offset * on_surface[0]
-        hessian -= side * offset * on_surface[1]
+        gradient = gradient - side * offset * on_surface[0]
+        hessian = hessian - side * offset * on_surface[1]
 
-    full = gradient @ _REDUCE
-    full[:2] += force
-    full[6:8] -= force
-    full[8:10] += lever
-    tangent = _REDUCE.T @ hessian @ _REDUCE + _HESSIAN_LEVER
+    full = -(gradient @ _REDUCE)
+    full[0] -= Fx
+    full[1] -= Fy
+    full[6] += Fx
+    full[7] += Fy
+    full[8] -= lever[0]
+    full[9] -= lever[1]
+    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
     full[10] /= p.l0
     tangent[10] /= p.l0
     tangent[:, 10] /= p.l0
-    return -full, -tangent
+    return full, tangent
 
 
 def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: Any) -> tuple[Array, Array]:
     """Gradient and Hessian of ``F . m(phi + b F.m(phi))``, to first order in the slope ``b F.m`` of the load's own dent.
 
     `m` is the unit normal at the slope angle phi of the unloaded curve and ``b = C'/(2 l0)``, the rotation
-    at a unit force; ``A = F.m``, ``T = F.(tangent)``, so that the expression is ``A - b A T``.
+    at a unit force; ``A = F.m``, ``T = F.t``, so that the expression is ``A - b A T``. In the order of `response`.
     """
-    phi, phi_gradient, phi_hessian = curve.slope_angle(xi)
+    phi, (px, py, pi, pj, ps), h = curve.slope_angle_jet(xi)
     b, db, ddb = (value / (2 * l0) for value in dC)
     c, s = np.cos(phi), np.sin(phi)
-    Fx, Fy = force
-    A, T = Fy * c - Fx * s, Fx * c + Fy * s
-    normal = np.array([0, 0, 0, 0, -s, c, 0])
-    tangent = np.array([0, 0, 0, 0, c, s, 0])
-    slide = np.array([0, 0, 0, 0, 0, 0, 1.0])
-
-    by_phi = -T - b * (A * A - T * T)
-    by_force = normal - b * (T * normal + A * tangent)
-    gradient = by_phi * phi_gradient + by_force - db * A * T * slide
-
-    mixed = -tangent - 2 * b * (A * normal - T * tangent) - db * (A * A - T * T) * slide
-    slid = -db * (T * normal + A * tangent)
-    upper = (
-        np.outer(phi_gradient, mixed)
-        + np.outer(slid, slide)
-        - b * np.outer(tangent, normal)
-        - ddb * A * T / 2 * np.outer(slide, slide)
-    )
-    hessian = (
-        (-A + 4 * b * A * T) * np.outer(phi_gradient, phi_gradient) + by_phi * phi_hessian + upper + upper.T
-    )
+    A, T = force[1] * c - force[0] * s, force[0] * c + force[1] * s
+    squares = A * A - T * T
+    by_phi = -T - b * squares
+    # derivatives of by_phi in the force, and of b's slope in both
+    mx, my = -c + 2 * b * (A * s + T * c), -s - 2 * b * (A * c - T * s)
+    sx, sy = -db * (A * c - T * s), -db * (T * c + A * s)
+    bend, twist = -A + 4 * b * A * T, -db * squares
+    hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = h
+    gradient = np.array(
+        [
+            by_phi * px, by_phi * py, by_phi * pi, by_phi * pj,
+            -s - b * (A * c - T * s), c - b * (T * c + A * s), by_phi * ps - db * A * T,
+        ]
+    )  # fmt: skip
+    hessian = np.array(
+        [
+            bend * px * px + by_phi * hxx, bend * px * py + by_phi * hxy, bend * px * pi + by_phi * hxi,
+            bend * px * pj + by_phi * hxj, px * mx, px * my, (bend * ps + twist) * px + by_phi * hxs,
+            bend * py * py + by_phi * hyy, bend * py * pi + by_phi * hyi,
+            bend * py * pj + by_phi * hyj, py * mx, py * my, (bend * ps + twist) * py + by_phi * hys,
+            bend * pi * pi + by_phi * hii,
+            bend * pi * pj + by_phi * hij, pi * mx, pi * my, (bend * ps + twist) * pi + by_phi * his,
+            bend * pj * pj + by_phi * hjj, pj * mx, pj * my, (bend * ps + twist) * pj + by_phi * hjs,
+            2 * b * c * s, b * (s * s - c * c), ps * mx + sx,
+            -2 * b * c * s, ps * my + sy,
+            (bend * ps + 2 * twist) * ps + by_phi * hss - ddb * A * T,
+        ]
+    )  # fmt: skip
     return gradient, hessian
 
 

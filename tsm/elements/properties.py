@@ -2,10 +2,13 @@
 
 Axes: element first in every array of the package. An element has the six displacements
 ``(u_i, v_i, theta_i, u_j, v_j, theta_j)``; rotations are measured from the undeformed state.
+
+The functions here take plain numbers, arrays, and complex values of either: derivatives are tested by complex steps.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,14 +40,24 @@ class Properties(NamedTuple):
 
 
 def chord_rotation(cross: Any, dot: Any) -> Any:
-    """Angle of a chord from its undeformed direction, in (-pi, pi], analytic for complex steps."""
-    angle = np.arctan2(np.real(cross), np.real(dot))
-    if np.iscomplexobj(cross) or np.iscomplexobj(dot):
-        step = (np.imag(cross) * np.real(dot) - np.real(cross) * np.imag(dot)) / np.real(dot**2 + cross**2)
-        return angle + 1j * step
-    return angle
+    """Angle of a chord from its undeformed direction, in (-pi, pi]."""
+    if isinstance(cross, float):
+        return math.atan2(cross, dot)
+    if not np.iscomplexobj(cross):
+        return np.arctan2(cross, dot)
+    step = (np.imag(cross) * np.real(dot) - np.real(cross) * np.imag(dot)) / np.real(dot**2 + cross**2)
+    return np.arctan2(np.real(cross), np.real(dot)) + 1j * step
 
 
 def unwind(angle: Any) -> Any:
     """Angle less its whole turns."""
-    return angle - 2 * np.pi * np.round(np.real(angle) / (2 * np.pi))
+    if isinstance(angle, float):
+        return math.remainder(angle, math.tau)
+    if not np.iscomplexobj(angle):
+        return np.arctan2(np.sin(angle), np.cos(angle))
+    return angle - math.tau * np.rint(angle.real / math.tau)
+
+
+def tangent_of(angle: Any) -> Any:
+    """Tangent of an angle."""
+    return math.tan(angle) if isinstance(angle, float) else np.tan(angle)
