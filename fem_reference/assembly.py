@@ -1,0 +1,91 @@
+"""Internal force and tangent stiffness of the solid, by batched matrix products."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_matrix, csr_matrix
+
+from fem_reference.arrays import Array, Floats, Ints
+from fem_reference.mesh import Discretisation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pattern:
+    """Sparsity pattern of a stiffness matrix and the map that fills it.
+
+    Parameters
+    ----------
+    unknowns
+        Degrees of freedom kept, in the order of elimination, ``(m,)``.
+    scatter
+        Sparse matrix from all element entries, raveled ``(e, 18, 18)``, to the stored entries of the stiffness.
+    indices, indptr
+        Row indices and column pointers of the compressed columns.
+    """
+
+    unknowns: Ints
+    scatter: csr_matrix
+    indices: Ints
+    indptr: Ints
+
+    def matrix(self, elements: Array) -> csc_matrix:
+        """Assemble element matrices ``(e, 18, 18)`` into the stiffness ``(m, m)``."""
+        m = self.unknowns.size
+        return csc_matrix((self.scatter @ elements.ravel(), self.indices, self.indptr), shape=(m, m))
+
+
+def pattern(mesh: Discretisation, unknowns: Ints) -> Pattern:
+    """Build the pattern of the stiffness restricted to ``unknowns``, once per model."""
+    position = np.full(2 * len(mesh.nodes), -1)
+    position[unknowns] = np.arange(unknowns.size)
+    local = position[element_dofs(mesh)]
+    shape = (*local.shape, local.shape[1])
+    row = np.broadcast_to(local[:, :, None], shape).ravel()
+    column = np.broadcast_to(local[:, None, :], shape).ravel()
+    kept = np.flatnonzero((row >= 0) & (column >= 0))
+    keys, slot = np.unique(column[kept] * unknowns.size + row[kept], return_inverse=True)
+    scatter = csr_matrix((np.ones(kept.size), (slot, kept)), shape=(keys.size, row.size))
+    counts = np.bincount(keys // unknowns.size, minlength=unknowns.size)
+    return Pattern(
+        unknowns=unknowns,
+        scatter=scatter,
+        indices=(keys % unknowns.size).astype(np.int32),
+        indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+    )
+
+
+def element_dofs(mesh: Discretisation) -> Ints:
+    """Degrees of freedom ``(e, 18)`` of the elements, local order ``2 a + i``."""
+    return (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
+
+
+def deformation_gradient(mesh: Discretisation, u: Array, gradients: Floats | None = None) -> Array:
+    """``F = I + du/dX`` at the quadrature points, ``(2, 2, e, q)``, from nodal displacements ``u`` ``(n, 2)``.
+
+    ``gradients`` other than ``mesh.gradients`` give F at other points.
+    """
+    G = mesh.gradients if gradients is None else gradients
+    elements, rows, _ = G.shape
+    H = (G @ u[mesh.cells]).reshape(elements, 2, rows // 2, 2).transpose(3, 1, 0, 2)
+    return np.eye(2)[:, :, None, None] + H
+
+
+def internal_force(mesh: Discretisation, P: Array) -> Array:
+    """Nodal internal forces ``(n, 2)``: the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
+    elements = len(mesh.cells)
+    weighted = (P * mesh.weights).transpose(2, 1, 3, 0).reshape(elements, -1, 2)
+    forces = mesh.gradients.transpose(0, 2, 1) @ weighted
+    total = np.zeros((len(mesh.nodes), 2), dtype=forces.dtype)
+    np.add.at(total, mesh.cells, forces)
+    return total
+
+
+def element_tangents(mesh: Discretisation, A: Array) -> Array:
+    """Element stiffnesses ``(e, 18, 18)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``."""
+    elements, rows, shapes = mesh.gradients.shape
+    points = rows // 2
+    G = mesh.gradients.reshape(elements, 2, points, shapes)
+    weighted = (A * mesh.weights).transpose(4, 1, 5, 0, 3, 2)  # e, j, q, i, l, k
+    inner = sum(G[:, None, n, :, None, :, None] * weighted[:, :, :, :, n, None, :] for n in range(2))
+    tangents = mesh.gradients.transpose(0, 2, 1) @ np.reshape(inner, (elements, rows, 4 * shapes))
+    return tangents.reshape(elements, 2 * shapes, 2 * shapes)
