@@ -1,0 +1,167 @@
+"""One scene through every model: table, pictures and files."""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from comparisons.export import write_series
+from comparisons.files import writable_folder, write_text
+from comparisons.metrics import errors
+from comparisons.models import solve
+from comparisons.options import ModelError, Options
+from comparisons.plot import nearest_steps, plot_shapes
+from comparisons.render import render_panels
+from comparisons.response import Response
+from comparisons.scene import Scene, to_toml
+from comparisons.statement import as_dict, plain, versions
+from comparisons.stress import beam_panel, solid_panel
+from comparisons.table import Row, table_csv
+from comparisons.translate import to_rod
+
+Report = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """One model with its options."""
+
+    label: str
+    model: str
+    options: Options
+
+
+def _tsm(element: str, elements: int) -> Run:
+    label = f"TSM {element}, {elements} elements"
+    return Run(label=label, model="tsm", options=Options(element=element, elements=elements))
+
+
+PAPER = tuple(_tsm("timoshenko", elements) for elements in (10, 20, 50))
+"""The paper's element; its shapes are drawn."""
+MIXED = _tsm("mixed", 20)
+"""The beams that are exported and rendered."""
+SOLID = Run(label="solid", model="solid", options=Options())
+ROD = Run(label="exact rod", model="rod", options=Options())
+ELASTICA = Run(label="elastica", model="elastica", options=Options())
+RUNS = (*PAPER, _tsm("mixed", 10), MIXED, SOLID, ELASTICA, ROD)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """What a comparison found: its rows, and the files it wrote."""
+
+    rows: list[Row]
+    files: list[Path]
+
+    @property
+    def stopped(self) -> list[Row]:
+        """The runs without a completed and checked solution."""
+        return [row for row in self.rows if not row.response.completed]
+
+
+def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
+    """Solve `scene` with every model that can state it and write the results to `folder`.
+
+    Parameters
+    ----------
+    scene : Scene
+        One that the exact rod can state: it is the reference.
+    folder : Path
+        Made if it is not there.
+    report : callable
+        Takes lines about the progress.
+
+    Raises
+    ------
+    ModelError
+        If the exact rod cannot state the scene.
+    OutputError
+        If `folder` cannot be written; nothing is computed.
+    """
+    rod = to_rod(scene)
+    folder = writable_folder(folder)
+    responses = _solve_all(scene, report)
+    reference = responses[ROD.label]
+    rows = [
+        Row(
+            label=label,
+            response=response,
+            errors=None
+            if response is reference
+            else errors(response, reference, pair=rod.pair, beam=rod.beam.name, length=rod.beam.length),
+        )
+        for label, response in responses.items()
+    ]
+    report("writing files")
+    return Comparison(rows=rows, files=_write_all(scene, rows, folder, report))
+
+
+def _solve_all(scene: Scene, report: Report) -> dict[str, Response]:
+    responses: dict[str, Response] = {}
+    for number, run in enumerate(RUNS, 1):
+        try:
+            response = solve(scene, run.model, run.options)
+        except ModelError as error:
+            report(f"[{number}/{len(RUNS)}] {run.label}: left out, {error}")
+            continue
+        responses[run.label] = response
+        outcome = (
+            f"{response.wall_seconds:.2f} s"
+            if response.completed
+            else f"{response.status}: {response.message}"
+        )
+        report(f"[{number}/{len(RUNS)}] {run.label}: {outcome}")
+    return responses
+
+
+def _write_all(scene: Scene, rows: list[Row], folder: Path, report: Report) -> list[Path]:
+    responses = {row.label: row.response for row in rows}
+    names = [run.label for run in (SOLID, *PAPER, ROD)]
+    shapes = [folder / "shapes.png", folder / "shapes.svg"]
+    plot_shapes(scene, {name: responses[name] for name in names if name in responses}, *shapes)
+    files = [*shapes, *_write_picture(scene, responses, folder, report)]
+    for run in (MIXED, SOLID):
+        if run.label in responses:
+            write_series(writable_folder(folder / run.model), responses[run.label], scene)
+            files.append(folder / run.model / f"{run.model}.pvd")
+    write_text(folder / "table.csv", table_csv(rows))
+    files = [folder / "summary.json", folder / "table.csv", *files]
+    write_text(folder / "summary.json", _summary(scene, rows, [path.relative_to(folder) for path in files]))
+    return files
+
+
+def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, report: Report) -> list[Path]:
+    """Write the side-by-side picture of the beams and the solid at load parameters that both reached."""
+    both = [responses[run.label] for run in (MIXED, SOLID) if run.label in responses]
+    reached = min(len(response.load_parameter) for response in both)
+    if len(both) < 2 or reached == 0:
+        report("side-by-side.png: left out, it takes beams and solid")
+        return []
+    ks = nearest_steps(both[0].load_parameter[:reached])
+    times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
+    panels = [
+        beam_panel(both[0], scene, ks, f"{MIXED.label}, t = {times}"),
+        solid_panel(both[1], scene, ks, f"solid, t = {times}"),
+    ]
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    path = folder / "side-by-side.png"
+    sentence = render_panels(panels, f"von Mises stress [{force}/{length}^2]", path)
+    if sentence is not None:
+        report(f"{path.name}: {sentence}")
+    return [path]
+
+
+def _summary(scene: Scene, rows: list[Row], files: list[Path]) -> str:
+    runs = [
+        {"label": row.label, **as_dict(row.response), "errors": row.errors and asdict(row.errors)}
+        for row in rows
+    ]
+    summary = {
+        "scene": scene.name,
+        "scene_file": to_toml(scene),
+        "reference": ROD.label,
+        "versions": versions(),
+        "files": [str(path) for path in files],
+        "runs": [{key: value for key, value in run.items() if key != "versions"} for run in runs],
+    }
+    return json.dumps(plain(summary), allow_nan=False, indent=1) + "\n"

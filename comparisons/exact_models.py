@@ -1,0 +1,137 @@
+"""The two exact models, Reissner's rod and the elastica, as responses."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.exact.elastica import ElasticaState, elastica_under_pin
+from comparisons.exact.outcome import Outcome
+from comparisons.exact.rod import rod_under_pin
+from comparisons.options import ModelError, Options
+from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
+from comparisons.scene import Scene
+from comparisons.translate import RodScene, to_rod
+
+POINTS = 401
+"""Points of a deflected axis: the pictures' resolution, not the solution's."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocalStates:
+    """States of a cantilever in its local frame (`RodScene`), one per pin position; forces are those of the pin."""
+
+    outcome: tuple[Outcome, ...]
+    force: Array
+    arc_position: Array
+    clamp_moment: Array
+    tip: Array
+    iterations: NDArray[np.int64]
+    shape: Callable[[int], Array]
+
+
+def solve_rod(scene: Scene, _: Options) -> Response:
+    """Solve `scene` as a Reissner rod."""
+    local = to_rod(scene)
+    beam = local.beam
+    began = perf_counter()
+    path = rod_under_pin(
+        local.path, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length, offset=local.offset
+    )
+    seconds = perf_counter() - began
+    states = LocalStates(
+        outcome=tuple(path.outcome[hit] for hit in local.hits),
+        force=path.force[local.hits],
+        arc_position=path.arc_position[local.hits],
+        clamp_moment=path.clamp_moment[local.hits],
+        tip=path.tip[local.hits],
+        iterations=np.diff(np.cumsum(path.iterations)[local.hits], prepend=0),
+        shape=lambda k: path.shape(int(local.hits[k]), POINTS)[:, :2],
+    )
+    return _response("rod", scene, local, states, unknowns=4, seconds=seconds)
+
+
+def solve_elastica(scene: Scene, _: Options) -> Response:
+    """Solve `scene` as an elastica, in closed form."""
+    local = to_rod(scene)
+    if local.offset:
+        raise ModelError('the elastica has contact on its axis only, the scene has surface = "face"')
+    beam = local.beam
+    began = perf_counter()
+    path: list[ElasticaState] = []
+    for x, y in local.points:
+        state = elastica_under_pin(float(x), float(y), EI=beam.EI, length=beam.length)
+        if y > 0.0 and path and path[-1].outcome is Outcome.SLIPPED:
+            state = path[-1]
+        path.append(state)
+    seconds = perf_counter() - began
+    states = LocalStates(
+        outcome=tuple(state.outcome for state in path),
+        force=np.array([state.force for state in path]),
+        arc_position=np.array([state.arc_position for state in path]),
+        clamp_moment=np.array([state.clamp_moment for state in path]),
+        tip=np.array([state.tip for state in path]),
+        iterations=np.zeros(len(path), dtype=np.int64),
+        shape=lambda k: path[k].shape(POINTS),
+    )
+    return _response("elastica", scene, local, states, unknowns=1, seconds=seconds)
+
+
+def _response(
+    model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
+) -> Response:
+    """Turn local states into the scene's frame; what lies beyond a lost equilibrium is left out."""
+    name, length = local.beam.name, local.beam.length
+    reached = next(
+        (k for k, outcome in enumerate(states.outcome) if outcome is Outcome.LOST), len(states.outcome)
+    )
+    lost = reached < len(states.outcome)
+    outcome = np.array(states.outcome[:reached], dtype=object)
+    times = np.array(scene.times)
+    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
+    below = -local.points[:reached, 1] - local.offset
+    contact = ContactHistory(
+        force=np.hypot(*states.force[:reached].T),
+        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
+        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
+        slip_off=float(times[np.argmax(slipped)]) if slipped.any() else np.nan,
+    )
+
+    def axis_line(_: str, k: int) -> tuple[Array, Array]:
+        arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
+        return (arc, line[::-1]) if local.from_end else (arc, line)
+
+    def grid(k: int) -> Grid:
+        arc, line = axis_line(name, k)
+        points = np.outer(1.0 - arc / length, local.beam.start) + np.outer(arc / length, local.beam.end)
+        cells = np.stack([np.arange(POINTS - 1), np.arange(1, POINTS)], axis=1)
+        return Grid(
+            points=points, cells={"line": cells}, point_data={"displacement": line - points, "deformed": line}
+        )
+
+    support = SupportHistory(
+        force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
+    )
+    return Response(
+        model=model,
+        scene=scene.name,
+        status="LOST" if lost else "COMPLETED",
+        message=(
+            f"no equilibrium is connected with the straight beam at load parameter {times[reached]:.6g}"
+            if lost
+            else "all load parameters were reached"
+        ),
+        completed=not lost,
+        load_parameter=times[:reached],
+        contacts={local.pair: contact},
+        supports={name: support},
+        tips={name: local.position(states.tip[:reached])},
+        newton_iterations=states.iterations[:reached],
+        cutbacks=0,
+        unknowns=unknowns,
+        wall_seconds=seconds,
+        axis_line=axis_line,
+        grid=grid,
+    )

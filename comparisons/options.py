@@ -1,0 +1,35 @@
+"""What a user may choose for one run, and the refusal of what a model cannot do."""
+
+from dataclasses import dataclass
+
+
+class ModelError(ValueError):
+    """A model cannot state a scene, or an option does not fit the model: one line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Choices for one run; None leaves the scene's or the model's default.
+
+    Parameters
+    ----------
+    elements : int, optional
+        TSM elements of every beam.
+    element : str, optional
+        Type of the TSM elements.
+    mesh : (int, int), optional
+        Elements of the solid along and across.
+    """
+
+    elements: int | None = None
+    element: str | None = None
+    mesh: tuple[int, int] | None = None
+
+
+OPTIONS: dict[str, tuple[str, ...]] = {
+    "tsm": ("elements", "element"),
+    "solid": ("mesh",),
+    "rod": (),
+    "elastica": (),
+}
+"""The options of each model."""

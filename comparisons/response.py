@@ -1,0 +1,110 @@
+"""What every model can state about a scene."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactHistory:
+    """One contact pair over the load parameters.
+
+    Attributes
+    ----------
+    force : ndarray, shape (s,)
+        Magnitude of the contact force.
+    arc_position : ndarray, shape (s,)
+        Distance along the undeformed axis from the beam's start; nan where the pair is open.
+    gap : ndarray, shape (s,)
+        Zero where closed (minus the penetration of a penalty model), positive or nan where open.
+    compliance : float
+        Penetration per force of a penalty model, ``gap = -compliance force``.
+    slip_off : float
+        Load parameter at which the node left the beam over its free end; nan if it did not.
+    """
+
+    force: Array
+    arc_position: Array
+    gap: Array
+    compliance: float = 0.0
+    slip_off: float = np.nan
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SupportHistory:
+    """What the supports of one beam exert on it: force (s, 2), moment about the clamped point (s,)."""
+
+    force: Array
+    moment: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grid:
+    """A mesh in its undeformed state with fields at its points.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+        Undeformed positions.
+    cells : dict of ndarray, shape (e, k)
+        Points of the cells by VTK type, in VTK's order: ``line``, ``quad9``.
+    point_data : dict of ndarray, shape (n,) or (n, c)
+        Fields; ``displacement`` (n, 2) is always there.
+    """
+
+    points: Array
+    cells: dict[str, NDArray[np.int64]]
+    point_data: dict[str, Array]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Response:
+    """The response of one model to one scene at s load parameters.
+
+    Attributes
+    ----------
+    model, scene : str
+        Names.
+    status, message : str
+        How the run ended: a name and its sentence.
+    completed : bool
+        Whether the model says that it went through.
+    load_parameter : ndarray, shape (s,)
+        The accepted load parameters of the scene.
+    contacts : dict of ContactHistory
+        By pair, ``node->beam``.
+    supports : dict of SupportHistory
+        By beam.
+    tips : dict of ndarray, shape (s, 2)
+        Position of the free end, by beam.
+    newton_iterations : ndarray of int, shape (s,)
+        All iterations spent since the previous load parameter.
+    cutbacks, unknowns : int
+        Rejected steps; size of the system of equations.
+    wall_seconds : float
+        Time of the solution alone.
+    axis_line : callable
+        ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k.
+    grid : callable
+        ``grid(k)``: the model's mesh and fields at load parameter k.
+    """
+
+    model: str
+    scene: str
+    status: str
+    message: str
+    completed: bool
+    load_parameter: Array
+    contacts: dict[str, ContactHistory]
+    supports: dict[str, SupportHistory]
+    tips: dict[str, Array]
+    newton_iterations: NDArray[np.int64]
+    cutbacks: int
+    unknowns: int
+    wall_seconds: float
+    axis_line: Callable[[str, int], tuple[Array, Array]] = field(repr=False)
+    grid: Callable[[int], Grid] = field(repr=False)

@@ -1,0 +1,71 @@
+"""What the records of a scene must obey together."""
+
+from collections.abc import Iterable
+
+from comparisons.scene.records import BeamSpec, ContactSpec, Scene
+from comparisons.scene.rules import FieldError, Point, shown
+
+
+def check_scene(scene: Scene) -> None:
+    """Raise `FieldError` for the first rule that the records of `scene` break together."""
+    beams = [(f"beam[{i}].name", beam.name) for i, beam in enumerate(scene.beams)]
+    _distinct(beams + [(f"pin[{i}].name", pin.name) for i, pin in enumerate(scene.pins)])
+    for i, contact in enumerate(scene.contacts):
+        try:
+            _check_contact(scene, contact)
+        except FieldError as error:
+            raise error.within(f"contact[{i}].") from None
+        _check_side(scene, contact)
+    _distinct([(f"contact[{i}].node", contact.pair) for i, contact in enumerate(scene.contacts)])
+
+
+def _distinct(named: list[tuple[str, str]]) -> None:
+    seen: set[str] = set()
+    for key, name in named:
+        if name in seen:
+            raise FieldError(key, name, "must not appear twice")
+        seen.add(name)
+
+
+def _known(names: Iterable[str]) -> str:
+    return ", ".join(shown(name) for name in names)
+
+
+def _check_contact(scene: Scene, contact: ContactSpec) -> None:
+    beams = [beam.name for beam in scene.beams]
+    nodes = [pin.name for pin in scene.pins] + [f"{name}.{end}" for name in beams for end in ("start", "end")]
+    if contact.beam not in beams:
+        raise FieldError("beam", contact.beam, f"must name a beam: {_known(beams)}")
+    if contact.node not in nodes:
+        raise FieldError("node", contact.node, f"must name a pin or a beam's end: {_known(nodes)}")
+    if contact.node.split(".")[0] == contact.beam and "." in contact.node:
+        raise FieldError("node", contact.node, "must not be an end of the beam itself")
+    if contact.surface == "face" and scene.beam(contact.beam).height is None:
+        raise FieldError("surface", contact.surface, f'needs the height of beam "{contact.beam}"')
+
+
+def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[float, float]:
+    """Return the gap of `point` to the undeformed beam and the fraction of the axis it projects on.
+
+    ``g = s n.(x_c - x_start) - offset`` with n the left normal and s = -1 for a node from the right.
+    """
+    (tx, ty), (x0, y0) = beam.direction, beam.start
+    dx, dy = point[0] - x0, point[1] - y0
+    sign = 1.0 if side == "left" else -1.0
+    return sign * (tx * dy - ty * dx) - offset, (tx * dx + ty * dy) / beam.length
+
+
+def _check_side(scene: Scene, contact: ContactSpec) -> None:
+    beam = scene.beam(contact.beam)
+    if "." in contact.node:
+        other, end = contact.node.split(".")
+        number = [item.name for item in scene.beams].index(other)
+        key, position = f"beam[{number}].{end}", getattr(scene.beams[number], end)
+    else:
+        number = [item.name for item in scene.pins].index(contact.node)
+        pin = scene.pins[number]
+        key, position = f"pin[{number}].{'start' if pin.path is None else 'path'}", pin.points[0]
+    gap, fraction = signed_gap(beam, contact.side, scene.offset(contact), position)
+    if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
+        where = f'on the {contact.side} of beam "{beam.name}"'
+        raise FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")

@@ -1,0 +1,127 @@
+"""Scene files: TOML in, `Scene` out, one line for everything that is wrong."""
+
+import difflib
+import tomllib
+from dataclasses import MISSING as NO_DEFAULT
+from dataclasses import fields
+from importlib import resources
+from pathlib import Path
+from typing import Any, TypeVar
+
+from comparisons.scene.records import BeamSpec, ContactSpec, PinSpec, Scene
+from comparisons.scene.rules import MISSING, FieldError
+
+Record = TypeVar("Record")
+LISTS: dict[str, type[BeamSpec] | type[PinSpec] | type[ContactSpec]] = {
+    "beam": BeamSpec,
+    "pin": PinSpec,
+    "contact": ContactSpec,
+}
+
+
+class SceneError(ValueError):
+    """A scene that cannot be read: exactly one line, ``FILE: KEY = VALUE: RULE``."""
+
+    def __init__(self, source: str, reason: str) -> None:
+        super().__init__(" ".join(f"{source}: {reason}".split()))
+
+
+def built_in_scenes() -> dict[str, str]:
+    """Return the TOML text of the scenes that come with the package, by name."""
+    folder = resources.files("comparisons.scene") / "scenes"
+    files = sorted(
+        (item for item in folder.iterdir() if item.name.endswith(".toml")), key=lambda item: item.name
+    )
+    return {item.name.removesuffix(".toml"): item.read_text(encoding="utf-8") for item in files}
+
+
+def load_scene(scene: str) -> Scene:
+    """Return the scene called `scene`: a built-in name or the path of a TOML file.
+
+    Raises
+    ------
+    SceneError
+        One line: file, key, value and rule.
+
+    Examples
+    --------
+    >>> load_scene("ks-cantilever").beams[0].height
+    0.02
+    """
+    built_in = built_in_scenes()
+    if scene in built_in:
+        return read_scene(built_in[scene], scene)
+    if not scene:
+        raise SceneError('""', "must name a scene")
+    path = Path(scene)
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except FileNotFoundError:
+        raise SceneError(scene, f"no such file or built-in scene ({', '.join(built_in)})") from None
+    except UnicodeDecodeError as error:
+        raise SceneError(scene, f"must be UTF-8 text, byte {error.start} is not") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise SceneError(scene, f"cannot be read: {reason}") from None
+    return read_scene(text, scene)
+
+
+def read_scene(text: str, source: str) -> Scene:
+    """Return the scene that the TOML `text` states; `source` names it in errors.
+
+    Raises
+    ------
+    SceneError
+        One line: file, key, value and rule.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise SceneError(source, f"must be valid TOML: {error}") from None
+    try:
+        return _scene(tables)
+    except FieldError as error:
+        raise SceneError(source, str(error)) from None
+
+
+def _scene(tables: dict[str, Any]) -> Scene:
+    _check_keys(tables, {"scene", *LISTS}, required=("scene", *LISTS))
+    if not isinstance(tables["scene"], dict):
+        raise FieldError("scene", tables["scene"], "must be a table, [scene]")
+    lists: dict[str, Any] = {f"{kind}s": _records(kind, tables[kind]) for kind in LISTS}
+    own = {item.name for item in fields(Scene)} - set(lists)
+    try:
+        _check_keys(tables["scene"], own, required=("name", "load_parameters"))
+    except FieldError as error:
+        raise error.within("scene.") from None
+    try:
+        return Scene(**tables["scene"], **lists)
+    except FieldError as error:
+        raise (error.within("scene.") if error.key in own else error) from None
+
+
+def _records(kind: str, tables: object) -> tuple[object, ...]:
+    if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
+        raise FieldError(kind, tables, f"must be a list of tables, [[{kind}]]")
+    return tuple(_record(LISTS[kind], table, f"{kind}[{i}].") for i, table in enumerate(tables))
+
+
+def _record(kind: type[Record], table: dict[str, Any], prefix: str) -> Record:
+    known = fields(kind)  # type: ignore[arg-type]  # every kind is a dataclass
+    try:
+        required = tuple(item.name for item in known if item.default is NO_DEFAULT)
+        _check_keys(table, {item.name for item in known}, required)
+        return kind(**table)
+    except FieldError as error:
+        raise error.within(prefix) from None
+
+
+def _check_keys(table: dict[str, Any], known: set[str], required: tuple[str, ...]) -> None:
+    for key, value in table.items():
+        if key not in known:
+            near = difflib.get_close_matches(key, sorted(known), n=1, cutoff=0.5)
+            hint = f"did you mean {near[0]}?" if near else "known are " + ", ".join(sorted(known))
+            raise FieldError(key if key.isprintable() else repr(key), value, f"unknown key, {hint}")
+    for key in required:
+        if key not in table:
+            raise FieldError(key, MISSING, "must be given")

@@ -1,0 +1,268 @@
+"""The records of a scene: hashable, without arrays, checked when they are made."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated
+
+from comparisons.scene import rules
+from comparisons.scene.rules import (
+    Count,
+    FieldError,
+    Name,
+    Point,
+    Positive,
+    Vector,
+    apply_rules,
+    exactly_one_of,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamSpec:
+    """A straight, uniform beam.
+
+    The section is a rectangle `width` x `height` (effective shear area 5/6 of the area), or `area` and `second_moment`
+    (effective shear area equal to the area); `shear_area` overrides the effective shear area. The material is isotropic:
+    Young's modulus and either Poisson's ratio or the shear modulus, ``G = E/(2 (1 + nu))``.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``-`` and ``_``.
+    start, end : (float, float)
+        The ends of the undeformed axis [length].
+    youngs_modulus, shear_modulus : float
+        [force/length^2].
+    poissons_ratio : float
+        Between -1 and 1/2.
+    width, height : float
+        Out of plane and in plane [length].
+    area, second_moment, shear_area : float
+        [length^2], [length^4], [length^2].
+    clamped : tuple of {"start", "end"}
+        Clamped ends.
+    elements : int
+        Number of TSM elements.
+    mesh : (int, int)
+        Elements of the solid along and across.
+    solid_clamp : {"rod", "full"}
+        Clamp of the solid: section mean only, or both displacements of the whole edge.
+    material : {"st-venant-kirchhoff", "biot-linear"}
+        Law of the solid.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    start: Vector
+    end: Vector
+    youngs_modulus: Positive
+    poissons_ratio: Annotated[float, rules.poissons_ratio] | None = None
+    shear_modulus: Positive | None = None
+    width: Positive | None = None
+    height: Positive | None = None
+    area: Positive | None = None
+    second_moment: Positive | None = None
+    shear_area: Positive | None = None
+    clamped: Annotated[tuple[str, ...], rules.ends] = ("start",)
+    elements: Count = 20
+    mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
+    solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
+    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear")] = "st-venant-kirchhoff"
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        exactly_one_of(vars(self), (("poissons_ratio",), ("shear_modulus",)))
+        exactly_one_of(vars(self), (("width", "height"), ("area", "second_moment")))
+        if not 0.0 < self.length < math.inf:
+            raise FieldError("end", self.end, "must differ from start, at a finite distance")
+        for stiffness in ("EA", "GA", "EI"):
+            if not 0.0 < getattr(self, stiffness) < math.inf:
+                raise FieldError(
+                    "youngs_modulus", self.youngs_modulus, f"{stiffness} is out of floating-point range"
+                )
+
+    @property
+    def length(self) -> float:
+        """Length of the undeformed axis."""
+        return math.dist(self.start, self.end)
+
+    @property
+    def direction(self) -> Point:
+        """Unit vector from start to end."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        return (x1 - x0) / self.length, (y1 - y0) / self.length
+
+    @property
+    def EA(self) -> float:
+        """Stretching stiffness [force]."""
+        return self.youngs_modulus * self.cross_section[0]
+
+    @property
+    def GA(self) -> float:
+        """Shear stiffness G A_e [force]."""
+        G = self.shear_modulus or self.youngs_modulus / (2.0 * (1.0 + (self.poissons_ratio or 0.0)))
+        return G * self.cross_section[2]
+
+    @property
+    def EI(self) -> float:
+        """Bending stiffness [force length^2]."""
+        return self.youngs_modulus * self.cross_section[1]
+
+    @property
+    def cross_section(self) -> tuple[float, float, float]:
+        """Area, second moment of area and effective shear area."""
+        if self.width and self.height:
+            A, inertia, kappa = self.width * self.height, self.width * self.height**3 / 12.0, 5.0 / 6.0
+        else:
+            A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
+        return A, inertia, self.shear_area or kappa * A
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinSpec:
+    """A frictionless point on a prescribed path, traversed at constant speed by the load parameter.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``-`` and ``_``.
+    start, displacement : (float, float)
+        A straight path [length].
+    path : tuple of (float, float)
+        A polyline [length], instead of `start` and `displacement`.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    start: Vector | None = None
+    displacement: Vector | None = None
+    path: Annotated[tuple[Point, ...], rules.polyline] | None = None
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
+        if self.displacement is not None and self.points[0] == self.points[1]:
+            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
+        if not all(math.isfinite(value) for point in self.points for value in point):
+            raise FieldError("displacement", self.displacement, "must end at a finite point")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The path's points."""
+        if self.start is None or self.displacement is None:
+            return self.path or ()
+        (x, y), (dx, dy) = self.start, self.displacement
+        return (x, y), (x + dx, y + dy)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """The load parameters of the path's inner points."""
+        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
+        return tuple(math.fsum(lengths[:i]) / math.fsum(lengths) for i in range(1, len(lengths)))
+
+    def position(self, load_parameter: float) -> Point:
+        """Return the point at the fraction `load_parameter` of the path's length."""
+        segments = [(a, b, math.dist(a, b)) for a, b in pairwise(self.points)]
+        ahead = load_parameter * math.fsum(length for _, _, length in segments)
+        for start, end, length in segments:
+            if ahead <= length:
+                u = ahead / length
+                return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
+            ahead -= length
+        return self.points[-1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactSpec:
+    """A frictionless contact of a node with a beam.
+
+    Parameters
+    ----------
+    node : str
+        A pin's name, or a beam's end as ``upper.end``.
+    beam : str
+        The beam touched.
+    side : {"right", "left"}
+        Side of the beam's direction, start to end, from which the node comes.
+    surface : {"axis", "face"}
+        The beam's axis, or its face at half the height.
+    penalty : float
+        Penalty stiffness of the solid model [force/length]; automatic if not given.
+    """
+
+    node: Annotated[str, rules.text]
+    beam: Name
+    side: Annotated[str, rules.choice("right", "left")]
+    surface: Annotated[str, rules.choice("axis", "face")] = "axis"
+    penalty: Positive | None = None
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+
+    @property
+    def pair(self) -> str:
+        """Name of the pair, ``node->beam``."""
+        return f"{self.node}->{self.beam}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Beams, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``-`` and ``_``.
+    units : str
+        Units of force and length, as ``"N, m"``.
+    load_parameters : int
+        Number n of load parameters.
+    beams, pins, contacts : tuple of BeamSpec, PinSpec, ContactSpec
+        At least one of each.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    units: Annotated[str, rules.units] = "N, m"
+    load_parameters: Count
+    beams: Annotated[tuple[BeamSpec, ...], rules.records(BeamSpec)]
+    pins: Annotated[tuple[PinSpec, ...], rules.records(PinSpec)]
+    contacts: Annotated[tuple[ContactSpec, ...], rules.records(ContactSpec)]
+
+    def __post_init__(self) -> None:
+        from comparisons.scene.consistency import check_scene
+
+        apply_rules(self)
+        check_scene(self)
+
+    def beam(self, name: str) -> BeamSpec:
+        """Return the beam called `name`."""
+        return next(beam for beam in self.beams if beam.name == name)
+
+    def pin(self, name: str) -> PinSpec:
+        """Return the pin called `name`."""
+        return next(pin for pin in self.pins if pin.name == name)
+
+    def offset(self, contact: ContactSpec) -> float:
+        """Distance of the contact surface from the axis."""
+        height = self.beam(contact.beam).height
+        return 0.0 if contact.surface == "axis" or height is None else height / 2.0
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """The load parameters k/n, k = 1..n."""
+        n = self.load_parameters
+        return tuple(k / n for k in range(1, n + 1))

@@ -1,0 +1,235 @@
+"""Rules for single values of a scene: each returns the value in its stored form or raises its sentence.
+
+A record names the rule of a field in the field's type, ``Annotated[float, positive]``; `apply_rules` applies them.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from functools import cache
+from itertools import pairwise
+from typing import Annotated, Any, get_args, get_type_hints
+
+Point = tuple[float, float]
+Rule = Callable[[object], object]
+
+
+class RuleError(ValueError):
+    """The sentence of a rule that a value breaks."""
+
+
+class FieldError(ValueError):
+    """A value of a record breaks a rule: ``KEY = VALUE: RULE`` in one line.
+
+    Parameters
+    ----------
+    key : str
+        The field, with its place in the scene where that is known (``beam[0].height``).
+    value : object
+        The value found; `MISSING` where there is none.
+    rule : str
+        The sentence that the value breaks.
+    """
+
+    def __init__(self, key: str, value: object, rule: str) -> None:
+        super().__init__(f"{key} = {shown(value)}: {rule}")
+        self.key, self.value, self.rule = key, value, rule
+
+    def within(self, prefix: str) -> "FieldError":
+        """Return the same error with `prefix` before its key."""
+        return FieldError(prefix + self.key, self.value, self.rule)
+
+
+class Missing:
+    """The value of a key that is not there."""
+
+
+MISSING = Missing()
+
+
+def shown(value: object) -> str:
+    """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
+    from comparisons.scene.toml import toml_value
+
+    text = "(missing)" if value is MISSING else " ".join(toml_value(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+@cache
+def _rules(kind: type) -> dict[str, Rule]:
+    """Return the rule of every field, the first annotation of its type."""
+    hints = get_type_hints(kind, include_extras=True).items()
+    return {
+        name: next(part for part in (hint, *get_args(hint)) if hasattr(part, "__metadata__")).__metadata__[0]
+        for name, hint in hints
+    }
+
+
+def apply_rules(record: Any) -> None:
+    """Check every field of a frozen record against its rule and store the value in its stored form.
+
+    Raises
+    ------
+    FieldError
+        For the first field that breaks its rule.
+    """
+    rules = _rules(record.__class__)
+    for item in fields(record):
+        value = getattr(record, item.name)
+        if value is None and item.default is None:
+            continue
+        try:
+            object.__setattr__(record, item.name, rules[item.name](value))
+        except RuleError as error:
+            raise FieldError(item.name, value, str(error)) from None
+
+
+def number(value: object) -> float:
+    """Accept a finite number; a truth value is not a number."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise RuleError("must be a number")
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise RuleError("must be a finite number")
+    return result
+
+
+def positive(value: object) -> float:
+    """Accept a finite number above zero."""
+    result = number(value)
+    if result <= 0.0:
+        raise RuleError("must be positive")
+    return result
+
+
+def poissons_ratio(value: object) -> float:
+    """Accept Poisson's ratio of an isotropic solid, between -1 and 1/2."""
+    result = number(value)
+    if not -1.0 < result < 0.5:
+        raise RuleError("must lie between -1 and 0.5, both excluded")
+    return result
+
+
+def whole_number(value: object, largest: int = 100_000) -> int:
+    """Accept a whole number from 1 to `largest`."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise RuleError("must be a whole number")
+    if not 1 <= value <= largest:
+        raise RuleError(f"must lie between 1 and {largest}")
+    return value
+
+
+def sequence(value: object) -> tuple[object, ...]:
+    """Accept a list, kept as a tuple."""
+    if not isinstance(value, list | tuple):
+        raise RuleError("must be a list")
+    return tuple(value)
+
+
+def mesh(value: object) -> tuple[int, int]:
+    """Accept the numbers of elements along and across a solid strip."""
+    items = sequence(value)
+    if len(items) != 2:
+        raise RuleError("must be [elements along, elements across]")
+    along, across = (whole_number(item, 100_000) for item in items)
+    return along, across
+
+
+def point(value: object) -> Point:
+    """Accept a point or vector [x, y] of the plane."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise RuleError("must be two numbers [x, y]")
+    x, y = (number(item) for item in value)
+    return x, y
+
+
+def polyline(value: object) -> tuple[Point, ...]:
+    """Accept at least two points, no two consecutive ones equal."""
+    points = tuple(point(item) for item in sequence(value))
+    if len(points) < 2:
+        raise RuleError("must have at least two points")
+    if any(a == b for a, b in pairwise(points)):
+        raise RuleError("must move: two consecutive points are equal")
+    return points
+
+
+def text(value: object) -> str:
+    """Accept a printable text that is not empty."""
+    if not isinstance(value, str):
+        raise RuleError("must be a text")
+    if not value.strip() or not value.isprintable():
+        raise RuleError("must be a printable text, not empty")
+    return value
+
+
+def name(value: object) -> str:
+    """Accept a name that can stand in a reference (``upper.end``, ``pin->cantilever``) and in a file name."""
+    result = text(value)
+    if not all(c.isalnum() or c in "-_" for c in result):
+        raise RuleError("must consist of letters, digits, '-' and '_'")
+    return result
+
+
+def units(value: object) -> str:
+    """Accept the unit of force and the unit of length, as ``N, m``."""
+    result = text(value)
+    if len(result.split(",")) != 2 or not all(part.strip() for part in result.split(",")):
+        raise RuleError('must be the units of force and of length, as "N, m"')
+    return result
+
+
+def choice(*options: str) -> Rule:
+    """Return the rule: one of `options`."""
+
+    def rule(value: object) -> str:
+        if not isinstance(value, str) or value not in options:
+            raise RuleError("must be one of " + ", ".join(f'"{option}"' for option in options))
+        return value
+
+    return rule
+
+
+def ends(value: object) -> tuple[str, ...]:
+    """Accept one or both ends of a beam."""
+    items = sequence(value)
+    if not items or len(set(map(repr, items))) != len(items):
+        raise RuleError('must be ["start"], ["end"] or ["start", "end"]')
+    if any(item not in ("start", "end") for item in items):
+        raise RuleError('must be ["start"], ["end"] or ["start", "end"]')
+    return tuple(str(item) for item in items)
+
+
+def records(kind: type) -> Rule:
+    """Return the rule: a list, not empty, of records of one kind."""
+
+    def rule(value: object) -> tuple[object, ...]:
+        items = sequence(value)
+        if not items or not all(isinstance(item, kind) for item in items):
+            raise RuleError(f"must be at least one {kind.__name__}")
+        return items
+
+    return rule
+
+
+def exactly_one_of(given: Mapping[str, object], groups: tuple[tuple[str, ...], ...]) -> None:
+    """Raise unless exactly one of `groups` of keys is given, and that one whole (None means not given)."""
+    wanted = " or ".join(" and ".join(group) for group in groups)
+    present = [group for group in groups if any(given[item] is not None for item in group)]
+    if not present:
+        raise FieldError(groups[0][0], MISSING, f"give {wanted}")
+    if len(present) > 1:
+        extra = next(item for item in present[1] if given[item] is not None)
+        raise FieldError(extra, given[extra], f"give either {wanted}, not both")
+    for item in present[0]:
+        if given[item] is None:
+            raise FieldError(item, MISSING, f"must be given, {' and '.join(present[0])} belong together")
+
+
+Number = Annotated[float, number]
+Positive = Annotated[float, positive]
+Count = Annotated[int, whole_number]
+Vector = Annotated[Point, point]
+Name = Annotated[str, name]

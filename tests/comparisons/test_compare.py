@@ -1,0 +1,82 @@
+"""The whole comparison on a short path."""
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from comparisons.cli import main
+from comparisons.compare import PAPER, RUNS, compare
+from comparisons.options import ModelError
+from comparisons.scene import load_scene, read_scene, to_toml
+
+KS = replace(load_scene("ks-cantilever"), load_parameters=10)
+FILES = {
+    "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "tsm/tsm.pvd", "solid/solid.pvd",
+}  # fmt: skip
+
+
+def test_compare_writes_every_file_and_the_same_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene, out = tmp_path / "short.toml", tmp_path / "out"
+    scene.write_text(to_toml(KS))
+    assert main(["compare", str(scene), "--out", str(out)]) == 0
+    printed, progress = capsys.readouterr()
+    assert {
+        str(path.relative_to(out)) for path in out.rglob("*") if path.suffix != ".vtu" and path.is_file()
+    } == FILES
+    assert len(list(out.rglob("*.vtu"))) == 40
+    for name in FILES:
+        assert str(out / name) in printed
+    for number, run in enumerate(RUNS, 1):
+        assert f"[{number}/{len(RUNS)}] {run.label}: " in progress
+        assert f"\n{run.label} " in printed
+    data = json.loads((out / "summary.json").read_text())
+    assert set(data["files"]) == FILES
+    assert read_scene(data["scene_file"], "summary") == KS
+    by_label = {run["label"]: run for run in data["runs"]}
+    rows = {row["label"]: row for row in csv.DictReader((out / "table.csv").read_text().splitlines())}
+    assert set(by_label) == set(rows) == {run.label for run in RUNS}
+    for label, run in by_label.items():
+        assert run["status"] == "COMPLETED"
+        if run["errors"] is not None:
+            assert run["errors"]["contact_force"] == float(rows[label]["error_contact_force"])
+    force = {label: run["errors"]["contact_force_end"] for label, run in by_label.items() if run["errors"]}
+    assert [force[run.label] < bar for run, bar in zip(PAPER, (1e-2, 3e-3, 6e-4), strict=True)] == [True] * 3
+    assert force["TSM mixed, 10 elements"] < 1e-4
+    assert force["TSM mixed, 20 elements"] < 5e-6
+    assert force["solid"] < 6e-3
+
+
+def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None:
+    beam = replace(KS.beams[0], width=None, height=None, area=4e-4, second_moment=4e-8 / 3.0)
+    lines: list[str] = []
+    found = compare(replace(KS, beams=(beam,), load_parameters=2), tmp_path, lines.append)
+    assert "solid" not in {row.label for row in found.rows}
+    assert any("solid: left out, solid: the solid model needs" in line for line in lines)
+    assert any(line.startswith("side-by-side.png: left out") for line in lines)
+    assert not (tmp_path / "solid").exists()
+    assert (tmp_path / "tsm" / "tsm.pvd").is_file()
+
+
+def test_a_run_that_stops_is_named_and_the_rest_goes_on(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pin = replace(KS.pins[0], start=(0.9, 0.0), displacement=(0.0, 0.6))
+    scene = tmp_path / "slip.toml"
+    scene.write_text(to_toml(replace(KS, pins=(pin,), load_parameters=4)))
+    assert main(["compare", str(scene), "--out", str(tmp_path / "out")]) == 3
+    printed, progress = capsys.readouterr()
+    assert "crossval: solid: LOST_CONTACT" in progress
+    assert "solid (LOST_CONTACT)" in printed
+    assert (tmp_path / "out" / "summary.json").is_file()
+
+
+def test_without_the_reference_nothing_is_computed(tmp_path: Path) -> None:
+    both = replace(KS.beams[0], clamped=("start", "end"))
+    with pytest.raises(ModelError, match="clamp one end"):
+        compare(replace(KS, beams=(both,)), tmp_path / "out", print)
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,171 @@
+"""Every model on the same scene, in every position of the plane."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.models import MODELS, solve
+from comparisons.options import OPTIONS, ModelError, Options
+from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
+
+KS = load_scene("ks-cantilever")
+SHORT = replace(KS, load_parameters=8)
+PAIR = "pin->cantilever"
+
+
+def coarse(model: str) -> Options:
+    return {"tsm": Options(elements=10), "solid": Options(mesh=(16, 1))}.get(model, Options())
+
+
+def moved(scene: Scene, *, mirrored: bool, from_end: bool) -> Scene:
+    """The same physics turned, shifted, perhaps mirrored, with the beam perhaps running towards its clamp."""
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]]) @ np.diag([1.0, -1.0 if mirrored else 1.0])
+
+    def place(point: tuple[float, float]) -> tuple[float, float]:
+        x, y = turn @ np.array(point) + np.array([3.0, -2.0])
+        return float(x), float(y)
+
+    beam = scene.beams[0]
+    ends = [place(beam.start), place(beam.end)]
+    start, end = ends[::-1] if from_end else ends
+    new = replace(beam, start=start, end=end, clamped=("end",) if from_end else ("start",))
+    pin = PinSpec(name="pin", path=tuple(place(point) for point in scene.pins[0].points))
+    side = "right" if mirrored == from_end else "left"
+    return replace(scene, beams=(new,), pins=(pin,), contacts=(replace(scene.contacts[0], side=side),))
+
+
+def test_options_are_listed_for_every_model() -> None:
+    assert list(OPTIONS) == list(MODELS)
+
+
+@pytest.mark.parametrize("from_end", [False, True])
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("model", MODELS)
+def test_response_moves_with_the_scene(model: str, mirrored: bool, from_end: bool) -> None:
+    # round-off of positions (about 4 eps) times the stretching stiffness is 1e-12 of EA, 1e-8 of the force
+    here, there = (
+        solve(scene, model, coarse(model))
+        for scene in (SHORT, moved(SHORT, mirrored=mirrored, from_end=from_end))
+    )
+    assert here.completed, here.message
+    assert there.completed, there.message
+    ours, theirs = here.contacts[PAIR], there.contacts[PAIR]
+    arc = 1.0 - theirs.arc_position if from_end else theirs.arc_position
+    sign = -1.0 if mirrored else 1.0
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]]) @ np.diag([1.0, sign])
+    scale = ours.force.max()
+    assert theirs.force == pytest.approx(ours.force, abs=1e-7 * scale)
+    assert arc == pytest.approx(ours.arc_position, abs=1e-7)
+    mine, other = here.supports["cantilever"], there.supports["cantilever"]
+    assert other.moment == pytest.approx(sign * mine.moment, abs=1e-7 * scale)
+    assert other.force == pytest.approx(mine.force @ turn.T, abs=1e-7 * scale)
+    tips = here.tips["cantilever"] @ turn.T + np.array([3.0, -2.0])
+    assert there.tips["cantilever"] == pytest.approx(tips, abs=1e-7)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_axis_line_and_grid_agree_with_tip_and_contact(model: str) -> None:
+    response = solve(SHORT, model, coarse(model))
+    for k in (0, 7):
+        arc, line = response.axis_line("cantilever", k)
+        assert arc[0] == 0.0
+        assert arc[-1] == pytest.approx(1.0)
+        assert line[-1] == pytest.approx(response.tips["cantilever"][k], abs=1e-9)
+        at = response.contacts[PAIR].arc_position[k]
+        touched = [np.interp(at, arc, line[:, i]) for i in range(2)]
+        assert touched == pytest.approx(
+            SHORT.pins[0].position(SHORT.times[k]), abs=1e-3
+        )  # chords of the line
+        grid = response.grid(k)
+        assert grid.points + grid.point_data["displacement"] == pytest.approx(
+            grid.point_data["deformed"], abs=1e-15
+        )
+
+
+def test_rod_and_elastica_give_the_values_of_theory() -> None:
+    scene = replace(KS, load_parameters=4)
+    rod, elastica = solve(scene, "rod"), solve(scene, "elastica")
+    force = [2.971723827275e-04, 1.304991984260e-03, 2.717905910938e-03, 2.288274307175e-03]
+    assert rod.contacts[PAIR].force == pytest.approx(force, rel=1e-11)
+    assert rod.supports["cantilever"].moment[-1] < 0.0
+    assert elastica.contacts[PAIR].force[-1] == pytest.approx(8.18212814018414 * 2.8e-4, rel=1e-12)
+    assert elastica.supports["cantilever"].moment[-1] == pytest.approx(-np.pi * 2.8e-4, rel=1e-12)
+
+
+def test_tsm_section_forces_balance_the_clamp() -> None:
+    response = solve(SHORT, "tsm", Options(elements=10))
+    data, support = response.grid(7).point_data, response.supports["cantilever"]
+    assert data["M"][0] == pytest.approx(-support.moment[7], rel=1e-6)
+    assert np.hypot(data["N"][0], data["V"][0]) == pytest.approx(np.hypot(*support.force[7]), rel=1e-6)
+    assert np.abs(data["M"][-2:]) == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("model", ["tsm", "rod", "elastica"])
+def test_slip_off_leaves_a_straight_beam(model: str) -> None:
+    pin = PinSpec(name="pin", start=(0.9, 0.0), displacement=(0.0, 0.6))
+    response = solve(replace(KS, pins=(pin,), load_parameters=6), model, coarse(model))
+    contact = response.contacts[PAIR]
+    assert response.completed, response.message
+    assert 0.39486 / 0.6 < contact.slip_off <= 4 / 6 + 1e-12
+    assert list(contact.force[-3:]) == pytest.approx([0.0, 0.0, 0.0])
+    assert np.all(np.isnan(contact.arc_position[-3:]))
+    assert response.tips["cantilever"][-1] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
+def test_solid_names_why_it_stopped() -> None:
+    pin = PinSpec(name="pin", start=(0.9, 0.0), displacement=(0.0, 0.6))
+    response = solve(replace(KS, pins=(pin,), load_parameters=6), "solid", Options(mesh=(16, 1)))
+    assert (response.status, response.completed) == ("LOST_CONTACT", False)
+    assert len(response.load_parameter) == 3
+    assert len(response.contacts[PAIR].force) == 3
+
+
+def test_lost_elastica_keeps_what_was_reached() -> None:
+    pin = PinSpec(name="pin", path=((0.5, 0.0), (0.5, 0.5), (-1.5, 0.5)))
+    response = solve(replace(KS, pins=(pin,), load_parameters=5), "elastica")
+    assert (response.status, response.completed) == ("LOST", False)
+    assert np.all(np.isfinite(response.contacts[PAIR].force))
+    assert 0 < len(response.load_parameter) < 5
+
+
+@pytest.mark.parametrize(
+    ("model", "options"),
+    [("rod", Options(elements=3)), ("solid", Options(element="mixed")), ("tsm", Options(mesh=(2, 2)))],
+)
+def test_foreign_options_are_refused(model: str, options: Options) -> None:
+    with pytest.raises(ModelError, match="not an option of this model"):
+        solve(KS, model, options)
+
+
+def test_unknown_model_and_face_under_the_elastica() -> None:
+    with pytest.raises(ModelError, match="model = nosuch: must be one of tsm, solid, rod, elastica"):
+        solve(KS, "nosuch")
+    with pytest.raises(ModelError, match="contact on its axis only"):
+        solve(load_scene("ks-face"), "elastica")
+
+
+def test_double_beam_of_the_paper_by_tsm() -> None:
+    """[P] 4.3 up to depth 0.31, with the forces that theory.md gives for 10 + 10 `mixed` elements."""
+    material = {
+        "youngs_modulus": 2e7,
+        "shear_modulus": 7.142e6,
+        "area": 3e-4,
+        "second_moment": 2.2e-8,
+        "elements": 10,
+    }
+    upper = BeamSpec(name="upper", start=(0.0, 0.0), end=(1.0, 0.0), **material)
+    lower = BeamSpec(name="lower", start=(0.0, -0.2), end=(1.0, -0.2), **material)
+    contacts = [("pin", "upper"), ("pin", "lower"), ("upper.end", "lower")]
+    scene = Scene(
+        name="double-beam",
+        load_parameters=31,
+        beams=(upper, lower),
+        pins=(PinSpec(name="pin", start=(0.8, 0.0), displacement=(0.0, -0.31)),),
+        contacts=tuple(ContactSpec(node=node, beam=beam, side="left") for node, beam in contacts),
+    )
+    response = solve(scene, "tsm")
+    assert response.completed, response.message
+    assert response.contacts["pin->upper"].force[-1] == pytest.approx(1.0040, abs=5e-5)
+    assert response.contacts["upper.end->lower"].force[-1] == pytest.approx(0.2906, abs=5e-5)
+    assert list(response.contacts["upper.end->lower"].force[12:16] > 0.0) == [False, False, True, True]

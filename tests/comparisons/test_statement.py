@@ -1,0 +1,104 @@
+"""JSON, summary, errors and table of a response."""
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.metrics import errors
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.response import Response
+from comparisons.scene import PinSpec, load_scene
+from comparisons.statement import as_json, summary
+from comparisons.table import Row, table_csv, table_text
+
+SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
+PAIR, BEAM = "pin->cantilever", "cantilever"
+
+
+@pytest.fixture(scope="module")
+def rod() -> Response:
+    return solve(SCENE, "rod")
+
+
+@pytest.fixture(scope="module")
+def beams() -> Response:
+    return solve(SCENE, "tsm", Options(elements=5))
+
+
+def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
+    data = json.loads(as_json(beams))
+    assert list(data) == [
+        "status", "model", "scene", "load_parameter", "contacts", "supports", "tips",
+        "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
+    ]  # fmt: skip
+    assert list(data["contacts"][PAIR]) == ["force", "arc_position", "gap"]
+    assert list(data["supports"][BEAM]) == ["moment", "force"]
+    assert list(data["versions"]) == ["python", "numpy", "scipy", "scikit-fem", "tsm-crossval"]
+    assert (data["status"], data["model"], data["scene"]) == ("COMPLETED", "tsm", "ks-cantilever")
+    assert data["contacts"][PAIR]["force"] == list(beams.contacts[PAIR].force)
+    assert np.shape(data["supports"][BEAM]["force"]) == (5, 2)
+    assert np.shape(data["tips"][BEAM]) == (5, 2)
+    assert all(isinstance(count, int) for count in data["newton_iterations"])
+
+
+def test_json_writes_nan_as_null() -> None:
+    pin = PinSpec(name="pin", start=(0.5, -0.1), displacement=(0.0, 0.2))
+    text = as_json(solve(replace(SCENE, pins=(pin,)), "rod"))
+    assert "NaN" not in text
+    assert json.loads(text)["contacts"][PAIR]["arc_position"][0] is None
+    assert json.loads(text)["contacts"][PAIR]["gap"][0] == pytest.approx(0.06)
+
+
+def test_summary_names_state_and_units(rod: Response) -> None:
+    text = summary(rod, "kN, mm")
+    for part in ("ks-cantilever", "rod", "COMPLETED", "0.00228827431 kN", "0.896022098 mm", "kN mm"):
+        assert part in text
+    stopped = replace(rod, load_parameter=np.zeros(0), status="NOT_FINITE", message="no number")
+    assert "NOT_FINITE: no number" in summary(stopped, "N, m")
+
+
+def test_errors_are_relative_to_the_largest_reference(rod: Response) -> None:
+    contact = rod.contacts[PAIR]
+    off = replace(
+        contact, force=contact.force + 0.01 * contact.force.max(), arc_position=contact.arc_position - 0.03
+    )
+    tips = {BEAM: rod.tips[BEAM] + np.array([0.03, 0.04])}
+    found = errors(replace(rod, contacts={PAIR: off}, tips=tips), rod, pair=PAIR, beam=BEAM, length=2.0)
+    assert found.contact_force == pytest.approx(0.01)
+    assert found.contact_force_end == pytest.approx(0.01)
+    assert found.arc_position == pytest.approx(0.015)
+    assert found.tip == pytest.approx(0.025)
+    assert found.clamp_moment == 0.0
+
+
+def test_errors_of_a_stopped_run_are_unknown(rod: Response) -> None:
+    stopped = replace(rod, load_parameter=rod.load_parameter[:2])
+    assert np.isnan(errors(stopped, rod, pair=PAIR, beam=BEAM, length=1.0).contact_force)
+
+
+def test_a_contact_lost_by_one_model_alone_is_no_agreement(rod: Response) -> None:
+    lost = replace(rod.contacts[PAIR], arc_position=np.full(5, np.nan))
+    found = errors(replace(rod, contacts={PAIR: lost}), rod, pair=PAIR, beam=BEAM, length=1.0)
+    assert np.isnan(found.arc_position)
+
+
+def test_table_and_csv_hold_the_same_rows(rod: Response, beams: Response) -> None:
+    found = errors(beams, rod, pair=PAIR, beam=BEAM, length=1.0)
+    stopped = replace(beams, completed=False, status="CUTBACK_FLOOR")
+    rows = [
+        Row(label="beams", response=beams, errors=found),
+        Row(label="stopped", response=stopped, errors=found),
+        Row(label="rod", response=rod, errors=None),
+    ]
+    lines = table_text(rows, "exact rod").splitlines()
+    assert f"{found.contact_force:.1e}" in lines[-3]
+    assert "stopped (CUTBACK_FLOOR)" in lines[-2]
+    assert lines[-1].split()[:4] == ["rod", "4", "-", "-"]
+    assert len({len(line) for line in lines[3:]}) == 1
+    records = list(csv.DictReader(table_csv(rows).splitlines()))
+    assert float(records[0]["error_contact_force"]) == found.contact_force
+    assert records[2]["error_contact_force"] == ""

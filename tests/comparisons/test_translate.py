@@ -1,0 +1,101 @@
+"""What each model is given, and what it refuses to state."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.options import ModelError
+from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
+from comparisons.translate import to_rod, to_solid, to_structure
+
+KS = load_scene("ks-cantilever")
+FACE = load_scene("ks-face")
+
+
+def with_beam(scene: Scene, **changes: object) -> Scene:
+    return replace(scene, beams=(replace(scene.beams[0], **changes),))  # type: ignore[arg-type]
+
+
+def test_structure_of_the_face_scene() -> None:
+    structure = to_structure(FACE, elements=7, element="timoshenko")
+    beam, contact = structure.beams[0], structure.contacts[0]
+    assert (beam.elements, beam.element, contact.offset, contact.side) == (7, "timoshenko", 0.01, "right")
+    assert pytest.approx(5 / 6 * 2.1e4 / 2.6 * 4e-4) == beam.section.GA
+    assert structure.pins[0].path == FACE.pins[0].points
+    assert [(support.beam, support.end) for support in structure.supports] == [("cantilever", "start")]
+
+
+def test_solid_takes_the_scene_or_the_option() -> None:
+    scene = with_beam(FACE, mesh=(30, 4), solid_clamp="full", material="biot-linear")
+    scene = replace(scene, contacts=(replace(scene.contacts[0], penalty=7.0),))
+    problem = to_solid(scene)
+    assert (problem.strip.mesh, problem.strip.clamp, problem.strip.material) == (
+        (30, 4),
+        "full",
+        "biot-linear",
+    )
+    assert (problem.contact.penalty, problem.contact.surface) == (7.0, "face")
+    assert to_solid(scene, mesh=(10, 1)).strip.mesh == (10, 1)
+
+
+def test_solid_finds_nu_from_the_shear_modulus() -> None:
+    scene = with_beam(KS, poissons_ratio=None, shear_modulus=2.1e4 / 2.5)
+    assert to_solid(scene).strip.poissons_ratio == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"width": None, "height": None, "area": 1.0, "second_moment": 1.0}, "needs the width and height"),
+        ({"clamped": ("start", "end")}, "clamps one end"),
+        ({"poissons_ratio": None, "shear_modulus": 1e3}, "needs a Poisson's ratio between"),
+        ({"mesh": (1, 1)}, "needs at least 2 elements along"),
+    ],
+)
+def test_solid_refuses(changes: dict[str, object], reason: str) -> None:
+    with pytest.raises(ModelError, match=reason):
+        to_solid(with_beam(KS, **changes))
+
+
+def test_two_beams_are_for_beams_only() -> None:
+    lower = replace(KS.beams[0], name="lower", start=(0.0, -0.2), end=(1.0, -0.2))
+    tip = ContactSpec(node="lower.end", beam="cantilever", side="right")
+    scene = replace(KS, beams=(*KS.beams, lower), contacts=(*KS.contacts, tip))
+    assert [contact.name for contact in to_structure(scene).contacts] == [
+        "pin->cantilever",
+        "lower.end->cantilever",
+    ]
+    for translate in (to_rod, to_solid):
+        with pytest.raises(ModelError, match="one beam, one pin and one contact"):
+            translate(scene)
+
+
+def test_unknown_element_is_named() -> None:
+    with pytest.raises(ModelError, match=r"element = nosuch: must be one of .*mixed"):
+        to_structure(KS, element="nosuch")
+
+
+@pytest.mark.parametrize("clamped", ["start", "end"])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_rod_frame_has_the_clamp_at_the_origin_and_pushes_up(side: str, clamped: str) -> None:
+    beam = replace(KS.beams[0], start=(1.0, 2.0), end=(1.6, 2.8), clamped=(clamped,))
+    normal = np.array([-0.8, 0.6]) * (1.0 if side == "left" else -1.0)
+    place = np.array([1.3, 2.4]) + 0.1 * normal
+    pin = PinSpec(name="pin", start=tuple(place), displacement=tuple(-0.2 * normal))  # type: ignore[arg-type]
+    contact = replace(KS.contacts[0], side=side)
+    rod = to_rod(replace(KS, beams=(beam,), pins=(pin,), contacts=(contact,), load_parameters=2))
+    assert rod.path == pytest.approx(np.array([[0.5, -0.1], [0.5, 0.0], [0.5, 0.1]]))
+    assert rod.points == pytest.approx(np.array([[0.5, 0.0], [0.5, 0.1]]))
+    assert rod.position(np.array([0.5, -0.1])) == pytest.approx(place)
+    ends = (beam.start, beam.end) if clamped == "start" else (beam.end, beam.start)
+    assert rod.position(np.array([[0.0, 0.0], [1.0, 0.0]])) == pytest.approx(np.array(ends))
+    (rx, ry), (fx, fy) = rod.vector(np.eye(2))
+    assert rod.moment(np.array(1.0)) == pytest.approx(rx * fy - ry * fx)  # of a unit force on a unit arm
+
+
+def test_rod_path_keeps_corners_between_load_parameters() -> None:
+    pin = PinSpec(name="pin", path=((1.0, -0.1), (1.0, 0.2), (0.5, 0.2)))
+    rod = to_rod(replace(KS, pins=(pin,), load_parameters=2))
+    assert rod.path == pytest.approx(np.array([[1.0, -0.1], [1.0, 0.2], [0.9, 0.2], [0.5, 0.2]]))
+    assert list(rod.hits) == [2, 3]

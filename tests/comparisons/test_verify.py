@@ -1,0 +1,94 @@
+"""Every check fails for a response that breaks it, and only then."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.response import ContactHistory, Response, SupportHistory
+from comparisons.scene import load_scene
+from comparisons.verify import CHECK_FAILED, failures, verified
+
+SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
+PAIR, BEAM = "pin->cantilever", "cantilever"
+Change = Callable[[Response], Response]
+
+
+@pytest.fixture(scope="module")
+def good() -> Response:
+    return solve(SCENE, "rod")
+
+
+def with_contact(response: Response, **changes: object) -> Response:
+    contact: ContactHistory = replace(response.contacts[PAIR], **changes)  # type: ignore[arg-type]
+    return replace(response, contacts={PAIR: contact})
+
+
+def with_support(response: Response, **changes: object) -> Response:
+    support: SupportHistory = replace(response.supports[BEAM], **changes)  # type: ignore[arg-type]
+    return replace(response, supports={BEAM: support})
+
+
+def at(values: np.ndarray, k: int, value: float) -> np.ndarray:
+    changed = values.copy()
+    changed[k] = value
+    return changed
+
+
+def without_force(response: Response) -> Response:
+    """What a program reports that lost the contact on the way: no force, the beam straight, no word about it."""
+    arc = np.linspace(0.0, 1.0, 11)
+    straight = np.stack([arc, 0.0 * arc], axis=1)
+    lost = with_contact(response, force=np.zeros(5), arc_position=np.full(5, np.nan), gap=np.full(5, np.nan))
+    lost = with_support(lost, force=np.zeros((5, 2)), moment=np.zeros(5))
+    return replace(lost, axis_line=lambda _, __: (arc, straight))
+
+
+BREAKS: dict[str, tuple[Change, str]] = {
+    "short": (lambda r: replace(r, load_parameter=r.load_parameter[:3]), "3 of 5 load parameters reached"),
+    "other load parameters": (lambda r: replace(r, load_parameter=r.load_parameter * 0.999), "load parameters reached"),
+    "nan force": (lambda r: with_contact(r, force=at(r.contacts[PAIR].force, 2, np.nan)), "force of .* is not finite"),
+    "nan arc": (lambda r: with_contact(r, arc_position=at(r.contacts[PAIR].arc_position, 2, np.nan)), "arc position of"),
+    "inf tip": (lambda r: replace(r, tips={BEAM: at(r.tips[BEAM], 2, np.inf)}), "tip of .* is not finite"),
+    "pull": (lambda r: with_contact(r, force=at(r.contacts[PAIR].force, 2, -1e-9)), "pulls at load parameter 0.6"),
+    "ajar": (lambda r: with_contact(r, gap=at(r.contacts[PAIR].gap, 2, 1e-6)), "open gap at load parameter 0.6"),
+    "wrong compliance": (lambda r: with_contact(r, compliance=1.0), "open gap"),
+    "deep": (
+        lambda r: with_contact(r, compliance=10.0, gap=-10.0 * r.contacts[PAIR].force),
+        "penetration of .* exceeds 1% of the length at load parameter",
+    ),
+    "reaction": (lambda r: with_support(r, force=r.supports[BEAM].force * (1 + 1e-5)), "clamp reaction"),
+    "moment": (lambda r: with_support(r, moment=r.supports[BEAM].moment * (1 + 1e-5)), "clamp moment"),
+    "sign of the moment": (lambda r: with_support(r, moment=-r.supports[BEAM].moment), "clamp moment"),
+    "sign of the reaction": (lambda r: with_support(r, force=-r.supports[BEAM].force), "clamp moment"),
+    "lost contact": (without_force, "open with the node on the far side at load parameter 0.2"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BREAKS)
+def test_a_broken_response_is_not_a_success(good: Response, case: str) -> None:
+    change, reason = BREAKS[case]
+    checked = verified(change(good), SCENE)
+    assert (checked.status, checked.completed) == (CHECK_FAILED, False)
+    assert re.search(reason, checked.message)
+
+
+@pytest.mark.parametrize("scene", ["ks-cantilever", "ks-face"])
+@pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
+def test_true_responses_pass(scene: str, model: str) -> None:
+    short = replace(load_scene(scene), load_parameters=5)
+    options = Options(mesh=(16, 1)) if model == "solid" else Options()
+    assert list(failures(solve(short, model, options), short)) == []
+
+
+def test_slip_off_excuses_a_node_on_the_far_side(good: Response) -> None:
+    assert verified(with_contact(without_force(good), slip_off=0.1), SCENE).completed
+
+
+def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
+    stopped = replace(good, completed=False, status="CUTBACK_FLOOR", load_parameter=good.load_parameter[:2])
+    assert verified(stopped, SCENE) is stopped
