@@ -50,7 +50,7 @@ def solve_rod(scene: Scene, _: Options) -> Response:
         iterations=np.diff(np.cumsum(path.iterations)[local.hits], prepend=0),
         shape=lambda k: path.shape(int(local.hits[k]), POINTS)[:, :2],
     )
-    return _response("rod", scene, local, states, unknowns=4, seconds=seconds)
+    return _response("rod", scene, local, states, unknowns=2, seconds=seconds)
 
 
 def solve_elastica(scene: Scene, _: Options) -> Response:

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from tsm.elements import ELEMENTS, ElementType
 from tsm.elements.beam import Coefficients
@@ -162,17 +160,12 @@ class Model:
 
     def _number_equations(self) -> None:
         count = 3 * len(self.coordinates)
-        neighbours = coo_array(
-            (np.ones(len(self.element_nodes)), self.element_nodes.T), shape=(len(self.coordinates),) * 2
-        )
-        order = reverse_cuthill_mckee((neighbours + neighbours.T).tocsr(), symmetric_mode=True)
-        in_order = (3 * order[:, None] + np.arange(3)).ravel()
         bordered = [
             3 * pair.node + k for pair in self.pairs if pair.node >= 0 and pair.slot < 0 for k in range(2)
         ]
         border_dofs = [dof for dof in dict.fromkeys(bordered) if dof not in self.prescribed]
         aside = {*self.prescribed, *border_dofs}
-        band_dofs = [int(dof) for dof in in_order if dof not in aside]
+        band_dofs = [dof for dof in range(count) if dof not in aside]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
         self.border_dofs = len(border_dofs)

@@ -97,7 +97,7 @@ def test_table_and_csv_hold_the_same_rows(rod: Response, beams: Response) -> Non
     lines = table_text(rows, "exact rod").splitlines()
     assert f"{found.contact_force:.1e}" in lines[-3]
     assert "stopped (CUTBACK_FLOOR)" in lines[-2]
-    assert lines[-1].split()[:4] == ["rod", "4", "-", "-"]
+    assert lines[-1].split()[:4] == ["rod", "2", "-", "-"]
     assert len({len(line) for line in lines[3:]}) == 1
     records = list(csv.DictReader(table_csv(rows).splitlines()))
     assert float(records[0]["error_contact_force"]) == found.contact_force

@@ -123,40 +123,44 @@ def response(
 
 
 def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: Any) -> tuple[Array, Array]:
-    """Gradient and Hessian of ``F . m(phi + b F.m(phi))``, to first order in the slope ``b F.m`` of the load's own dent.
+    """Gradient and Hessian of ``F . m(phi + psi)``, to second order in the slope psi of the load's own dent.
 
-    `m` is the unit normal at the slope angle phi of the unloaded curve and ``b = C'/(2 l0)``, the rotation
-    at a unit force; ``A = F.m``, ``T = F.t``, so that the expression is ``A - b A T``. In the order of `response`.
+    `m` is the unit normal at the slope angle phi of the unloaded curve, ``psi = b F.m`` with ``b = C'/(2 l0)``; with
+    ``A = F.m``, ``T = F.t`` the expression is ``A - b A T - b^2 A^3/2``, whose derivative in b vanishes, as it must, where
+    the force is normal to the loaded curve. In the order of `response`.
     """
     phi, (px, py, pi, pj, ps), h = curve.slope_angle_jet(xi)
     b, db, ddb = (value / (2 * l0) for value in dC)
     c, s = np.cos(phi), np.sin(phi)
     A, T = force[1] * c - force[0] * s, force[0] * c + force[1] * s
-    squares = A * A - T * T
-    by_phi = -T - b * squares
-    # derivatives of by_phi in the force, and of b's slope in both
-    mx, my = -c + 2 * b * (A * s + T * c), -s - 2 * b * (A * c - T * s)
-    sx, sy = -db * (A * c - T * s), -db * (T * c + A * s)
-    bend, twist = -A + 4 * b * A * T, -db * squares
+    bA = b * A
+    by_phi = -T - b * (A * A - T * T) + 1.5 * bA * bA * T
+    by_phi_phi = -A + 4 * bA * T + 1.5 * bA * b * (A * A - 2 * T * T)
+    by_b, by_b_phi = -A * (T + bA * A), T * T - A * A + 3 * bA * A * T
+    # with the force: m = (-s, c), t = (c, s)
+    along, across = -b * A, 1 - b * T - 1.5 * bA * bA
+    fx, fy = along * c - across * s, along * s + across * c
+    along, across = -1 + 2 * b * T + 1.5 * bA * bA, -2 * bA + 3 * bA * b * T
+    mx, my = along * c - across * s, along * s + across * c
+    along, across = -db * A, -db * (T + 3 * bA * A)
+    sx, sy = along * c - across * s, along * s + across * c
+    both, square = -b, -3 * b * bA
+    slid = db * by_b_phi
+    gradient = np.array([by_phi * px, by_phi * py, by_phi * pi, by_phi * pj, fx, fy, by_phi * ps + db * by_b])
     hxx, hxy, hxi, hxj, hxs, hyy, hyi, hyj, hys, hii, hij, his, hjj, hjs, hss = h
-    gradient = np.array(
-        [
-            by_phi * px, by_phi * py, by_phi * pi, by_phi * pj,
-            -s - b * (A * c - T * s), c - b * (T * c + A * s), by_phi * ps - db * A * T,
-        ]
-    )  # fmt: skip
+    bx, by, bi, bj = by_phi_phi * px, by_phi_phi * py, by_phi_phi * pi, by_phi_phi * pj
+    bs = by_phi_phi * ps + slid
     hessian = np.array(
         [
-            bend * px * px + by_phi * hxx, bend * px * py + by_phi * hxy, bend * px * pi + by_phi * hxi,
-            bend * px * pj + by_phi * hxj, px * mx, px * my, (bend * ps + twist) * px + by_phi * hxs,
-            bend * py * py + by_phi * hyy, bend * py * pi + by_phi * hyi,
-            bend * py * pj + by_phi * hyj, py * mx, py * my, (bend * ps + twist) * py + by_phi * hys,
-            bend * pi * pi + by_phi * hii,
-            bend * pi * pj + by_phi * hij, pi * mx, pi * my, (bend * ps + twist) * pi + by_phi * his,
-            bend * pj * pj + by_phi * hjj, pj * mx, pj * my, (bend * ps + twist) * pj + by_phi * hjs,
-            2 * b * c * s, b * (s * s - c * c), ps * mx + sx,
-            -2 * b * c * s, ps * my + sy,
-            (bend * ps + 2 * twist) * ps + by_phi * hss - ddb * A * T,
+            bx * px + by_phi * hxx, bx * py + by_phi * hxy, bx * pi + by_phi * hxi, bx * pj + by_phi * hxj,
+            px * mx, px * my, px * bs + by_phi * hxs,
+            by * py + by_phi * hyy, by * pi + by_phi * hyi, by * pj + by_phi * hyj,
+            py * mx, py * my, py * bs + by_phi * hys,
+            bi * pi + by_phi * hii, bi * pj + by_phi * hij, pi * mx, pi * my, pi * bs + by_phi * his,
+            bj * pj + by_phi * hjj, pj * mx, pj * my, pj * bs + by_phi * hjs,
+            (square * s - 2 * both * c) * s, both * (c * c - s * s) - square * c * s, ps * mx + sx,
+            (square * c + 2 * both * s) * c, ps * my + sy,
+            (bs + slid) * ps + by_phi * hss + ddb * by_b - db * db * A * A * A,
         ]
     )  # fmt: skip
     return gradient, hessian

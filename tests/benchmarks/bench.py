@@ -1,0 +1,172 @@
+"""Speed as ratios within one run, one thread. `make bench` writes them to bench.json; the ratios gate, times inform."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import platform
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tsm
+from comparisons.scene import load_scene
+from comparisons.translate import to_solid, to_structure
+from tsm.model import Model
+from tsm.system import Assembler
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A measured ratio and its bar."""
+
+    name: str
+    value: float
+    bar: float
+    at_least: bool
+
+    @property
+    def met(self) -> bool:
+        return self.value >= self.bar if self.at_least else self.value <= self.bar
+
+    def __str__(self) -> str:
+        relation = ">=" if self.at_least else "<="
+        return f"{'met    ' if self.met else 'NOT MET'}  {self.name}: {self.value:.3g} (bar {relation} {self.bar:g})"
+
+
+def seconds(*actions: Callable[[], Any], repeats: int = 7) -> list[float]:
+    """Median seconds of each action, taken in turn so that a slow moment of the machine meets all of them."""
+    for action in actions:
+        action()
+    taken: list[list[float]] = [[] for _ in actions]
+    for _ in range(repeats):
+        for row, action in zip(taken, actions, strict=True):
+            begin = time.perf_counter()
+            action()
+            row.append(time.perf_counter() - begin)
+    return [statistics.median(row) for row in taken]
+
+
+def beams_against_solid(gates: list[Gate], times: dict[str, float]) -> None:
+    import fem_reference
+
+    scene = load_scene("ks-cantilever")
+    structure, solid = to_structure(scene, elements=10), to_solid(scene, mesh=(50, 2))
+    t = np.arange(1, 51) / 50
+    results: dict[str, Any] = {}
+
+    def run_beams() -> None:
+        results["beams"] = tsm.solve(structure, t)
+
+    def run_solid() -> None:
+        results["solid"] = fem_reference.solve(solid, t)
+
+    beams, reference = seconds(run_beams, run_solid)
+    times |= {"tsm mixed 10, 50 load parameters": beams, "solid 50x2, 50 load parameters": reference}
+    gates.append(Gate("solid 50x2 over TSM mixed 10, seconds", reference / beams, 40, True))
+    for name, result in results.items():
+        mean = float(np.mean(result.newton_iterations))
+        gates.append(Gate(f"Newton iterations per load parameter, {name}", mean, 5, False))
+        gates.append(Gate(f"cut-backs, {name}", result.cutbacks, 0, False))
+
+
+def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
+    """Exponent of the cost of one iteration over the elements, largest chord from 200 to 2000."""
+    scene = load_scene("ks-cantilever")
+    actions = []
+    for elements in (200, 2000):
+        model = Model(to_structure(scene, elements=elements))
+        result = tsm.solve(model.structure, np.array([0.1]))
+        assembler, state = Assembler(model), result.equilibria[-1].state
+
+        def iterate(assembler: Assembler = assembler, state: Any = state) -> None:
+            for _ in range(20):
+                assembler.solve(assembler.linearise(state))
+
+        actions.append(iterate)
+    few, many = seconds(*actions)
+    times |= {"20 iterations, 200 elements": few, "20 iterations, 2000 elements": many}
+    gates.append(
+        Gate(
+            "exponent of the cost per iteration, 200 to 2000 elements",
+            float(np.log10(many / few)),
+            1.1,
+            False,
+        )
+    )
+
+
+def assembly(gates: list[Gate], times: dict[str, float]) -> None:
+    from fem_reference.model import build
+
+    path = Path(__file__).parents[1] / "fem_reference" / "bilinear_reference.py"
+    spec = importlib.util.spec_from_file_location("bilinear_reference", path)
+    assert spec is not None
+    assert spec.loader is not None
+    forms = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(forms)
+    solid = to_solid(load_scene("ks-cantilever"), mesh=(50, 2))
+    model = build(solid)
+    mesh = model.mesh
+    u = 1e-3 * np.random.default_rng(0).standard_normal(mesh.nodes.shape)
+    E, nu = solid.strip.youngs_modulus, solid.strip.poissons_ratio
+    lam, mu = E * nu / (1 - nu**2), E / (2 * (1 + nu))
+    basis = forms.vector_basis(mesh.nodes, mesh.cells)
+
+    def batched() -> None:
+        model.internal_force(u)
+        model.solid_stiffness(u)
+
+    def bilinear() -> None:
+        forms.tangent_and_residual(basis, u.ravel(), lam, mu, solid.strip.width)
+
+    ours, theirs = seconds(batched, bilinear)
+    times |= {"tangent + residual 50x2, batched": ours, "tangent + residual 50x2, BilinearForm": theirs}
+    gates.append(Gate("BilinearForm over batched products, 50x2", theirs / ours, 15, True))
+
+
+def import_time(gates: list[Gate], times: dict[str, float]) -> None:
+    def load() -> None:
+        subprocess.run([sys.executable, "-c", "import tsm"], check=True)
+
+    def nothing() -> None:
+        subprocess.run([sys.executable, "-c", "pass"], check=True)
+
+    ours, bare = seconds(load, nothing)
+    times["import tsm"] = ours - bare
+    gates.append(Gate("seconds to import tsm", ours - bare, 0.5, False))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("bench.json"))
+    out = parser.parse_args().out
+    gates: list[Gate] = []
+    times: dict[str, float] = {}
+    for part in (beams_against_solid, linear_cost, assembly, import_time):
+        part(gates, times)
+    for gate in gates:
+        print(gate)
+    for name, value in times.items():
+        print(f"         {name}: {1e3 * value:.3g} ms")
+    record = {
+        "machine": platform.platform(),
+        "python": platform.python_version(),
+        "gates": [vars(gate) | {"met": gate.met} for gate in gates],
+        "seconds": times,
+    }
+    part = out.with_name(out.name + ".part")
+    part.write_text(json.dumps(record, indent=1) + "\n")
+    part.replace(out)
+
+
+if __name__ == "__main__":
+    main()

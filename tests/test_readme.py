@@ -1,0 +1,58 @@
+"""Every command and snippet of the README runs."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from comparisons.cli import main
+from comparisons.scene import load_scene
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
+COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line]
+
+
+@pytest.mark.parametrize("line", [line for line in COMMANDS if line.startswith("crossval")])
+def test_crossval_commands(line, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(line.split()[1:]) == 0
+    out = capsys.readouterr().out
+    assert out
+    if "--json -" in line:
+        assert json.loads(out)["status"] == "COMPLETED"
+
+
+def test_make_targets_exist():
+    targets = re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    named = set(re.findall(r"(?:^|`)make ([\w-]+)", README, re.MULTILINE))
+    assert {"run", "test", "test-all", "bench"} <= named <= set(targets)
+
+
+def test_python_snippet():
+    snippet = next(text for kind, text in BLOCKS if kind == "python")
+    run = subprocess.run([sys.executable, "-c", snippet], capture_output=True, text=True, check=True)
+    assert float(run.stdout) == pytest.approx(2.288274307175e-03, rel=1e-4)
+
+
+@pytest.mark.parametrize("model", ["tsm", "solid", "rod"])
+def test_scene_snippet(model, tmp_path, capsys):
+    scene = tmp_path / "mine.toml"
+    scene.write_text(next(text for kind, text in BLOCKS if kind == "toml"))
+    assert main(["solve", str(scene), "--model", model]) == 0
+    assert "COMPLETED" in capsys.readouterr().out
+    scene.write_text(scene.read_text().replace("height = 0.01", "height = -0.01"))
+    assert main(["solve", str(scene), "--model", model]) == 2
+    assert "beam[0].height = -0.01: must be positive" in capsys.readouterr().err
+
+
+def test_pictures_are_there():
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", README):
+        assert (ROOT / picture).is_file()
+    assert load_scene("ks-cantilever").name == "ks-cantilever"
