@@ -1,12 +1,13 @@
 """Planar beams by the tangent stiffness method with frictionless node-element contact."""
 
+from tsm.arc_length import trace
 from tsm.elements import ELEMENTS
 from tsm.events import Event, EventKind
 from tsm.result import ContactHistory, Result, SupportHistory
 from tsm.settings import Settings
 from tsm.solve import SolveError, march, solve
 from tsm.status import Status
-from tsm.structure import Beam, ContactPair, Pin, Section, Structure, Support
+from tsm.structure import Beam, ContactPair, Load, Pin, Section, Structure, Support
 
 __all__ = [
     "ELEMENTS",
@@ -15,6 +16,7 @@ __all__ = [
     "ContactPair",
     "Event",
     "EventKind",
+    "Load",
     "Pin",
     "Result",
     "Section",
@@ -26,4 +28,5 @@ __all__ = [
     "SupportHistory",
     "march",
     "solve",
+    "trace",
 ]

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements.curve import Curve
+from tsm.elements.mixed_contact import cross_compliance
 from tsm.elements.properties import Array
 from tsm.model import BeamModel, Model, PairModel
 from tsm.state import State, Touch
@@ -85,12 +86,13 @@ def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> To
     return Touch(element=element, xi=min(max(xi, 0.0), 1.0), force=touch.force)
 
 
-def project(model: Model, pair: PairModel, q: Array, load_parameter: float) -> Projection:
-    """Closest point of the deflected axis, unloaded by this node.
+def project(model: Model, pair: PairModel, state: State) -> Projection:
+    """Closest point of the deflected axis, with the dents of the contacts that are closed.
 
     The chords give the owner, Newton's method on the owner's curve the point.
     """
-    node = node_position(model, pair, q, load_parameter)
+    q = state.q
+    node = node_position(model, pair, q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, q, node)
     for _ in range(20):
         rx, ry, curve = _lever(model, element, q, node)
@@ -101,6 +103,10 @@ def project(model: Model, pair: PairModel, q: Array, load_parameter: float) -> P
         element, xi = slide(pair.target, element, xi - step)
         if abs(step) < 1e-14:
             break
+    for other, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is not None and touch.element == element and other.slot >= 0:
+            dent = cross_compliance(model.element[element], xi, touch.xi)[0]
+            px, py = px + dent * touch.force[0], py + dent * touch.force[1]
     height = (py * tx - px * ty) / math.hypot(tx, ty)
     local = element - pair.target.first + xi
     beyond = max(local - pair.target.beam.elements, -local, 0.0) * model.element[element].l0

@@ -5,6 +5,7 @@ touch         the gap of an open pair falls below zero, its node on the stated s
 release       the force of a closed pair falls below zero
 slip-off      the position of a closed pair leaves the beam past an end
 pass-through  the owner of a closed pair changes from an element to its neighbour
+limit-point   the load parameter turns back, under arc-length control
 ============= ==============================================================================
 
 The first three change the set of closed contacts. Each has a margin, positive before and negative after, and
@@ -34,6 +35,7 @@ class EventKind(Enum):
     RELEASE = "release"
     SLIP_OFF = "slip-off"
     PASS_THROUGH = "pass-through"
+    LIMIT_POINT = "limit-point"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +56,8 @@ class Event:
         Distance along the undeformed axis [length].
     force : float
         Contact force, before the event.
+    released : float
+        Strain energy set free by the jump that follows a slip-off.
     """
 
     kind: EventKind
@@ -62,6 +66,7 @@ class Event:
     element: int
     arc_position: float
     force: float
+    released: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +105,7 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
         elif state.armed[k]:
-            seen = project(model, pair, state.q, state.load_parameter)
+            seen = project(model, pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length
             found.append(Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0))
     return found

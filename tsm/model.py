@@ -103,19 +103,28 @@ class Model:
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
         self.beams: dict[str, BeamModel] = {}
-        coordinates = []
-        elements = nodes = 0
+        coordinates: list[tuple[float, float]] = []
+        ends: dict[tuple[float, float], int] = {}
+        elements = 0
         for beam in beams:
-            own = np.arange(nodes, nodes + beam.elements + 1)
-            self.beams[beam.name] = BeamModel(beam=beam, first=elements, nodes=own)
-            part = np.linspace(0, 1, beam.elements + 1)[:, None]
-            coordinates.append((1 - part) * np.array(beam.start) + part * np.array(beam.end))
+            nodes = []
+            for k in range(beam.elements + 1):
+                part = k / beam.elements
+                x, y = ((1 - part) * a + part * b for a, b in zip(beam.start, beam.end, strict=True))
+                at_end = k in {0, beam.elements}
+                node = ends.get((x, y), len(coordinates)) if at_end else len(coordinates)
+                if at_end:
+                    ends[x, y] = node
+                if node == len(coordinates):
+                    coordinates.append((x, y))
+                nodes.append(node)
+            self.beams[beam.name] = BeamModel(beam=beam, first=elements, nodes=np.array(nodes))
             elements += beam.elements
-            nodes += beam.elements + 1
-        self.coordinates = np.concatenate(coordinates)
+        self.coordinates = np.array(coordinates)
         self.element_nodes = np.concatenate(
             [np.stack([beam.nodes[:-1], beam.nodes[1:]], axis=1) for beam in self.beams.values()]
         )
+        self.joined = len(coordinates) < elements + len(beams)
         self.dofs = (3 * self.element_nodes[:, :, None] + np.arange(3)).reshape(-1, 6).T.copy()
         self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
 
@@ -127,9 +136,17 @@ class Model:
             self.support_node[f"{support.beam}.{support.end}"] = node
             for k, value in enumerate((support.ux, support.uy, support.rotation)):
                 if value is not None:
+                    if self.prescribed.get(3 * node + k, value) != value:
+                        raise ValueError(
+                            f"Support({support.beam}.{support.end}): contradicts another at the joint"
+                        )
                     self.prescribed[3 * node + k] = value
         self.fixed = np.array(sorted(self.prescribed), dtype=int)
         self.fixed_values = np.array([self.prescribed[dof] for dof in self.fixed])
+        self.load = np.zeros(3 * len(self.coordinates))
+        for load in structure.loads:
+            node = self.end_node(f"{load.beam}.{load.end}")
+            self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
 
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""
@@ -165,7 +182,9 @@ class Model:
         ]
         border_dofs = [dof for dof in dict.fromkeys(bordered) if dof not in self.prescribed]
         aside = {*self.prescribed, *border_dofs}
-        band_dofs = [dof for dof in range(count) if dof not in aside]
+        band_dofs = [
+            3 * node + k for node in self._node_order() for k in range(3) if 3 * node + k not in aside
+        ]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
         self.border_dofs = len(border_dofs)
@@ -176,6 +195,18 @@ class Model:
         self.equation = np.full(count, self.equations)
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]
+
+    def _node_order(self) -> list[int]:
+        """Order of the nodes with a small bandwidth; along the beams where none are joined."""
+        if not self.joined:
+            return list(range(len(self.coordinates)))
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+        shape = (len(self.coordinates),) * 2
+        near = coo_array((np.ones(len(self.element_nodes)), tuple(self.element_nodes.T)), shape=shape)
+        order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
+        return order
 
     @property
     def unknowns(self) -> int:

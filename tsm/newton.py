@@ -77,16 +77,18 @@ class Newton:
         """Iterate from a start to equilibrium at the start's load parameter, under nodal forces if given."""
         state = start
         residuals: list[float] = []
+        owners: list[tuple[int, ...]] = []
         for iteration in range(self.max_iterations + 1):
             system = self.assembler.linearise(state, load)
             residuals.append(self.norm(system))
             status = None
+            owners.append(tuple(touch.element for touch in state.touches if touch is not None))
             if not np.isfinite(residuals[-1]):
                 status = Status.NOT_FINITE
-            elif self._converged(residuals, system):
-                status = Status.CONVERGED
+            elif self.converged(residuals, system):
+                status = Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
             elif iteration == self.max_iterations:
-                status = Status.ITERATION_LIMIT
+                status = Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
             step = self.assembler.solve(system) if status is None else None
             if step is None:
                 return Equilibrium(
@@ -96,16 +98,18 @@ class Newton:
                     residuals=tuple(residuals),
                     system=system,
                 )
-            state = self.update(state, *step)
+            state = self.update(state, step[:, 0])
         raise AssertionError("the last iteration returns")
 
-    def _converged(self, residuals: list[float], system: Linearisation) -> bool:
+    def converged(self, residuals: list[float], system: Linearisation) -> bool:
+        """Whether the last residual is small enough, or the last two are round-off."""
         noise = max(self.noise, min(system.noise / self.model.force_scale, _CRITICAL))
         return residuals[-1] <= self.tolerance or (len(residuals) > 1 and max(residuals[-2:]) <= noise)
 
-    def update(self, state: State, dq: Array, dz: Array) -> State:
+    def update(self, state: State, step: Array) -> State:
         """State after a step, shortened so that no node and no contact moves too far at once."""
         model = self.model
+        dq, dz = step[: model.equations], step[model.equations :]
         largest = float(np.abs(dq * self.per_limit).max(initial=0.0))
         if len(dz):
             largest = max(largest, float(np.abs(dz[2::3]).max()) / (0.3 * model.length))
@@ -131,3 +135,9 @@ class Newton:
         dFx, dFy, ds = dz[pair.slot : pair.slot + 3]
         element, xi = slide(pair.target, touch.element, touch.xi + ds / self.model.element[touch.element].l0)
         return Touch(element=element, xi=xi, force=(touch.force[0] + dFx, touch.force[1] + dFy))
+
+
+def _alternates(owners: list[tuple[int, ...]]) -> bool:
+    """Whether the owners of the contacts went to and fro over the last six iterations."""
+    last = owners[-6:]
+    return len(last) == 6 and last[0] != last[1] and all(a == b for a, b in zip(last, last[2:], strict=False))

@@ -14,6 +14,7 @@ from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.status import Status
 from tsm.stepping import Step
+from tsm.system import Assembler
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,6 +77,8 @@ class Result:
         Steps given up.
     events : tuple of Event
         Contact events in order.
+    strain_energy : ndarray, shape (s,)
+        Energy of beams and contact dents.
     unknowns : int
         Number of unknowns.
     wall_seconds : float
@@ -91,6 +94,7 @@ class Result:
     newton_iterations: Array
     cutbacks: int
     events: tuple[Event, ...]
+    strain_energy: Array
     unknowns: int
     wall_seconds: float
     model: Model = field(repr=False)
@@ -155,6 +159,7 @@ class Result:
 
 def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:
     """Result of the accepted steps."""
+    assembler = Assembler(model)
     requested = [step for step in steps if step.requested]
     equilibria = tuple(step.equilibrium for step in requested)
     spent = np.cumsum([step.iterations for step in steps])
@@ -179,6 +184,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         newton_iterations=np.diff(upto, prepend=0),
         cutbacks=sum(step.cutbacks for step in steps),
         events=tuple(event for step in steps for event in step.events),
+        strain_energy=np.array([assembler.energy(e.state) for e in equilibria]),
         unknowns=model.unknowns,
         wall_seconds=seconds,
         model=model,
@@ -207,7 +213,7 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
             left = float(np.hypot(own[0], own[1]))
         arc = arc_position(model, pair.target, touch.element, touch.xi)
         return normal_force(model, equilibrium, k), arc, left
-    seen = project(model, pair, state.q, state.load_parameter)
+    seen = project(model, pair, state)
     over = state.armed[k] and seen.overshoot <= 0
     return 0.0, np.nan, seen.gap if over else np.nan
 

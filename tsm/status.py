@@ -14,5 +14,14 @@ class Status(Enum):
     NOT_FINITE = "a residual or an update was not finite"
     SINGULAR_TANGENT = "the tangent is singular"
     CUTBACK_FLOOR = "the load step was cut back to its floor"
+    PING_PONG = "the contact went back and forth between two elements"
+    TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
+    UNREACHABLE = "no equilibrium lies beyond: the load parameter has a limit point"
+    LOST_CONTACT = "a contact that must persist was released"
+    SLIPPED_OFF = "a contact that must persist slipped off the beam"
+    FOLDED = "a contact reached the held end of its beam"
+    CONTACT_CHANGED = (
+        "a contact opened or closed under arc-length control, which follows a fixed set of contacts"
+    )
     CHATTER = "contact opened and closed again and again at one load parameter"
     UNBALANCED = "the support reactions do not balance the contact forces"

@@ -16,7 +16,7 @@ import numpy as np
 from tsm.contact import arc_position, chord_owner, node_position, owner_at, project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
-from tsm.model import Model
+from tsm.model import Model, PairModel
 from tsm.newton import Equilibrium, Newton
 from tsm.settings import Settings
 from tsm.state import State, Touch
@@ -24,6 +24,10 @@ from tsm.status import Status
 
 _MEMORY = 4
 """States that the predictor extrapolates from: a cubic in the load parameter."""
+_FOLD = 100.0
+"""Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
+_COINCIDENT = 1e-6
+"""Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,12 +74,16 @@ class Stepper:
         self.history = [start.state]
         self.margins = self._measure(start)
         self.step = 1.0
+        self.failure = start.status
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
 
     def march(self, load_parameters: Array) -> Iterator[Step]:
         """Yield accepted steps up to the last load parameter or the first failure."""
+        if self.accepted.status is not Status.CONVERGED:
+            yield self._record(False, self.accepted.status)
+            return
         for target in load_parameters.tolist():
             while (t := self.accepted.state.load_parameter) < target:
                 left = target - t
@@ -83,15 +91,31 @@ class Stepper:
                 status = self._attempt(goal)
                 if status is Status.CONVERGED:
                     yield self._record(self.accepted.state.load_parameter == target, status)
-                elif status in {Status.CHATTER, Status.UNBALANCED}:
+                elif status is not self.failure:
                     yield self._record(False, status)
                     return
                 else:
                     self.cutbacks += 1
                     self.step = min(self.step, left) / 2
                     if self.step < self.settings.smallest_step:
-                        yield self._record(False, Status.CUTBACK_FLOOR)
+                        yield self._record(False, self._verdict())
                         return
+
+    def _verdict(self) -> Status:
+        """Why no step goes on from here, as precisely as it can be told."""
+        told = {Status.NOT_FINITE, Status.SINGULAR_TANGENT, Status.TWO_CONTACTS, Status.PING_PONG}
+        if self.failure in told or self.settings.smallest_step > 0.5:
+            return self.failure
+        assembler = self.newton.assembler
+        rates = assembler.solve(
+            assembler.linearise(self.accepted.state), -assembler.rate(self.accepted.state)
+        )
+        speed = (
+            np.inf
+            if rates is None
+            else np.abs(rates[: self.model.equations, 1] * self.newton.per_limit).max()
+        )
+        return Status.UNREACHABLE if speed > _FOLD else Status.CUTBACK_FLOOR
 
     def _record(self, requested: bool, status: Status) -> Step:
         step = Step(
@@ -110,7 +134,7 @@ class Stepper:
         """Go to a load parameter or to the first event before it."""
         reached = self._solve(goal)
         if reached is None:
-            return Status.ITERATION_LIMIT
+            return self.failure
         events = broken(self.margins, self._measure(reached))
         if not events and not self._balanced(reached):
             return Status.UNBALANCED
@@ -126,21 +150,31 @@ class Stepper:
         held = np.zeros(model.dof_count)
         held[model.fixed] = system.nodal[model.fixed]
         pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
-        total = held.reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
-        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0)
+        loads = equilibrium.state.load_parameter * model.load
+        total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
+        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
         noise = max(self.newton.noise, self.newton.tolerance) * model.force_scale + system.noise
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
     def _solve(self, t: float) -> Equilibrium | None:
-        starts = [replace(self.history[-1], load_parameter=t)]
+        starts = [self._moved_to(self.history[-1], t)]
         if len(self.history) > 1:
-            starts.insert(0, extrapolate(self.model, self.history, t))
+            starts.insert(0, self._moved_to(extrapolate(self.model, self.history, t), t))
         for start in starts:
             equilibrium = self.newton.solve(start)
             self.iterations += equilibrium.iterations
             if equilibrium.status is Status.CONVERGED:
                 return equilibrium
+            self.failure = equilibrium.status
         return None
+
+    def _moved_to(self, state: State, t: float) -> State:
+        """State at a load parameter, its supports where they are prescribed."""
+        if not self.model.fixed_values.any():
+            return replace(state, load_parameter=t)
+        q = state.q.copy()
+        q[self.model.fixed] = t * self.model.fixed_values
+        return replace(state, load_parameter=t, q=q)
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         t = self.accepted.state.load_parameter
@@ -151,65 +185,119 @@ class Stepper:
             else:
                 found = locate((t, before), (goal, after), self._solve, self._measure)
             if found is None:
-                return Status.ITERATION_LIMIT
+                return self.failure
             if first is None or found[0].state.load_parameter < first[0].state.load_parameter:
                 first = found
         assert first is not None, "events is not empty"
-        return self._switch(*first)
+        at, margin = first
+        coming = {(before.kind, before.pair) for before, _ in events}
+        together = [
+            other
+            for other in self._measure(at)
+            if (other.kind, other.pair) in coming
+            and {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
+            and other.value <= _COINCIDENT
+        ]
+        return self._switch(at, [margin, *together])
 
-    def _switch(self, at: Equilibrium, margin: Margin) -> Status:
-        """Accept the event's configuration, then open or close its contact."""
+    def _switch(self, at: Equilibrium, changes: list[Margin]) -> Status:
+        """Accept the events' configuration, then open and close its contacts."""
         if at is not self.accepted:
             self._accept(at)
-        model, k = self.model, margin.pair
-        pair, state = model.pairs[k], at.state
-        self.chatter[k, state.load_parameter] += 1
-        if self.chatter[k, state.load_parameter] > self.settings.max_chatter:
-            return Status.CHATTER
-        if margin.kind is EventKind.TOUCH:
-            seen = project(model, pair, state.q, state.load_parameter)
-            if margin.value < -ROUND_OFF:
-                return self._resume(_with(state, k, None, armed=False))
-            element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
-            self._note(margin.kind, k, element, arc_position(model, pair.target, element, xi), 0.0)
-            return self._resume(_with(state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True))
-        touch = state.touches[k]
-        assert touch is not None, "only a closed contact opens"
-        arc, force = arc_position(model, pair.target, touch.element, touch.xi), normal_force(model, at, k)
-        self._note(margin.kind, k, touch.element, arc, force)
-        return self._resume(
-            _with(state, k, None, armed=margin.kind is EventKind.RELEASE), at.system.forces[k], touch
-        )
+        model, state, lost = self.model, at.state, np.zeros(self.model.dof_count)
+        for margin in changes:
+            k, pair = margin.pair, model.pairs[margin.pair]
+            self.chatter[k, state.load_parameter] += 1
+            if self.chatter[k, state.load_parameter] > self.settings.max_chatter:
+                return Status.CHATTER
+            if margin.kind is EventKind.TOUCH:
+                state = self._close(state, margin)
+                continue
+            touch = state.touches[k]
+            assert touch is not None, "only a closed contact opens"
+            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
+            forbidden = _forbidden(model, margin.kind, pair, arc)
+            if forbidden is not None:
+                return forbidden
+            lost += self._consistent(at.system.forces[k], touch)
+            state = _with(state, k, None, armed=margin.kind is EventKind.RELEASE)
+        return self._resume(at, state, lost)
 
-    def _resume(
-        self, state: State, force: tuple[float, float] = (0.0, 0.0), touch: Touch | None = None
-    ) -> Status:
-        """Find equilibrium with the contact changed; a force that is lost is taken away in parts."""
-        load = self._consistent(force, touch) if touch is not None else None
-        part, step = 1.0, 1.0
+    def _close(self, state: State, margin: Margin) -> State:
+        """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
+        k, pair = margin.pair, self.model.pairs[margin.pair]
+        if margin.value < -ROUND_OFF:
+            return _with(state, k, None, armed=False)
+        seen = project(self.model, pair, state)
+        element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
+        self._note(EventKind.TOUCH, k, element, arc_position(self.model, pair.target, element, xi), 0.0)
+        return _with(state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
+
+    def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
+        """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
+        jump = bool(lost.any())
         while True:
-            goal = max(part - step, 0.0)
-            equilibrium = self.newton.solve(state, None if load is None else goal * load)
-            self.iterations += equilibrium.iterations
-            if equilibrium.status is Status.CONVERGED:
-                state, part, step = equilibrium.state, goal, 2 * step
-                if part == 0.0:
-                    break
-            else:
-                step /= 2
-                if step < 1e-4:
-                    return equilibrium.status
+            equilibrium = self._unload(state, lost)
+            if equilibrium is None:
+                return self.failure
+            state = equilibrium.state
+            pulling = [
+                (normal_force(self.model, equilibrium, k), k)
+                for k, touch in enumerate(state.touches)
+                if touch is not None and jump
+            ]
+            least, k = min(pulling, default=(0.0, -1))
+            if least >= -ROUND_OFF * self.model.force_scale:
+                break
+            touch = state.touches[k]
+            assert touch is not None, "a pulling contact is closed"
+            pair = self.model.pairs[k]
+            before = normal_force(self.model, at, k) if at.state.touches[k] is not None else 0.0
+            arc = arc_position(self.model, pair.target, touch.element, touch.xi)
+            self._note(EventKind.RELEASE, k, touch.element, arc, before)
+            if pair.pair.keep:
+                return Status.LOST_CONTACT
+            lost = self._consistent(equilibrium.system.forces[k], touch)
+            state = _with(state, k, None, armed=True)
+        if jump:
+            energy = self.newton.assembler.energy
+            self._note_release(energy(at.state) - energy(state))
         self.history = []
         self._accept(equilibrium)
         return Status.CONVERGED
 
+    def _unload(self, state: State, lost: Array) -> Equilibrium | None:
+        """Equilibrium without nodal forces that act at first, taken away in parts as large as converge."""
+        part, step = 1.0, 1.0
+        while True:
+            goal = max(part - step, 0.0)
+            equilibrium = self.newton.solve(state, goal * lost if goal else None)
+            self.iterations += equilibrium.iterations
+            if equilibrium.status is Status.CONVERGED:
+                state, part, step = equilibrium.state, goal, 2 * step
+                if part == 0.0:
+                    return equilibrium
+            else:
+                step /= 2
+                if step < 1e-4 or not lost.any():
+                    self.failure = equilibrium.status
+                    return None
+
     def _consistent(self, force: tuple[float, float], touch: Touch) -> Array:
-        """Nodal forces that stand for the lost contact force."""
+        """Nodal forces that stand for the lost contact force; they act for the pair's node too."""
         i, j = self.model.element_nodes[touch.element]
         load = np.zeros(self.model.dof_count)
         for node, part in ((i, 1 - touch.xi), (j, touch.xi)):
             load[3 * node : 3 * node + 2] = part * np.array(force)
         return load
+
+    def _note_release(self, released: float) -> None:
+        """Enter the energy of a jump with the slip-off that set it off, the last one noted."""
+        for n in range(len(self.events) - 1, -1, -1):
+            if self.events[n].kind is EventKind.SLIP_OFF:
+                self.events[n] = replace(self.events[n], released=released)
+                return
 
     def _note(self, kind: EventKind, k: int, element: int, arc: float, force: float) -> None:
         pair = self.model.pairs[k]
@@ -271,7 +359,7 @@ def rearm(model: Model, state: State) -> State:
     armed = list(state.armed)
     for k, pair in enumerate(model.pairs):
         if state.touches[k] is None and not armed[k]:
-            seen = project(model, pair, state.q, state.load_parameter)
+            seen = project(model, pair, state)
             armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
     return replace(state, armed=tuple(armed))
 
@@ -285,9 +373,11 @@ def initial_state(model: Model) -> State:
         If a node starts on the wrong side of its beam.
     """
     q = np.zeros(model.dof_count)
+    count = len(model.pairs)
+    start = State(load_parameter=0.0, q=q, touches=(None,) * count, armed=(True,) * count)
     touches: list[Touch | None] = []
     for pair in model.pairs:
-        seen = project(model, pair, q, 0.0)
+        seen = project(model, pair, start)
         small = ROUND_OFF * model.length
         over = seen.overshoot <= small
         if over and seen.gap < -small:
@@ -300,8 +390,18 @@ def initial_state(model: Model) -> State:
         touches.append(
             Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
         )
-    state = State(load_parameter=0.0, q=q, touches=tuple(touches), armed=(True,) * len(touches))
-    return _owned(model, state)
+    return _owned(model, replace(start, touches=tuple(touches)))
+
+
+def _forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
+    """Status that ends the march where a contact may not open."""
+    if kind is EventKind.SLIP_OFF:
+        end = "start" if arc < pair.target.beam.length / 2 else "end"
+        node = model.end_node(f"{pair.target.beam.name}.{end}")
+        if any(3 * node + c in model.prescribed for c in range(3)):
+            return Status.FOLDED
+        return Status.SLIPPED_OFF if pair.pair.keep else None
+    return Status.LOST_CONTACT if pair.pair.keep else None
 
 
 def _owned(model: Model, state: State) -> State:

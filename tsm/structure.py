@@ -154,6 +154,40 @@ class Support:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Load:
+    """Dead force and moment on a beam end at load parameter 1; both keep their direction.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end.
+    force : tuple of float
+        Force (x, y).
+    moment : float
+        Moment, anticlockwise.
+    """
+
+    beam: str
+    end: End
+    force: Point = (0.0, 0.0)
+    moment: float = 0.0
+
+    def __post_init__(self) -> None:
+        owner = f"Load({self.beam}.{self.end})"
+        _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        _check(
+            len(self.force) == 2 and _finite(*self.force),
+            owner,
+            "force",
+            self.force,
+            "must be two finite numbers",
+        )
+        _check(_finite(self.moment), owner, "moment", self.moment, "must be finite")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Pin:
     """A control node: a frictionless point that follows a prescribed path.
 
@@ -185,6 +219,17 @@ class Pin:
         """Length of the path."""
         return sum(math.dist(a, b) for a, b in zip(self.path, self.path[1:], strict=False))
 
+    def velocity(self, load_parameter: float) -> Point:
+        """Derivative of the position in the load parameter, at a corner that of the leg before it."""
+        left = load_parameter * self.length
+        a, b = self.path[:2]
+        for a, b in zip(self.path, self.path[1:], strict=False):
+            left -= math.dist(a, b)
+            if left <= 0:
+                break
+        speed = self.length / math.dist(a, b)
+        return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
+
     def position(self, load_parameter: float) -> Point:
         """Position at a load parameter in [0, 1].
 
@@ -215,12 +260,15 @@ class ContactPair:
         Side of the beam's direction from which the node comes.
     offset : float
         Distance from the axis to the contact surface [length], 0 for contact on the axis.
+    keep : bool
+        Whether the contact, once closed, must persist: a release or a slip-off then ends the solution by name.
     """
 
     node: str
     beam: str
     side: Side = "right"
     offset: float = 0.0
+    keep: bool = False
 
     def __post_init__(self) -> None:
         _check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
@@ -240,7 +288,9 @@ class ContactPair:
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Beams with their supports, the pins that push them and the contacts that may close.
+    """Beams with their supports and loads, the pins that push them and the contacts that may close.
+
+    Beams whose ends have the same coordinates are rigidly joined there.
 
     Raises
     ------
@@ -253,6 +303,7 @@ class Structure:
     supports: tuple[Support, ...] = ()
     pins: tuple[Pin, ...] = ()
     contacts: tuple[ContactPair, ...] = ()
+    loads: tuple[Load, ...] = ()
 
     def __post_init__(self) -> None:
         _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
@@ -265,6 +316,8 @@ class Structure:
         nodes = {pin.name for pin in self.pins} | ends
         for support in self.supports:
             _check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
+        for load in self.loads:
+            _check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
         for pair in self.contacts:
             _check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
             _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")

@@ -11,13 +11,13 @@ Schur complement is small and dense. The cost is linear in the number of element
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dgbsv, dgesv
 
 from tsm.contact import node_position
-from tsm.elements import beam
+from tsm.elements import beam, mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
 from tsm.state import State, Touch
@@ -46,6 +46,8 @@ class Linearisation(NamedTuple):
         Nodal forces of the elements, contact included.
     noise : float
         Round-off of the residual by contact stiffness, ``4 eps k_c L``.
+    crowded : bool
+        Whether two nodes touch one element of the paper's, which knows one contact only.
     """
 
     nodal: Array
@@ -57,6 +59,7 @@ class Linearisation(NamedTuple):
     forces: dict[int, tuple[float, float]]
     element_force: Array
     noise: float
+    crowded: bool
 
 
 class Assembler:
@@ -81,84 +84,103 @@ class Assembler:
         self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size).ravel()
 
     def linearise(self, state: State, load: Array | None = None) -> Linearisation:
-        """Residual and tangent at a state, under given nodal forces if any."""
+        """Residual and tangent at a state, under given nodal forces besides the model's own if any."""
         model = self.model
         force, tangent = beam.response(model.coefficients, state.q[model.dofs])
-        right = np.zeros((model.equations + 1, model.border))
-        corner = np.zeros((model.border, model.border))
-        own = np.zeros(model.contact_unknowns)
-        forces: dict[int, tuple[float, float]] = {}
-        pushed: list[tuple[int, Array]] = []
-        crossing: list[tuple[PairModel, int, Array]] = []
-        stiffest = 0.0
+        border = _Border(model)
         for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
-            slots = slice(pair.slot + model.border_dofs, pair.slot + model.border_dofs + 3)
             if touch is None:
-                if pair.slot >= 0:
-                    corner[slots, slots] = np.eye(3)
+                border.leave_open(pair)
                 continue
             gradient, block = self._contact(pair, touch, state)
-            e = touch.element
-            if pair.slot >= 0:
-                eq = model.element_equations[:, e]
-                right[eq, slots] = block[:6, 8:]
-                if pair.node >= 0:
-                    right[model.equation[3 * pair.node : 3 * pair.node + 2], slots] = block[6:8, 8:]
-                corner[slots, slots] = block[8:, 8:]
-                own[pair.slot : pair.slot + 3] = gradient[8:]
-            else:
-                force[:, e] = tangent[:, e] = 0.0
-                stiffest = max(stiffest, float(np.abs(block[6:8, 6:8]).max()))
-                crossing.append((pair, e, block))
-            force[:, e] += gradient[:6]
-            tangent[:, e] += block[:6, :6].ravel()
-            forces[k] = (float(gradient[6]), float(gradient[7]))
-            if pair.node >= 0:
-                pushed.append((3 * pair.node, gradient[6:8]))
-        nodal = np.bincount(self.dofs_flat, weights=force.ravel(), minlength=model.dof_count)
-        for dof, reaction in pushed:
+            if pair.slot < 0:
+                force[:, touch.element] = tangent[:, touch.element] = 0.0
+            force[:, touch.element] += gradient[:6]
+            tangent[:, touch.element] += block[:6, :6].ravel()
+            border.close(k, pair, touch, gradient, block)
+        nodal: Array = np.bincount(self.dofs_flat, weights=force.ravel(), minlength=model.dof_count)
+        for dof, reaction in border.pushed:
             nodal[dof : dof + 2] += reaction
         if load is not None:
-            nodal -= load
+            nodal = nodal - load
+        if len(model.structure.loads):
+            nodal = nodal - state.load_parameter * model.load
         values = tangent.ravel()
         band = np.bincount(self.scatter, weights=values, minlength=self.band_size + 1)[:-1]
-        below = right.T
-        if model.border_dofs:
-            below = self._cross(values, crossing, right, corner)
+        below = self._cross(values, border) if model.border_dofs else border.right.T
         return Linearisation(
             nodal=nodal,
-            residual=np.concatenate([nodal[model.free], own]),
+            residual=np.concatenate([nodal[model.free], border.own]),
             band=band.reshape(model.banded, self.ldab),
-            right=right,
+            right=border.right,
             below=below,
-            corner=corner,
-            forces=forces,
+            corner=border.corner,
+            forces=border.forces,
             element_force=force,
-            noise=4 * _EPS * stiffest * model.length,
+            noise=4 * _EPS * border.stiffest * model.length,
+            crowded=border.crowded,
         )
+
+    def rate(self, state: State) -> Array:
+        """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins."""
+        model = self.model
+        nodal, own = -model.load, np.zeros(model.contact_unknowns)
+        for pair, touch in zip(model.pairs, state.touches, strict=True):
+            if touch is not None and pair.pin is not None:
+                _, block = self._contact(pair, touch, state)
+                moved = block[:, 6:8] @ np.array(pair.pin.velocity(state.load_parameter))
+                nodal[model.dofs[:, touch.element]] += moved[:6]
+                if pair.slot >= 0:
+                    own[pair.slot : pair.slot + 3] = moved[8:]
+        if model.fixed_values.any():
+            q = np.zeros(model.dof_count)
+            q[model.fixed] = model.fixed_values
+            _, tangent = beam.response(model.coefficients, state.q[model.dofs])
+            pulled = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[model.dofs])
+            nodal = nodal + np.bincount(self.dofs_flat, weights=pulled.ravel(), minlength=model.dof_count)
+        return np.concatenate([nodal[model.free], own])
+
+    def energy(self, state: State) -> float:
+        """Strain energy of a state in equilibrium."""
+        model = self.model
+        total = float(beam.energy(model.coefficients, state.q[model.dofs]).sum())
+        for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
+            if touch is None:
+                continue
+            if pair.slot < 0:
+                gradient, block = self._contact(pair, touch, state)
+                F = gradient[6:8]
+                total += float(F @ F) ** 2 / (2 * float(F @ block[6:8, 6:8] @ F) or 1.0)
+                continue
+            p, x, lever = self._place(pair, touch, state)
+            total += mixed_contact.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+            for other in state.touches[:k]:
+                if other is not None and other.element == touch.element:
+                    C = mixed_contact.cross_compliance(p, touch.xi, other.xi)[0]
+                    total += C * (touch.force[0] * other.force[0] + touch.force[1] * other.force[1])
+        return total
+
+    def _place(
+        self, pair: PairModel, touch: Touch, state: State
+    ) -> tuple[Any, list[float], tuple[float, float]]:
+        """Constants and displacements of the owner, and the vector from the node to its end i."""
+        model = self.model
+        cx, cy = node_position(model, pair, state.q, state.load_parameter)
+        x = state.q[model.dofs[:, touch.element]].tolist()
+        start_x, start_y = model.element_start[touch.element]
+        return model.element[touch.element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
 
     def _contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
-        model = self.model
-        e = touch.element
-        cx, cy = node_position(model, pair, state.q, state.load_parameter)
-        x = state.q[model.dofs[:, e]].tolist()
-        start_x, start_y = model.element_start[e]
-        lever = (start_x + x[0] - cx, start_y + x[1] - cy)
-        return pair.element_type.contact(
-            model.element[e], x, lever, touch.xi, touch.force, pair.side, pair.pair.offset
-        )
+        p, x, lever = self._place(pair, touch, state)
+        return pair.element_type.contact(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
 
-    def _cross(
-        self, values: Array, crossing: list[tuple[PairModel, int, Array]], right: Array, corner: Array
-    ) -> Array:
+    def _cross(self, values: Array, border: _Border) -> Array:
         """Couple beam ends that touch chord elements, whose equations lie in the border; return the border's rows."""
-        model = self.model
+        model, right, corner = self.model, border.right, border.corner
         below = right.T.copy()
         right += np.bincount(self.scatter_right, values, self.size + 1)[:-1].reshape(right.shape)
         below += np.bincount(self.scatter_below, values, self.size + 1)[:-1].reshape(below.shape)
-        for pair, e, block in crossing:
-            if pair.node < 0:
-                continue
+        for pair, e, block in border.coupled:
             eq, node_eq = model.element_equations[:, e], model.equation[3 * pair.node : 3 * pair.node + 2]
             free = node_eq < model.equations
             unknown = (node_eq - model.banded)[free]
@@ -170,23 +192,93 @@ class Assembler:
         corner[model.border_dofs :, : model.border_dofs] = right[own, model.border_dofs :].T
         return below
 
-    def solve(self, system: Linearisation) -> tuple[Array, Array] | None:
-        """Newton step ``(dq of the equations, dz of the contacts' unknowns)``, None if the tangent is singular."""
+    def solve(self, system: Linearisation, *more: Array) -> Array | None:
+        """Solutions of the linear system, None if the tangent is singular.
+
+        Parameters
+        ----------
+        system : Linearisation
+            Its band is overwritten.
+        more : ndarray, shape (equations + contact unknowns,)
+            Right-hand sides besides the residual's negative.
+
+        Returns
+        -------
+        ndarray, shape (equations + contact unknowns, 1 + len(more))
+        """
         model = self.model
-        banded, border = model.banded, model.border
-        rhs = np.empty((banded, 1 + border), order="F")
-        rhs[:, 0] = system.residual[:banded]
-        rhs[:, 1:] = system.right[:banded]
+        banded, border, count = model.banded, model.border, 1 + len(more)
+        rhs = np.empty((banded, count + border), order="F")
+        given = np.stack([-system.residual, *more], axis=1)
+        rhs[:, :count] = given[:banded]
+        rhs[:, count:] = system.right[:banded]
         _, _, X, info = dgbsv(self.k, self.k, system.band.T, rhs, overwrite_ab=True, overwrite_b=True)
         if info != 0:
             return None
         if not border:
-            return -X[:, 0], np.zeros(0)
+            return np.asarray(X)
         reduced = system.below[:, :banded] @ X
-        _, _, z, info = dgesv(system.corner - reduced[:, 1:], reduced[:, 0] - system.residual[banded:])
+        _, _, z, info = dgesv(system.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
         if info != 0:
             return None
-        dq = -X[:, 0] - X[:, 1:] @ z
-        if model.border_dofs:
-            dq = np.concatenate([dq, z[: model.border_dofs]])
-        return dq, z[model.border_dofs :]
+        return np.concatenate([X[:, :count] - X[:, count:] @ z, z])
+
+
+class _Border:
+    """Border of the system while its contacts are entered."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.right = np.zeros((model.equations + 1, model.border))
+        self.corner = np.zeros((model.border, model.border))
+        self.own = np.zeros(model.contact_unknowns)
+        self.forces: dict[int, tuple[float, float]] = {}
+        self.pushed: list[tuple[int, Array]] = []
+        self.coupled: list[tuple[PairModel, int, Array]] = []
+        self.closed: dict[int, list[tuple[PairModel, Touch]]] = {}
+        self.stiffest = 0.0
+        self.crowded = False
+
+    def leave_open(self, pair: PairModel) -> None:
+        """Let the unknowns of an open pair stand alone."""
+        if pair.slot >= 0:
+            slots = self._slots(pair)
+            self.corner[slots, slots] = np.eye(3)
+
+    def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
+        """Enter a closed pair."""
+        model, e = self.model, touch.element
+        self.forces[k] = (float(gradient[6]), float(gradient[7]))
+        if pair.node >= 0:
+            self.pushed.append((3 * pair.node, gradient[6:8]))
+        others = self.closed.setdefault(e, [])
+        if pair.slot < 0:
+            self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
+            self.crowded |= len(others) > 0
+            if pair.node >= 0:
+                self.coupled.append((pair, e, block))
+        else:
+            slots = self._slots(pair)
+            self.right[model.element_equations[:, e], slots] = block[:6, 8:]
+            if pair.node >= 0:
+                self.right[model.equation[3 * pair.node : 3 * pair.node + 2], slots] = block[6:8, 8:]
+            self.corner[slots, slots] += block[8:, 8:]
+            self.own[pair.slot : pair.slot + 3] += gradient[8:]
+            for other, earlier in others:
+                self._share(model.element[e], (other, earlier), (pair, touch))
+        others.append((pair, touch))
+
+    def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
+        """Let two contacts on one element feel each other's dent."""
+        (one, a), (two, b) = first, second
+        gradient, block = mixed_contact.crossing(p, (a.xi, b.xi), a.force, b.force)
+        rows = (slice(one.slot, one.slot + 3), slice(two.slot, two.slot + 3))
+        parts = (slice(0, 3), slice(3, 6))
+        for own, part in zip(rows, parts, strict=True):
+            self.own[own] += gradient[part]
+        for pair_i, part_i in zip((one, two), parts, strict=True):
+            for pair_j, part_j in zip((one, two), parts, strict=True):
+                self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]
+
+    def _slots(self, pair: PairModel) -> slice:
+        return slice(pair.slot + self.model.border_dofs, pair.slot + self.model.border_dofs + 3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -201,23 +203,17 @@ def test_projection_is_the_closest_point():
     """Against a search over a fine division of the deflected axis."""
     structure = cantilever(((0.8, 0.0), (0.8, 0.3)))
     result = tsm.solve(structure, TENTHS)
-    model, q = result.model, result.equilibria[-1].state.q
+    model, state = result.model, result.equilibria[-1].state
     pair = model.pairs[0]
     for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
         moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
-        seen = project(model, replace_pin(pair, moved), q, 0.0)
+        seen = project(model, replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,)))
         arc, xy = result.axis_line("b", -1, points_per_element=2000)
         distance = np.hypot(*(xy - np.array(target)).T)
         nearest = int(np.argmin(distance))
         assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)
         assert (seen.element + seen.xi) / 10 == pytest.approx(arc[nearest], abs=1e-3)
         assert isinstance(seen, Projection)
-
-
-def replace_pin(pair, pin):
-    from dataclasses import replace
-
-    return replace(pair, pin=pin)
 
 
 def test_bad_structures_are_refused():

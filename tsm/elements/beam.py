@@ -75,6 +75,11 @@ def linear_coefficients(p: Properties) -> Coefficients:
     return _coefficients(p, np.array([none, none]), np.array([none, none]), none, none)
 
 
+def unsheared_coefficients(p: Properties) -> Coefficients:
+    """Coefficients of the Euler-Bernoulli beam, `linear_coefficients` at ``Phi = 0`` whatever the section's shear."""
+    return linear_coefficients(p._replace(Phi=np.zeros_like(p.Phi)))
+
+
 def bowed_coefficients(p: Properties) -> Coefficients:
     """Coefficients with the strain measures of the Reissner rod to fourth order.
 
@@ -184,3 +189,19 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     entries[3:5] = tx * coupling + ty * across
     entries[5:7] = ty * coupling - tx * across
     return _GATHER @ reduced, _SPREAD @ entries
+
+
+def energy(a: Coefficients, x: Array) -> Array:
+    """Strain energy of beam elements, shape (n,); arguments as for `response`."""
+    shift = x[3:5] - x[:2]
+    chord = a.chord + shift
+    (x0, y0), (dx, dy) = a.chord, chord
+    stretched = ((a.chord + chord) * shift).sum(axis=0)
+    turn = chord_rotation(x0 * dy - y0 * dx, x0 * dx + y0 * dy)
+    m, h = unwind((x[2] + x[5]) / 2 - turn), (x[2] - x[5]) / 2
+    mm, hh = m * m, h * h
+    polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
+    e = stretched / (np.sqrt(dx * dx + dy * dy) + a.l0) + polynomial[0]
+    bending = a.constant[2] * mm + a.constant[3] * hh
+    value: Array = (e * e / polynomial[1] + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2
+    return value

@@ -1,11 +1,12 @@
 """The contact elements of the paper: force by a stiffness times the deflection, normal to the chord.
 
 Basic system simply supported on the chord, element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)), contact
-point at the distances a and b from the ends, measured on the chord. Nodal forces ``U = J S`` with J the
+point at the distances a and b from the ends, measured on the chord as parts of l0. Nodal forces ``U = J S`` with J the
 transposed derivative of the basic deformations; the tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``, whose last part
 ([P] leaves it open) is what makes Newton's method quadratic while the node slides. It is not symmetric.
 
-Everything is divided by a and b, which is what the paper calls the critical area.
+Everything is divided by a and b, which is what the paper calls the critical area. The other basic system is in
+`cantilever`, the matrices with the paper's misprints are in `as_printed`.
 """
 
 from __future__ import annotations
@@ -18,6 +19,10 @@ import numpy as np
 from tsm.elements.properties import Array, Properties, chord_rotation, unwind
 
 Stiffness = Callable[[Properties, Any], tuple[Array, Array]]
+"""Matrix of a basic system and its derivative in a, at a given ``xi = a/l0``."""
+
+ElementForce = Callable[[Properties, Any, Array], tuple[Array, Array, Array]]
+"""Element force equation: from ``xi`` and ``v = [theta_i, theta_j, y_c]`` to ``S = [M_i, M_j, Y_c]``, dS/dv, dS/da."""
 
 INSIDE = 1e-15
 """Contact points are kept this far inside the element, in parts of its length: at its ends K is infinite."""
@@ -30,14 +35,14 @@ _REDUCE[4, 2] = _REDUCE[5, 5] = 1
 
 
 def response(
-    stiffness: Stiffness, p: Properties, x: Any, lever: Any, side: float, offset: float
+    element_force: ElementForce, p: Properties, x: Any, lever: Any, side: float, offset: float
 ) -> tuple[Array, Array]:
     """Forces and exact tangent of an element together with the node that touches it.
 
     Parameters
     ----------
-    stiffness : callable
-        Matrix of ``[M_i, M_j, Y_c]`` over ``[theta_i, theta_j, y_c]`` and its derivative in a, at a given ``xi = a/l0``.
+    element_force : callable
+        Element force equation, see `ElementForce`.
     p : Properties
         Constants of the element.
     x : sequence of 6 numbers
@@ -68,8 +73,7 @@ def response(
     du, dv = x[3] - x[0], x[4] - x[1]
     elongation = (2 * (p.dx0 * du + p.dy0 * dv) + du * du + dv * dv) / (length + p.l0)
     deformation = np.array([unwind(x[2] - turn), unwind(x[5] - turn), y + side * offset])
-    K, dK = stiffness(p, xi)
-    S = K @ deformation
+    S, K, slope = element_force(p, xi, deformation)
     N = p.EA / p.l0 * elongation
 
     B = np.zeros((3, 6), dtype=S.dtype)
@@ -92,8 +96,44 @@ def response(
 
     force = N * stretch + S @ B
     tangent = p.EA / p.l0 * np.outer(stretch, stretch) + B.T @ K @ B + geometric
-    tangent += np.outer((dK @ deformation) @ B, p.l0 * slide)
+    tangent += np.outer(slope @ B, p.l0 * slide)
     return force @ _REDUCE, _REDUCE.T @ tangent @ _REDUCE
+
+
+def simply_supported(stiffness: Stiffness) -> ElementForce:
+    """Element force equation of a matrix over ``[theta_i, theta_j, y_c]``."""
+
+    def element_force(p: Properties, xi: Any, deformation: Array) -> tuple[Array, Array, Array]:
+        K, dK = stiffness(p, xi)
+        return K @ deformation, K, dK @ deformation
+
+    return element_force
+
+
+def euler_bernoulli(p: Properties, xi: Any) -> tuple[Array, Array]:
+    """Matrix of [P] (5)-(6), corrected, over ``[theta_i, theta_j, y_c]`` and its derivative in a.
+
+    `timoshenko` at ``Psi = 0``; ``M_i-theta_j`` is ``-EI/l0``. The shear number of the element is not read.
+    """
+    l0, k = p.l0, p.EI / p.l0
+    a, b = xi * l0, (1 - xi) * l0
+    iy, jy = l0 * l0 / (a * a * b), l0 * l0 / (a * b * b)
+    K = np.array(
+        [
+            [4 + 3 * b / a, -1, -3 * iy],
+            [-1, 4 + 3 * a / b, 3 * jy],
+            [-3 * iy, 3 * jy, 3 * iy * jy],
+        ]
+    )
+    diy, djy = iy * (1 / b - 2 / a), jy * (2 / b - 1 / a)
+    dK = np.array(
+        [
+            [-3 * l0 / (a * a), 0, -3 * diy],
+            [0, 3 * l0 / (b * b), 3 * djy],
+            [-3 * diy, 3 * djy, 3 * (diy * jy + iy * djy)],
+        ]
+    )
+    return k * K, k * dK
 
 
 def timoshenko(p: Properties, xi: Any) -> tuple[Array, Array]:

@@ -166,6 +166,87 @@ def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: An
     return gradient, hessian
 
 
+def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tuple[Array, Array]:
+    """Gradient and Hessian that two contacts on one element add to each other, of ``-C12 F_1 . F_2``.
+
+    Parameters
+    ----------
+    p : Properties
+        Constants of the element.
+    xi : tuple of numbers
+        Positions of both contacts.
+    first, second : sequence of 2 numbers
+        Forces on the beam.
+
+    Returns
+    -------
+    gradient : ndarray, shape (6,)
+        With respect to force (2) and arc position of the first, then of the second contact.
+    tangent : ndarray, shape (6, 6)
+        Its derivative.
+    """
+    C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
+    l0 = p.l0
+    (ax, ay), (bx, by) = first, second
+    dot = ax * bx + ay * by
+    gradient = -np.array([C * bx, C * by, dx * dot / l0, C * ax, C * ay, de * dot / l0])
+    upper = np.zeros((6, 6), dtype=gradient.dtype)
+    upper[[0, 1], [3, 4]] = C
+    upper[:2, 2] = np.array([bx, by]) * dx / l0
+    upper[:2, 5] = np.array([bx, by]) * de / l0
+    upper[2, 3:5] = np.array([ax, ay]) * dx / l0
+    upper[3:5, 5] = np.array([ax, ay]) * de / l0
+    upper[2, 5] = dxe * dot / l0**2
+    upper[2, 2], upper[5, 5] = dxx * dot / (2 * l0**2), dee * dot / (2 * l0**2)
+    return gradient, -(upper + upper.T)
+
+
+def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
+    """Deflection at xi by a unit force at eta, both ends clamped.
+
+    Simply supported, less what clamping takes away: with ``x = min, b = 1 - max`` of both, ``z = xi (1 - xi)``,
+    ``m = 1 - 2 xi`` (z', m' at eta)::
+
+        C12 = l0^3/(12 EI) (2 x b (1 + Phi/2 - b^2 - x^2) - z z' (3 + m m'/(1 + Phi)))
+
+    Returns
+    -------
+    tuple
+        Value, derivatives in xi and eta, and the second ones xi-xi, xi-eta, eta-eta.
+    """
+    if np.real(xi) > np.real(eta):
+        C, d_eta, d_xi, second, both, first = cross_compliance(p, eta, xi)
+        return C, d_xi, d_eta, first, both, second
+    x, b, h, k = xi, 1 - eta, 1 + p.Phi / 2, 1 / (1 + p.Phi)
+    z, m, ze, me = xi * (1 - xi), 1 - 2 * xi, eta * (1 - eta), 1 - 2 * eta
+    scale = p.l0**3 / (12 * p.EI)
+    bent, bent_e = m * m - 2 * z, me * me - 2 * ze
+    return (
+        scale * (2 * x * b * (h - b * b - x * x) - z * ze * (3 + k * m * me)),
+        scale * (2 * b * (h - b * b - 3 * x * x) - ze * (3 * m + k * me * bent)),
+        scale * (-2 * x * (h - 3 * b * b - x * x) - z * (3 * me + k * m * bent_e)),
+        scale * (-12 * b * x + ze * (6 + 6 * k * m * me)),
+        scale * (-2 * (h - 3 * b * b - 3 * x * x) - (3 * m * me + k * bent * bent_e)),
+        scale * (-12 * b * x + z * (6 + 6 * k * m * me)),
+    )
+
+
+def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
+    """Value of the Lagrangian: what the contact adds to the strain energy in equilibrium. Arguments as for `response`."""
+    curve = Curve(p, x)
+    Fx, Fy = force
+    w = curve.deflection(xi)[0]
+    C, dC, _, _ = compliance(p, xi)
+    value = Fx * (lever[0] + xi * curve.dx - w * curve.dy) + Fy * (lever[1] + xi * curve.dy + w * curve.dx)
+    value += C * (Fx * Fx + Fy * Fy) / 2
+    if offset:
+        phi = curve.slope_angle_jet(xi).value
+        A, T = Fy * np.cos(phi) - Fx * np.sin(phi), Fx * np.cos(phi) + Fy * np.sin(phi)
+        bA = dC / (2 * p.l0) * A
+        value -= side * offset * (A - bA * T - bA * bA * A / 2)
+    return -float(value)
+
+
 def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any, Any]:
     """Deflection at xi by a unit force there, both ends clamped, and its three derivatives in xi."""
     scale = p.l0**3 / (3 * p.EI * (1 + p.Phi))

@@ -6,8 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from tsm.elements import chord_contact, mixed_contact
-from tsm.elements.beam import Coefficients, bowed_coefficients, linear_coefficients
+from tsm.elements import as_printed, cantilever, chord_contact, mixed_contact
+from tsm.elements.beam import (
+    Coefficients,
+    bowed_coefficients,
+    linear_coefficients,
+    unsheared_coefficients,
+)
+from tsm.elements.chord_contact import ElementForce, simply_supported
 from tsm.elements.properties import Array, Properties
 
 ContactResponse = Callable[[Properties, Any, Any, Any, Any, float, float], tuple[Array, Array]]
@@ -37,13 +43,24 @@ class ElementType:
     carries_force: bool
 
 
-def _chord_normal(stiffness: chord_contact.Stiffness) -> ContactResponse:
+def _chord_normal(element_force: ElementForce) -> ContactResponse:
     def contact(
         p: Properties, x: Any, lever: Any, _xi: Any, _force: Any, side: float, offset: float
     ) -> tuple[Array, Array]:
-        return chord_contact.response(stiffness, p, x, lever, side, offset)
+        return chord_contact.response(element_force, p, x, lever, side, offset)
 
     return contact
+
+
+def _of_paper(
+    source: str, coefficients: Callable[[Properties], Coefficients], element_force: ElementForce
+) -> ElementType:
+    return ElementType(
+        source=source,
+        coefficients=coefficients,
+        contact=_chord_normal(element_force),
+        carries_force=False,
+    )
 
 
 ELEMENTS: dict[str, ElementType] = {
@@ -59,10 +76,26 @@ ELEMENTS: dict[str, ElementType] = {
         contact=mixed_contact.response,
         carries_force=True,
     ),
-    "timoshenko": ElementType(
-        source="[P] (9)-(12), corrected",
-        coefficients=linear_coefficients,
-        contact=_chord_normal(chord_contact.timoshenko),
-        carries_force=False,
+    "timoshenko": _of_paper(
+        "[P] (9)-(12), corrected", linear_coefficients, simply_supported(chord_contact.timoshenko)
+    ),
+    "euler-bernoulli-simple": _of_paper(
+        "[P] (5)-(6), corrected", unsheared_coefficients, simply_supported(chord_contact.euler_bernoulli)
+    ),
+    "euler-bernoulli-cantilever": _of_paper(
+        "[P] (7)-(8), corrected", unsheared_coefficients, cantilever.clamped(cantilever.euler_bernoulli)
+    ),
+    "timoshenko-as-printed": _of_paper(
+        "[P] (9)-(12) with its misprints", linear_coefficients, simply_supported(as_printed.timoshenko)
+    ),
+    "euler-bernoulli-simple-as-printed": _of_paper(
+        "[P] (5)-(6) with its misprint",
+        unsheared_coefficients,
+        simply_supported(as_printed.euler_bernoulli),
+    ),
+    "euler-bernoulli-cantilever-as-printed": _of_paper(
+        "[P] (7)-(8) with its misprints",
+        unsheared_coefficients,
+        cantilever.clamped(as_printed.euler_bernoulli_cantilever),
     ),
 }

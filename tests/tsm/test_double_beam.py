@@ -1,0 +1,123 @@
+"""Two cantilevers, a pin that pushes the upper onto the lower: [P] 4.3 against coupled and single exact rods."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tsm
+from comparisons.exact.coupled import coupled_rods
+from comparisons.exact.rod import rod_under_pin
+
+EA, GA, EI = 2e7 * 3e-4, 7.142e6 * 3e-4, 2e7 * 2.2e-8
+STEPS = 76
+
+
+def double_beam(elements=10, element="mixed", x=0.8):
+    section = tsm.Section(EA=EA, GA=GA, EI=EI)
+    return tsm.Structure(
+        beams=tuple(
+            tsm.Beam(name=name, start=(0, y), end=(1, y), section=section, elements=elements, element=element)
+            for name, y in (("upper", 0.0), ("lower", -0.2))
+        ),
+        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
+        pins=(tsm.Pin(name="pin", path=((x, 0.0), (x, -0.76))),),
+        contacts=(
+            tsm.ContactPair(node="pin", beam="upper", side="left"),
+            tsm.ContactPair(node="pin", beam="lower", side="left"),
+            tsm.ContactPair(node="upper.end", beam="lower", side="left"),
+        ),
+    )
+
+
+@pytest.fixture(scope="module")
+def result():
+    return tsm.solve(double_beam(), np.arange(1, STEPS + 1) / STEPS)
+
+
+def found(result, kind, pair):
+    return next(event for event in result.events if (event.kind, event.pair) == (kind, pair))
+
+
+def depth(event):
+    return 0.76 * event.load_parameter
+
+
+def test_events_in_order(result):
+    events = [(e.kind, e.pair) for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]
+    assert events == [
+        (tsm.EventKind.TOUCH, "upper.end->lower"),
+        (tsm.EventKind.SLIP_OFF, "pin->upper"),
+        (tsm.EventKind.TOUCH, "pin->lower"),
+        (tsm.EventKind.RELEASE, "upper.end->lower"),
+        (tsm.EventKind.SLIP_OFF, "pin->lower"),
+    ]
+
+
+def test_coupled_stage_matches_the_coupled_rods(result):
+    depths = 0.76 * result.load_parameter
+    stage = (depths > 0.15) & (depths < 0.535)
+    exact = coupled_rods(depths[stage], EA=EA, GA=GA, EI=EI, length=1.0, gap=0.2, pin=0.8)
+    assert result.contacts["pin->upper"].force[stage] == pytest.approx(exact.pin_force, rel=1e-4)
+    assert result.contacts["upper.end->lower"].force[stage] == pytest.approx(exact.tip_force, rel=1e-4)
+    touch = found(result, tsm.EventKind.TOUCH, "upper.end->lower")
+    slip = found(result, tsm.EventKind.SLIP_OFF, "pin->upper")
+    assert depth(touch) == pytest.approx(exact.touch_depth, abs=1e-6)
+    assert depth(slip) == pytest.approx(exact.end_depth, abs=1e-6)
+
+
+def test_single_stages_match_the_exact_rod(result):
+    depths = 0.76 * result.load_parameter
+    before, after = depths < 0.149, (depths > 0.54) & (depths < 0.73)
+    for stage, pair, offset in ((before, "pin->upper", 0.0), (after, "pin->lower", 0.2)):
+        path = [(0.8, 0.0), *((0.8, d - offset) for d in depths[stage])]
+        exact = rod_under_pin(path, EA=EA, GA=GA, EI=EI, length=1.0)
+        assert result.contacts[pair].force[stage] == pytest.approx(exact.magnitude[1:], rel=1e-4)
+        assert result.contacts[pair].arc_position[stage] == pytest.approx(exact.arc_position[1:], abs=1e-4)
+    leave = found(result, tsm.EventKind.SLIP_OFF, "pin->lower")
+    path = [(0.8, 0.0), (0.8, 0.6)]
+    exact = rod_under_pin(path, EA=EA, GA=GA, EI=EI, length=1.0)
+    assert depth(leave) - 0.2 == pytest.approx(0.6 * exact.slip_off, abs=1e-5)
+
+
+def test_free_beams_are_straight_again(result):
+    depths = 0.76 * result.load_parameter
+    assert np.abs(result.tips["upper"][depths > 0.54] - [1.0, 0.0]).max() <= 1e-9
+    assert np.abs(result.tips["lower"][depths > 0.74] - [1.0, -0.2]).max() <= 1e-9
+
+
+def test_work_of_the_pin_is_the_strain_energy_up_to_each_jump():
+    """Simpson over 1520 load parameters; at a jump the energy falls by what the event reports."""
+    fine = tsm.solve(double_beam(), np.arange(1, 20 * STEPS + 1) / (20 * STEPS))
+    down = sum(-1 * fine.supports[name].force[:, 1] for name in ("upper", "lower"))
+    power = np.concatenate([[0.0], -down * 0.76])
+    dt = 1 / (20 * STEPS)
+    slips = [e for e in fine.events if e.kind is tsm.EventKind.SLIP_OFF]
+    assert all(e.released > 0 for e in slips)
+    start, energy = 0, 0.0
+    for event in slips:
+        last = int(event.load_parameter / dt)
+        last -= (last - start) % 2
+        part = power[start : last + 1]
+        work = dt / 3 * (part[0] + 4 * part[1:-1:2].sum() + 2 * part[2:-1:2].sum() + part[-1])
+        gained = fine.strain_energy[last - 1] - energy
+        assert work == pytest.approx(gained, rel=2e-5)
+        after = int(event.load_parameter / dt) + 1
+        start, energy = after, fine.strain_energy[after - 1]
+
+
+def test_every_formulation_that_can_completes():
+    """With a beam node under the pin the paper's elements have no digits; half an element aside they go through."""
+    for element in ("timoshenko", "euler-bernoulli-simple"):
+        stuck = tsm.solve(double_beam(element=element), np.arange(1, STEPS + 1) / STEPS, throw=False)
+        assert stuck.status is not tsm.Status.COMPLETED
+
+
+def test_order_against_the_coupled_rods():
+    t = np.array([0.31, 0.45]) / 0.76
+    exact = coupled_rods(0.76 * t, EA=EA, GA=GA, EI=EI, length=1.0, gap=0.2, pin=0.8)
+    errors = []
+    for elements in (5, 10, 20):
+        contacts = tsm.solve(double_beam(elements), t).contacts
+        errors.append(np.abs(contacts["upper.end->lower"].force / exact.tip_force - 1).max())
+    assert np.log2(errors[0] / errors[2]) / 2 > 3.3

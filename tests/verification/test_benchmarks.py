@@ -1,0 +1,166 @@
+"""Classical problems of large displacements, each with its source."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tsm
+from comparisons.exact.elastica import three_point_bending_limit
+
+STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)
+
+
+def cantilever(elements, *, section=STIFF, load=None, support=None):
+    return tsm.Structure(
+        beams=(tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=section, elements=elements),),
+        supports=(tsm.Support(beam="b", end="start"), *([support] if support else [])),
+        loads=(load,) if load else (),
+    )
+
+
+def fitted_order(errors, ratio=2.0):
+    return float(np.log(errors[0] / errors[-1]) / np.log(ratio) / (len(errors) - 1))
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_roll_up(turns, capsys):
+    """An end moment 2 pi n EI/L bends a cantilever into n full circles (Bathe & Bolourchi 1979); in between a circular arc."""
+    errors = []
+    for elements in (10 * turns, 20 * turns, 40 * turns):
+        moment = 2 * np.pi * turns
+        t = np.arange(1, 21) / 20
+        result = tsm.solve(cantilever(elements, load=tsm.Load(beam="b", end="end", moment=moment)), t)
+        angle = moment * t
+        exact = np.stack([np.sin(angle) / angle, (1 - np.cos(angle)) / angle], axis=1)
+        errors.append(np.abs(result.tips["b"] - exact).max())
+    with capsys.disabled():
+        print(f"roll-up, {turns} turns: tip {errors}, order {fitted_order(errors):.2f}")
+    assert errors[-1] <= 1e-3
+    assert fitted_order(errors) > 1.8
+
+
+@pytest.mark.parametrize(
+    ("load", "deflection"), [(1, 0.3017207738), (2, 0.4934574804), (5, 0.7137915236), (10, 0.8106090249)]
+)
+def test_tip_load(load, deflection):
+    """Dead load on the tip of an elastica: deflection over length (Bisshopp & Drucker 1945; digits by elliptic integrals)."""
+    errors = []
+    for elements in (5, 10, 20):
+        result = tsm.solve(
+            cantilever(elements, load=tsm.Load(beam="b", end="end", force=(0.0, float(load)))),
+            np.arange(1, 6) / 5,
+        )
+        errors.append(abs(result.tips["b"][-1, 1] / deflection - 1))
+    assert errors[-1] <= 1e-6
+    assert errors[0] > 12 * errors[1]
+
+
+def lees_frame(elements):
+    """Column and beam of 120 cm, E = 720 kN/cm^2, A = 6, I = 2, hinged; load 24 cm from the corner (Lee et al. 1968)."""
+    section = tsm.Section(EA=4320.0, GA=4.32e9, EI=1440.0)
+    return tsm.Structure(
+        beams=(
+            tsm.Beam(name="column", start=(0, 0), end=(0, 120), section=section, elements=elements),
+            tsm.Beam(
+                name="near", start=(0, 120), end=(24, 120), section=section, elements=max(1, elements // 4)
+            ),
+            tsm.Beam(name="far", start=(24, 120), end=(120, 120), section=section, elements=elements),
+        ),
+        supports=(
+            tsm.Support(beam="column", end="start", rotation=None),
+            tsm.Support(beam="far", end="end", rotation=None),
+        ),
+        loads=(tsm.Load(beam="near", end="end", force=(0.0, -0.1)),),
+    )
+
+
+def limits(structure, arc_length, steps):
+    result = tsm.trace(structure, arc_length=arc_length, steps=steps)
+    return [e.load_parameter for e in result.events if e.kind is tsm.EventKind.LIMIT_POINT], result
+
+
+def test_lees_frame():
+    """Limit load P L^2/EI = 18.557 (Lee, Manuel & Rossow 1968; Simo & Vu-Quoc 1986 give 18.532 kN/10); snaps through and back."""
+    found = [limits(lees_frame(n), 0.3, 120)[0][0] * 0.1 * 120**2 / 1440 for n in (4, 8, 16)]
+    assert found[-1] == pytest.approx(18.557, rel=1e-3)
+    assert np.diff(found) == pytest.approx(0, abs=3e-3)
+    order = np.log2((found[0] - found[1]) / (found[1] - found[2]))
+    assert 3.3 < order < 4.7
+
+
+def toggle(elements):
+    """Williams' toggle (1964): half span 12.94328 in, rise .386 in, EA 1.885e6 lb, EI 9274 lb in^2, clamped."""
+    section = tsm.Section(EA=1.885e6, GA=1.885e10, EI=9274.0)
+    apex = (12.94328, 0.386)
+    return tsm.Structure(
+        beams=(
+            tsm.Beam(name="left", start=(0.0, 0.0), end=apex, section=section, elements=elements),
+            tsm.Beam(name="right", start=apex, end=(25.88656, 0.0), section=section, elements=elements),
+        ),
+        supports=(tsm.Support(beam="left", end="start"), tsm.Support(beam="right", end="end")),
+        loads=(tsm.Load(beam="left", end="end", force=(0.0, -1.0)),),
+    )
+
+
+def test_williams_toggle():
+    """Both limit points, 33.87 near v = .235 and 31.28 near v = .39 (Wood & Zienkiewicz 1977, by finite elements)."""
+    found = [limits(toggle(n), 0.01, 60)[0] for n in (8, 16)]
+    assert found[-1] == pytest.approx([33.87, 31.28], rel=1e-3)
+    assert found[0] == pytest.approx(found[1], rel=1e-3)
+
+
+def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
+    """Pushing the apex down and reading the reaction gives the same two limits."""
+    structure = toggle(16)
+    pushed = tsm.Structure(
+        beams=structure.beams,
+        supports=(*structure.supports, tsm.Support(beam="left", end="end", ux=None, uy=-0.6, rotation=None)),
+    )
+    result = tsm.solve(pushed, np.arange(1, 601) / 600)
+    force = 2 * result.supports["right"].force[:, 1]
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(force)))) + 1
+    assert force[turns] == pytest.approx(limits(structure, 0.01, 60)[0], rel=1e-4)
+
+
+def test_three_point_bending_has_its_limit():
+    """Frictionless three-point bending, half span a: greatest P a^2/EI = 1.66795 at d/a = .476378 (elastica in closed form)."""
+    half = tsm.Structure(
+        beams=(tsm.Beam(name="b", start=(0.0, 0.0), end=(3.0, 0.0), section=STIFF, elements=30),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=((1.0, 0.0), (1.0, 0.7))),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side="right"),),
+    )
+    t = np.arange(1, 701) / 700
+    result = tsm.solve(half, t)
+    upward = -result.supports["b"].force[:, 1]
+    k = int(np.argmax(upward))
+    fit = np.polyfit(t[k - 2 : k + 3] * 0.7 - t[k] * 0.7, upward[k - 2 : k + 3], 2)
+    top = t[k] * 0.7 - fit[1] / (2 * fit[0])
+    exact = three_point_bending_limit()
+    assert 2 * upward[k] == pytest.approx(exact.load, rel=1e-4)
+    assert top == pytest.approx(exact.displacement, rel=1e-3)
+
+
+def test_a_frame_does_not_care_where_it_stands():
+    """Lee's frame turned by 1 rad, moved, and its beams given from the other end: the same limit load to 1e-10."""
+    plain, _ = limits(lees_frame(6), 0.3, 40)
+    turn = np.array([[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]])
+
+    def place(point):
+        return tuple((turn @ np.array(point, dtype=float) + [5.0, -7.0]).tolist())
+
+    frame = lees_frame(6)
+    beams = tuple(
+        tsm.Beam(name=b.name, start=place(b.end), end=place(b.start), section=b.section, elements=b.elements)
+        for b in frame.beams
+    )
+    moved = tsm.Structure(
+        beams=beams,
+        supports=(
+            tsm.Support(beam="column", end="end", rotation=None),
+            tsm.Support(beam="far", end="start", rotation=None),
+        ),
+        loads=(tsm.Load(beam="near", end="start", force=tuple((turn @ [0.0, -0.1]).tolist())),),
+    )
+    assert limits(moved, 0.3, 40)[0] == pytest.approx(plain, rel=1e-10)
