@@ -57,13 +57,13 @@ def arc_position(model: Model, target: BeamModel, element: int, xi: float) -> fl
 def owner_at(model: Model, target: BeamModel, arc: float) -> tuple[int, float]:
     """Element and position in it of an arc position; the end elements own what lies beyond."""
     along = arc / model.element[target.first].l0
-    local = min(max(math.floor(along), 0), target.beam.elements - 1)
+    local = min(max(math.floor(along), 0), target.beam.elements - 1) if math.isfinite(along) else 0
     return target.first + local, along - local
 
 
 def slide(target: BeamModel, element: int, xi: float) -> tuple[int, float]:
     """Hand a position that left its element over to the neighbour."""
-    steps = math.floor(xi) if not 0.0 <= xi <= 1.0 else 0
+    steps = math.floor(xi) if math.isfinite(xi) and not 0.0 <= xi <= 1.0 else 0
     owner = min(max(element + steps, target.first), target.last)
     return owner, xi - (owner - element)
 

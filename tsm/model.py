@@ -228,7 +228,9 @@ class Model:
             np.repeat([getattr(b.beam.section, name) for b in self.beams.values()], repeats)
             for name in ("EA", "GA", "EI")
         )
-        return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=12 * EI / (GA * l0**2))
+        sheared = np.repeat([ELEMENTS[b.beam.element].sheared for b in self.beams.values()], repeats)
+        Phi = np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
+        return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=Phi)
 
     def _coefficients(self) -> Coefficients:
         parts = []

@@ -72,7 +72,7 @@ class Stepper:
         start = self.newton.solve(initial_state(model))
         self.accepted = start
         self.history = [start.state]
-        self.margins = self._measure(start)
+        self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.step = 1.0
         self.failure = start.status
 
@@ -177,6 +177,7 @@ class Stepper:
         return replace(state, load_parameter=t, q=q)
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
+        """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
         t = self.accepted.state.load_parameter
         first: tuple[Equilibrium, Margin] | None = None
         for before, after in events:
@@ -190,6 +191,10 @@ class Stepper:
                 first = found
         assert first is not None, "events is not empty"
         at, margin = first
+        past = [other for other in self._measure(at) if other.value < -_COINCIDENT]
+        if any(other.kind is not EventKind.TOUCH or other.pair != margin.pair for other in past):
+            self.failure = Status.ITERATION_LIMIT
+            return self.failure
         coming = {(before.kind, before.pair) for before, _ in events}
         together = [
             other

@@ -42,6 +42,11 @@ class ElementType:
     contact: ContactResponse
     carries_force: bool
 
+    @property
+    def sheared(self) -> bool:
+        """Whether the beam deforms in shear; the Euler-Bernoulli beam does not, whatever its section."""
+        return self.coefficients is not unsheared_coefficients
+
 
 def _chord_normal(element_force: ElementForce) -> ContactResponse:
     def contact(

@@ -1,0 +1,340 @@
+"""The paper's matrices against sympy, entry by entry; docs/errata.md against both; the elements they make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from tsm.elements import ELEMENTS, as_printed, cantilever, chord_contact, mixed_contact
+from tsm.elements.properties import Properties
+
+STEP = 1e-30j
+ERRATA = Path(__file__).parents[3] / "docs" / "errata.md"
+PAPER = [name for name, kind in ELEMENTS.items() if not kind.carries_force]
+PRINTED = [name for name in PAPER if name.endswith("-as-printed")]
+
+a, b, EI, Psi, x = sp.symbols("a b EI Psi x", positive=True)
+l0 = a + b
+SIMPLE = ["M_i-theta_i", "M_i-theta_j", "M_i-y_c", "M_j-theta_j", "M_j-y_c", "Y_c-y_c"]
+CANTILEVER = ["Y_j-y_j", "Y_j-y_c", "Y_j-theta_j", "Y_c-y_c", "Y_c-theta_j", "M_j-theta_j"]
+FORMULATIONS = {
+    "(5)-(6)": SimpleNamespace(
+        correct=chord_contact.euler_bernoulli, printed=as_printed.euler_bernoulli, shear=0, entries=SIMPLE
+    ),
+    "(7)-(8)": SimpleNamespace(
+        correct=cantilever.euler_bernoulli,
+        printed=as_printed.euler_bernoulli_cantilever,
+        shear=0,
+        entries=CANTILEVER,
+    ),
+    "(9)-(12)": SimpleNamespace(
+        correct=chord_contact.timoshenko, printed=as_printed.timoshenko, shear=Psi, entries=SIMPLE
+    ),
+}
+
+
+def stiffness(moments, shears, forces):
+    """Inverse of the flexibility from the complementary energy; both fields are pairs, left and right of the contact."""
+    energy = sum(
+        sp.integrate(m**2 + Psi * v**2, (x, *span))
+        for m, v, span in zip(moments, shears, ((0, a), (a, l0)), strict=True)
+    ) / (2 * EI)
+    return sp.hessian(energy, forces).inv().applyfunc(sp.cancel)
+
+
+def derived(formulation):
+    """Matrix of a formulation, nothing taken from the paper but its basic system."""
+    if formulation == "(7)-(8)":
+        Yj, Yc, Mj = forces = sp.symbols("Y_j Y_c M_j")
+        right = Mj + Yj * (l0 - x)
+        K = stiffness((right + Yc * (a - x), right), (Yj + Yc, Yj), forces)
+    else:
+        Mi, Mj, Yc = forces = sp.symbols("M_i M_j Y_c")
+        support = (Mi + Mj + Yc * a) / l0 - Yc
+        left = support * x - Mi
+        K = stiffness((left, left + Yc * (x - a)), (support, support + Yc), forces)
+    return K.subs(Psi, FORMULATIONS[formulation].shear)
+
+
+def in_symbols(function, shear):
+    """The code's own matrix and its derivative in a, evaluated with symbols."""
+    p = Properties(l0, 0, l0, 1, EI, 12 * shear / l0**2)
+    return tuple(sp.Matrix(part) for part in function(p, a / l0))
+
+
+def upper(matrix):
+    return [matrix[i, j] for i in range(3) for j in range(i, 3)]
+
+
+def table(formulation):
+    """Rows of errata.md: entry, correct, as printed, verdict."""
+    section = ERRATA.read_text().split(f"## {formulation}")[1].split("\n## ")[0]
+    omega = (a * b) ** 2 + 3 * Psi * (l0**2 + a * b) + 36 * Psi**2
+    letters = {"a": a, "b": b, "l0": l0, "l": l0, "Psi": Psi, "Omega": omega}
+    letters |= {"k_a": EI / l0, "k_b": 3 * EI / (a * b) ** 3, "k_c": EI / (l0 * omega)}
+    rows = []
+    for line in section.splitlines():
+        if line.startswith("| `"):
+            entry, correct, printed, verdict = (
+                cell.strip().strip("`") for cell in line.strip("|").split("|")
+            )
+            rows.append((entry, sp.sympify(correct, letters), sp.sympify(printed, letters), verdict))
+    return rows
+
+
+def judged(correct, printed):
+    """Verdict on a printed expression."""
+    ratio = sp.cancel(printed / correct)
+    if ratio == 1:
+        return "same"
+    s = sp.Symbol("s", positive=True)
+    growth = sp.cancel(ratio.subs({a: s * a, b: s * b, Psi: s * s * Psi}, simultaneous=True) / ratio)
+    if growth == 1:
+        return "wrong sign" if ratio.subs({a: 1, b: 2, Psi: 3}) == -1 else "wrong factor"
+    if growth.free_symbols - {s} or ratio.subs({a: 1, b: 2, Psi: 3}) > 0:
+        return "wrong dimension"
+    return "wrong dimension, wrong sign"
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_corrected_matrix_is_the_inverse_of_the_flexibility(formulation):
+    f = FORMULATIONS[formulation]
+    K, _ = in_symbols(f.correct, f.shear)
+    assert (K - derived(formulation)).applyfunc(sp.cancel) == sp.zeros(3, 3)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("point", [(0.3, 0.9, 2.0, 0.1), (7.0, 2e-3, 0.4, 30.0), (1e-6, 1.0, 1.0, 1e-5)])
+def test_corrected_matrix_in_numbers(formulation, point):
+    f = FORMULATIONS[formulation]
+    values = dict(zip((a, b, EI, Psi), (sp.Float(v, 40) for v in point), strict=True))
+    length = point[0] + point[1]
+    p = Properties(length, 0.0, length, 1.0, point[2], 12 * point[3] / length**2)
+    K, _ = f.correct(p, point[0] / length)
+    exact = np.array(derived(formulation).subs(values)).astype(float)
+    assert np.abs(K / exact - 1).max() <= 1e-9 * max(1, length / point[1] * 1e-3)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("version", ["correct", "printed"])
+def test_derivative_in_a(formulation, version):
+    f = FORMULATIONS[formulation]
+    length, xi = sp.symbols("l xi", positive=True)
+    K, dK = getattr(f, version)(Properties(length, 0, length, 1, EI, 12 * f.shear / length**2), xi)
+    assert (sp.Matrix(K).diff(xi) / length - sp.Matrix(dK)).applyfunc(sp.cancel) == sp.zeros(3, 3)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_errata_table_is_true(formulation):
+    f = FORMULATIONS[formulation]
+    rows = table(formulation)
+    assert [row[0] for row in rows] == f.entries
+    exact, (coded, _) = upper(derived(formulation)), in_symbols(f.printed, f.shear)
+    for (entry, correct, printed, verdict), value, code in zip(rows, exact, upper(coded), strict=True):
+        assert sp.cancel(correct - value) == 0, entry
+        assert sp.cancel(printed - code) == 0, entry
+        assert verdict == judged(value, printed), entry
+
+
+def test_verdicts_can_be_told_apart():
+    right = EI / a
+    assert judged(right, EI / a) == "same"
+    assert judged(right, 2 * EI / a) == "wrong factor"
+    assert judged(right, -EI / a) == "wrong sign"
+    assert judged(right, EI * b / a) == "wrong dimension"
+    assert judged(right, -EI * b / a) == "wrong dimension, wrong sign"
+    assert judged(right, EI * (1 - 9 * a) / a) == "wrong dimension"
+
+
+def test_other_sentences_of_the_errata():
+    """Factorised entry; misprint of (5) from (9); no signs mend (7)."""
+    corrected, _ = in_symbols(chord_contact.timoshenko, Psi)
+    omega = (a * b) ** 2 + 3 * Psi * (l0**2 + a * b) + 36 * Psi**2
+    assert sp.cancel(corrected[0, 1] + EI * (a**2 - 6 * Psi) * (b**2 - 6 * Psi) / (l0 * omega)) == 0
+    without_shear, _ = in_symbols(as_printed.timoshenko, 0)
+    simple, _ = in_symbols(as_printed.euler_bernoulli, 0)
+    assert (without_shear - simple).applyfunc(sp.cancel) == sp.zeros(3, 3)
+    for function, positive in (
+        (cantilever.euler_bernoulli, True),
+        (as_printed.euler_bernoulli_cantilever, False),
+    ):
+        K, _ = in_symbols(function, 0)
+        assert bool((K[0, 1] * K[0, 2] * K[1, 2]).subs({a: 1, b: 2, EI: 1}) > 0) is positive
+
+
+def negative_eigenvalues(function, length, xi):
+    K, _ = function(Properties(length, 0.0, length, 1.0, 1.0, 0.0), xi)
+    scale = np.sqrt(np.diag(K))
+    return int((np.linalg.eigvalsh(K / np.outer(scale, scale)) < 0).sum())
+
+
+def test_printed_matrix_is_indefinite_at_every_position():
+    """One negative eigenvalue for any a as long as l0 < 6 sqrt(2) units of length; none when corrected."""
+    for length in (0.05, 0.25, 1.0, 8.48):
+        for xi in np.linspace(0.01, 0.99, 99):
+            assert negative_eigenvalues(as_printed.euler_bernoulli, length, xi) == 1
+            assert negative_eigenvalues(chord_contact.euler_bernoulli, length, xi) == 0
+    printed, _ = in_symbols(as_printed.euler_bernoulli, 0)
+    determinant = printed.subs(EI, 1).applyfunc(sp.cancel).det(method="berkowitz")
+    factor = sp.cancel(determinant / (2 * a**2 * b**2 - 9 * l0**2))
+    assert all(factor.subs({a: i, b: j}) > 0 for i in (sp.Rational(1, 50), 1, 40) for j in (1, 9))
+    assert negative_eigenvalues(as_printed.euler_bernoulli, 8.49, 0.5) == 0
+
+
+def random_state(rng, distance):
+    """Contact at a stated distance, in parts of the length, from one of the ends."""
+    angle, length = rng.uniform(0, 2 * np.pi), 10 ** rng.uniform(-1, 1)
+    EA, stiff, Phi = (10 ** rng.uniform(low, high) for low, high in ((0, 3), (-2, 2), (-8, 2)))
+    p = Properties(length * np.cos(angle), length * np.sin(angle), length, EA, stiff, Phi)
+    state = rng.normal(size=6) * np.array([0.1 * length, 0.1 * length, 0.4] * 2)
+    d = np.array([p.dx0 + state[3] - state[0], p.dy0 + state[4] - state[1]])
+    xi = rng.choice([distance, 1 - distance])
+    lever = -(xi * d + 0.05 * rng.normal() * np.array([-d[1], d[0]]))
+    return p, state, lever, rng.choice([-1.0, 1.0]), rng.choice([0.0, 0.1 * length])
+
+
+@pytest.mark.parametrize("name", PAPER)
+def test_tangent_within_1e_9_of_both_ends(name):
+    """1,000 random states, half of them 1e-9 to 1e-13 from an end."""
+    rng = np.random.default_rng(7)
+    for k in range(1000):
+        distance = 10 ** rng.uniform(-13, -9) if k % 2 else rng.uniform(1e-9, 0.5)
+        p, state, lever, side, offset = random_state(rng, distance)
+        direction = rng.normal(size=8)
+        stepped, tangent = ELEMENTS[name].contact(
+            p,
+            state + STEP * direction[:6],
+            lever + STEP * (direction[:2] - direction[6:]),
+            0.0,
+            np.zeros(2),
+            side,
+            offset,
+        )
+        expected = stepped.imag / abs(STEP)
+        assert np.abs(tangent.real @ direction - expected).max() <= 1e-8 * np.abs(expected).max()
+
+
+def test_euler_bernoulli_ignores_the_sections_shear():
+    rng = np.random.default_rng(8)
+    for name in PAPER:
+        if not name.startswith("euler-bernoulli"):
+            continue
+        kind = ELEMENTS[name]
+        p, state, lever, side, offset = random_state(rng, 0.3)
+        first, second = (
+            kind.contact(p._replace(Phi=Phi), state, lever, 0.0, np.zeros(2), side, offset)
+            for Phi in (0.0, 5.0)
+        )
+        assert all(np.array_equal(*pair) for pair in zip(first, second, strict=True))
+        column = Properties(*(np.array([value]) for value in p))
+        slender, stocky = (kind.coefficients(column._replace(Phi=np.array([Phi]))) for Phi in (0.0, 5.0))
+        assert all(np.array_equal(*pair) for pair in zip(slender, stocky, strict=True))
+        assert slender.constant[2, 0] == pytest.approx(12 * p.EI / p.l0, rel=1e-14)
+
+
+def test_cantilever_is_the_simply_supported_element():
+    """``T^T K T`` is (5) in symbols; forces and tangents of the contact agree to round-off."""
+    p = Properties(l0, 0, l0, 1, EI, 0)
+    T = sp.Matrix(cantilever.transformation(p, a / l0))
+    turned = T.T * in_symbols(cantilever.euler_bernoulli, 0)[0] * T
+    difference = turned - in_symbols(chord_contact.euler_bernoulli, 0)[0]
+    assert difference.applyfunc(sp.cancel) == sp.zeros(3, 3)
+    rng = np.random.default_rng(9)
+    names = ("euler-bernoulli-simple", "euler-bernoulli-cantilever")
+    for _ in range(100):
+        p, state, lever, side, offset = random_state(rng, rng.uniform(0.05, 0.5))
+        simple, clamped = (
+            ELEMENTS[name].contact(p, state, lever, 0.0, np.zeros(2), side, offset) for name in names
+        )
+        for ours, theirs in zip(clamped, simple, strict=True):
+            assert np.abs(ours - theirs).max() <= 1e-11 * np.abs(theirs).max()
+
+
+def evaluation_error(element_force, distance, end, samples=200):
+    """Round-off of an element force equation alone, at exactly given deformations, contact force 0.01 EI/l0^2."""
+    rng = np.random.default_rng(10)
+    exact_force = chord_contact.simply_supported(chord_contact.euler_bernoulli)
+    p = Properties(1.0, 0.0, 1.0, 1.0, 1.0, 0.0)
+    errors = []
+    for _ in range(samples):
+        near = distance * rng.uniform(1, 2)
+        xi = near if end == "i" else 1 - near
+        v = np.array([*0.05 * rng.normal(size=2), 0.0])
+        S, K, _ = exact_force(p, np.longdouble(xi), v.astype(np.longdouble))
+        v[2] = (0.01 - S[2]) / K[2, 2]
+        exact, _, _ = exact_force(p, np.longdouble(xi), v.astype(np.longdouble))
+        errors.append(float(np.abs(element_force(p, xi, v)[0] - exact).max()))
+    return np.median(errors)
+
+
+@pytest.mark.skipif(
+    np.finfo(np.longdouble).eps > 1e-18,
+    reason="the platform has no floating-point type beyond double precision",
+)
+def test_cantilever_gains_a_factor_at_its_clamp_and_loses_an_order_at_its_tip():
+    forces = {
+        "simple": chord_contact.simply_supported(chord_contact.euler_bernoulli),
+        "cantilever": cantilever.clamped(cantilever.euler_bernoulli),
+    }
+    distances = 10.0 ** -np.arange(2, 11)
+    slope, gain = {}, {}
+    for end in "ij":
+        errors = {
+            name: [evaluation_error(force, near, end) for near in distances] for name, force in forces.items()
+        }
+        for name in forces:
+            slope[name, end] = np.polyfit(np.log10(distances), np.log10(errors[name]), 1)[0]
+        gain[end] = np.median(np.array(errors["simple"]) / errors["cantilever"])
+    assert slope["simple", "i"] == pytest.approx(-2, abs=0.2)
+    assert slope["simple", "j"] == pytest.approx(-2, abs=0.2)
+    assert slope["cantilever", "i"] == pytest.approx(-2, abs=0.2)
+    assert slope["cantilever", "j"] == pytest.approx(-3, abs=0.2)
+    assert 1.5 < gain["i"] < 4
+
+
+ELEMENT_FORCES = {
+    "euler-bernoulli-simple": (chord_contact.simply_supported(chord_contact.euler_bernoulli), 0.0),
+    "euler-bernoulli-cantilever": (cantilever.clamped(cantilever.euler_bernoulli), 0.0),
+    "timoshenko": (chord_contact.simply_supported(chord_contact.timoshenko), 0.7),
+    "timoshenko, stocky": (chord_contact.simply_supported(chord_contact.timoshenko), 100.0),
+}
+
+
+@pytest.mark.parametrize("name", ELEMENT_FORCES)
+@pytest.mark.parametrize("xi", [1e-3, 0.1, 0.37, 0.5, 0.93])
+def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
+    """``g + C lam = 0`` with ``g = y_c - w(xi)``, the force normal to the chord, no bow: matrix and forces."""
+    element_force, Phi = ELEMENT_FORCES[name]
+    p = Properties(1.3, 0.0, 1.3, 10.0, 2.0, Phi)
+    near, far = p.EI / p.l0 * np.array([4 + Phi, 2 - Phi]) / (1 + Phi)
+    k = np.array([[near, far, 0], [far, near, 0], [0, 0, 0]])
+    w = p.l0 * xi * (1 - xi) / (1 + Phi) * np.array([1 - xi + Phi / 2, -(xi + Phi / 2), 0])
+    g = np.array([0.0, 0.0, 1.0]) - w
+    C = mixed_contact.compliance(p, xi)[0]
+    v = np.array([0.2, -0.1, w @ [0.2, -0.1, 0] + 0.3 * C])
+    S, K, _ = element_force(p, xi, v)
+    assert np.abs(K - (k + np.outer(g, g) / C)).max() <= 1e-12 * np.abs(K).max()
+    lam = -(g @ v) / C
+    assert lam == pytest.approx(-0.3, rel=1e-9)
+    assert np.abs(S - (k @ v - lam * g)).max() <= 1e-13 * (np.abs(K) @ np.abs(v)).max()
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_printed_elements_depend_on_the_unit_of_length(name):
+    """Metres to millimetres: a force in newtons stays what it is, but not with the misprints."""
+    corrected = ELEMENTS[name.removesuffix("-as-printed")]
+    forces = {}
+    for unit in (1.0, 1000.0):
+        p = Properties(unit, 0.0, unit, 10.0, 2.0 * unit**2, 0.4)
+        state = np.array([0.0, 0.0, 0.1, 0.0, 0.0, -0.05]) * np.array([unit, unit, 1] * 2)
+        lever = -unit * np.array([0.3, 0.03])
+        for kind in (corrected, ELEMENTS[name]):
+            gradient, _ = kind.contact(p, state, lever, 0.0, np.zeros(2), 1.0, 0.0)
+            forces.setdefault(kind.source, []).append(gradient[4])
+    right, wrong = forces[corrected.source], forces[ELEMENTS[name].source]
+    assert right[1] == pytest.approx(right[0], rel=1e-12)
+    assert abs(wrong[1] / wrong[0] - 1) > 1e-2

@@ -1,0 +1,182 @@
+"""Silent success is impossible: forced failures end in named statuses, with what was reached."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tsm
+from tsm.model import Model
+from tsm.newton import Newton
+from tsm.state import Touch
+from tsm.status import Status
+from tsm.stepping import Stepper, initial_state
+
+SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
+BEAM = tsm.Beam(name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=SECTION, elements=10)
+CLAMP = tsm.Support(beam="b", end="start")
+TENTHS = np.arange(1, 11) / 10
+
+
+def structure(path=((0.83, 0.0), (0.83, 0.2)), *, element="mixed", keep=False, clamps=(CLAMP,), more=()):
+    pins = (
+        tsm.Pin(name="p", path=path),
+        *(tsm.Pin(name=f"q{k}", path=extra) for k, extra in enumerate(more)),
+    )
+    return tsm.Structure(
+        beams=(replace(BEAM, element=element),),
+        supports=clamps,
+        pins=pins,
+        contacts=tuple(tsm.ContactPair(node=pin.name, beam="b", keep=keep) for pin in pins),
+    )
+
+
+def ends_in(status, problem, t=TENTHS, **settings):
+    result = tsm.solve(problem, t, tsm.Settings(**settings), throw=False)
+    assert result.status is status, result.message
+    with pytest.raises(tsm.SolveError, match=status.name) as caught:
+        tsm.solve(problem, t, tsm.Settings(**settings))
+    assert caught.value.result.status is status
+    assert len(result.load_parameter) < len(t)
+    assert len(result.contacts["p->b"].force) == len(result.load_parameter)
+    return result
+
+
+def test_not_finite():
+    """Stiffnesses whose products overflow."""
+    huge = tsm.Section(EA=1e308, GA=1e308, EI=1e308)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        ends_in(Status.NOT_FINITE, replace(structure(), beams=(replace(BEAM, section=huge),)))
+
+
+def test_nan_in_a_start_state():
+    model = Model(structure())
+    state = replace(initial_state(model), q=np.full(model.dof_count, np.nan))
+    assert Newton(model, tolerance=1e-10, max_iterations=10).solve(state).status is Status.NOT_FINITE
+
+
+def test_iteration_limit():
+    ends_in(Status.ITERATION_LIMIT, structure(), max_iterations=1, smallest_step=0.9)
+
+
+def test_cutback_floor():
+    ends_in(Status.CUTBACK_FLOOR, structure(), max_iterations=1, smallest_step=0.01)
+
+
+def test_singular_tangent():
+    """A beam that nothing holds, pushed at its end."""
+    free = tsm.Structure(
+        beams=(BEAM,), pins=structure().pins, contacts=(tsm.ContactPair(node="p", beam="b"),),
+        loads=(tsm.Load(beam="b", end="end", force=(1.0, 0.0)),),
+    )  # fmt: skip
+    assert tsm.solve(free, TENTHS, throw=False).status is Status.SINGULAR_TANGENT
+
+
+def test_lost_contact():
+    ends_in(Status.LOST_CONTACT, structure(((0.83, 0.0), (0.83, 0.1), (0.83, -0.2)), keep=True))
+
+
+def test_slipped_off():
+    result = ends_in(Status.SLIPPED_OFF, structure(((0.83, 0.0), (0.83, 1.0)), keep=True))
+    assert result.load_parameter[-1] > 0.4
+
+
+def test_folded():
+    """The pin slides along the axis to the clamp and beyond it."""
+    ends_in(Status.FOLDED, structure(((0.5, 0.0), (-0.5, 0.0))))
+
+
+def test_a_pin_pulled_over_the_clamp_is_never_reported_as_done():
+    for count in (10, 30, 100):
+        t = np.arange(1, count + 1) / count
+        result = tsm.solve(structure(((0.5, 0.0), (0.5, 0.01), (-0.5, 0.01))), t, throw=False)
+        assert result.status is not Status.COMPLETED
+
+
+def test_unreachable():
+    """Beyond a polar angle of 99.57 degrees no equilibrium of the elastica under a pin is connected with the straight one."""
+    stiff = tsm.Section(EA=1e5, GA=1e5, EI=1.0)
+    long = tsm.Beam(name="b", start=(0.0, 0.0), end=(9.0, 0.0), section=stiff, elements=45)
+    pin = tsm.Pin(name="p", path=((1.0, 0.0), (-1.0, 2.0)))
+    problem = tsm.Structure(
+        beams=(long,), supports=(CLAMP,), pins=(pin,), contacts=(tsm.ContactPair(node="p", beam="b"),)
+    )
+    result = tsm.solve(problem, np.arange(1, 41) / 40, throw=False)
+    assert result.status is Status.UNREACHABLE
+    x, y = pin.position(float(result.message.split("stopped at load parameter ")[1].split(",")[0]))
+    assert np.degrees(np.arctan2(y, x)) == pytest.approx(99.57, abs=0.05)
+
+
+def test_two_contacts_on_an_element_of_the_paper():
+    near = ((0.86, 0.0), (0.86, 0.2))
+    ends_in(Status.TWO_CONTACTS, structure(element="timoshenko", more=(near,)))
+    both = tsm.solve(structure(more=(near,)), TENTHS)
+    assert both.status is Status.COMPLETED
+
+
+def test_ping_pong():
+    """A start that throws the contact to and fro between two elements of the paper's."""
+    model = Model(structure(element="timoshenko"))
+    newton = Newton(model, tolerance=1e-10, max_iterations=12)
+
+    class Swing:
+        """Owner search that always answers with the other element."""
+
+        def __call__(self, _model, _pair, _state, touch):
+            return Touch(element=8 if touch.element == 7 else 7, xi=0.5, force=touch.force)
+
+    from tsm import newton as module
+
+    held, module.chord_owner = module.chord_owner, Swing()
+    try:
+        moved = replace(initial_state(model), load_parameter=0.5)
+        assert newton.solve(moved).status is Status.PING_PONG
+    finally:
+        module.chord_owner = held
+
+
+def test_chatter():
+    """A margin that opens whatever closes."""
+    stepper = Stepper(Model(structure()), tsm.Settings(max_chatter=2))
+    from tsm.events import EventKind, Margin
+
+    held = stepper._measure
+
+    def broken(equilibrium):
+        kind = EventKind.TOUCH if equilibrium.state.touches[0] is None else EventKind.RELEASE
+        value = -1.0 if equilibrium.state.load_parameter > 0 else 0.0
+        return [
+            Margin(kind=m.kind, pair=0, value=value if m.kind is kind else 1.0) for m in held(equilibrium)
+        ]
+
+    stepper._measure = broken
+    stepper.margins = broken(stepper.accepted)
+    steps = list(stepper.march(TENTHS))
+    assert steps[-1].status is Status.CHATTER
+
+
+def test_unbalanced():
+    stepper = Stepper(Model(structure()), tsm.Settings())
+    solve = stepper.newton.solve
+
+    def leaking(*arguments):
+        found = solve(*arguments)
+        return replace(found, system=found.system._replace(nodal=1.001 * found.system.nodal))
+
+    stepper.newton.solve = leaking
+    assert list(stepper.march(TENTHS))[-1].status is Status.UNBALANCED
+
+
+def test_contact_changed_under_arc_length():
+    slips = replace(structure(((0.83, 0.0), (0.83, 1.0))))
+    assert tsm.trace(slips, arc_length=0.3, steps=60, throw=False).status is Status.CONTACT_CHANGED
+
+
+def test_every_status_has_its_sentence():
+    assert len({status.value for status in Status}) == len(Status)
+    assert all(status.value[0].islower() or status.value[0] == "N" for status in Status)
+    assert all(not status.value.endswith(".") for status in Status)
