@@ -1,0 +1,204 @@
+"""[P] 4.1 and what a node that slides along a beam must not notice: beam nodes, steps, the frame it is seen from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import tsm
+from comparisons.exact.rod import rod_under_pin
+from tsm.elements import mixed_contact
+from tsm.elements.curve import Curve
+from tsm.elements.properties import Properties
+
+PINS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
+SLIP_OFF = (1.7814439389, 1.6861593947, 1.4716026278, 1.2107350431, 1.0524732309, 0.8625478871)
+EA, GA, EI, LENGTH = 2.1e11 * 0.005, 7.5e10 * 0.005, 2.1e11 * 0.001, 4.5
+SECTIONS = {
+    "4.1": (tsm.Section(EA=EA, GA=GA, EI=EI), LENGTH),
+    "4.2": (
+        tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6),
+        1.0,
+    ),
+    "4.3": (tsm.Section(EA=2e7 * 3e-4, GA=7.142e6 * 3e-4, EI=2e7 * 2.2e-8), 1.0),
+}
+
+
+def cantilever(path, *, section="4.1", elements=18, element="mixed", place=None):
+    stiffness, length = SECTIONS[section]
+    put = place or (lambda point: point)
+    return tsm.Structure(
+        beams=(
+            tsm.Beam(
+                name="b",
+                start=put((0.0, 0.0)),
+                end=put((length, 0.0)),
+                section=stiffness,
+                elements=elements,
+                element=element,
+            ),
+        ),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=tuple(put(point) for point in path)),),
+        contacts=(tsm.ContactPair(node="p", beam="b"),),
+    )
+
+
+def slip_off(x, elements):
+    result = tsm.solve(cantilever(((x, 0.0), (x, 2.0)), elements=elements), np.arange(1, 21) / 20)
+    return 2.0 * next(e.load_parameter for e in result.events if e.kind is tsm.EventKind.SLIP_OFF)
+
+
+@pytest.mark.parametrize(("x", "exact"), list(zip(PINS, SLIP_OFF, strict=True)))
+def test_slip_off_displacements(x, exact):
+    """Within 1e-5, which is the fourth power of the shear strain there, with 18 and with 72 elements."""
+    assert slip_off(x, 18) == pytest.approx(exact, rel=1e-5)
+    assert slip_off(x, 72) == pytest.approx(exact, rel=1e-5)
+
+
+def test_floor_is_the_fourth_power_of_the_shear_strain():
+    """Up to gamma = F/GA = 3 %, many elements differ from the rod by 5 gamma^4, where the bow alone leaves gamma^2."""
+    depths = np.arange(1, 21) / 20 * 1.6
+    exact = rod_under_pin([(4.05, 0.0), *((4.05, d) for d in depths)], EA=EA, GA=GA, EI=EI, length=LENGTH)
+    gamma = exact.magnitude[1:] / GA
+    assert gamma.max() == pytest.approx(0.03, rel=0.02)
+    result = tsm.solve(cantilever(((4.05, 0.0), (4.05, 1.6)), elements=72), depths / 1.6)
+    error = np.abs(result.contacts["p->b"].force / exact.magnitude[1:] - 1)
+    assert (error <= 5 * gamma**4 + 1e-9).all()
+
+
+def offsets():
+    """l_i/l beside a node: on it, one ulp to both sides, 1e-16 to 1e-1, the middle."""
+    powers = 10.0 ** np.arange(-16, 0)
+    return np.concatenate([[0.0, 0.5], powers, -powers])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("section", SECTIONS)
+def test_no_critical_area(section):
+    """Positions around every node, ten depths each, 10,000 in all: the same tolerance everywhere, no cut-back."""
+    length = SECTIONS[section][1]
+    elements, count = 11, 0
+    for node in range(1, elements):
+        x0 = length * node / elements
+        for x in (*(x0 + offsets() * length / elements), np.nextafter(x0, 0), np.nextafter(x0, 9)):
+            path = ((float(x), 0.0), (float(x), 0.02 * length))
+            taken = list(
+                tsm.march(cantilever(path, section=section, elements=elements), np.arange(1, 11) / 10)
+            )
+            assert [step.requested for step in taken] == [True] * 10
+            assert sum(step.cutbacks for step in taken) == 0
+            assert max(step.equilibrium.residuals[-1] for step in taken) <= 1e-9
+            count += len(taken)
+    assert count >= 3333
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("x", PINS)
+def test_success_map(x):
+    """20 step counts from 10 to 500: all complete, and no answer depends on the count."""
+    reference = None
+    for count in np.unique(np.round(np.geomspace(1, 50, 20)).astype(int) * 10):
+        result = tsm.solve(cantilever(((x, 0.0), (x, 0.8))), np.arange(1, count + 1) / count)
+        tenths = result.contacts["p->b"].force[count // 10 - 1 :: count // 10]
+        reference = tenths if reference is None else reference
+        assert tenths == pytest.approx(reference, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_a_thousand_cycles_leave_nothing_behind():
+    """Touch, push .05 and release, again and again: the same force and the same straight beam to 1e-10."""
+    cycles = 1000
+    path = [(4.1, -0.05)]
+    for _ in range(cycles):
+        path += [(4.1, 0.05), (4.1, -0.05)]
+    result = tsm.solve(cantilever(tuple(path)), np.arange(1, 2 * cycles + 1) / (2 * cycles))
+    force = result.contacts["p->b"].force
+    assert np.abs(force[0::2] / force[0] - 1).max() <= 1e-10
+    assert (force[1::2] == 0).all()
+    assert np.abs(result.tips["b"][1::2] - [LENGTH, 0.0]).max() <= 1e-10 * LENGTH
+    kinds = [e.kind for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]
+    assert kinds == [tsm.EventKind.TOUCH, tsm.EventKind.RELEASE] * cycles
+
+
+@cache
+def plain_force(section):
+    length = SECTIONS[section][1]
+    path = ((0.9 * length, 0.0), (0.6 * length, 0.4 * length))
+    return path, tsm.solve(cantilever(path, section=section), np.array([0.5, 1.0])).contacts["p->b"].force
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("section", SECTIONS)
+def test_objectivity(section):
+    """1,000 random rigid motions change no force by more than 1e-10."""
+    rng = np.random.default_rng(7)
+    path, force = plain_force(section)
+    length = SECTIONS[section][1]
+    for _ in range(334):
+        angle, shift = rng.uniform(-np.pi, np.pi), rng.normal(size=2) * length
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+        def place(point, turn=turn, shift=shift):
+            return tuple((turn @ np.array(point) + shift).tolist())
+
+        moved = tsm.solve(cantilever(path, section=section, place=place), np.array([0.5, 1.0]))
+        assert moved.contacts["p->b"].force == pytest.approx(force, rel=1e-10)
+
+
+def test_end_swap_and_mirror():
+    """The beam named from its other end, or everything mirrored: the same force, the other side."""
+    path, force = plain_force("4.2")
+    structure = cantilever(path, section="4.2")
+    swapped = replace(
+        structure,
+        beams=(replace(structure.beams[0], start=(1.0, 0.0), end=(0.0, 0.0)),),
+        supports=(tsm.Support(beam="b", end="end"),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side="left"),),
+    )
+    mirrored = replace(
+        structure,
+        pins=(tsm.Pin(name="p", path=tuple((x, -y) for x, y in path)),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side="left"),),
+    )
+    for other in (swapped, mirrored):
+        found = tsm.solve(other, np.array([0.5, 1.0])).contacts["p->b"]
+        assert found.force == pytest.approx(force, rel=1e-10)
+
+
+@pytest.mark.parametrize("shear", [0.0, 0.3])
+def test_either_neighbour_as_owner(shear):
+    """At a node the forces on nodes, the residuals and the energy are the same from both sides; without shear the direction too."""
+    rng = np.random.default_rng(8)
+    l0, stiffness = 0.1, 2.8e-4
+    for _ in range(50):
+        left = rng.normal(size=6) * np.array([0.01, 0.01, 0.1] * 2)
+        first = Properties(l0, 0.0, l0, 8.4, stiffness, shear)
+        second = first
+        right = np.concatenate([left[3:], rng.normal(size=3) * [0.01, 0.01, 0.1]])
+        force = rng.normal(size=2) * 1e-3
+        # x_i - x_c with the node at the joint of both elements
+        joint = rng.normal(size=2) * 1e-3
+        lever_left = joint - np.array([l0, 0.0]) - left[3:5] + left[:2]
+        a, _ = mixed_contact.response(first, left, lever_left, 1.0, force, 1.0, 0.0)
+        b, _ = mixed_contact.response(second, right, joint, 0.0, force, 1.0, 0.0)
+        size = np.hypot(*force)
+        # force on the common node, position residual; the far nodes get nothing
+        assert np.abs(a[3:6] - b[:3]).max() <= 1e-10 * size
+        assert np.abs(a[8:10] - b[8:10]).max() <= 1e-10 * l0
+        assert np.abs(a[:3]).max() + np.abs(b[3:6]).max() <= 1e-10 * size
+        energy = [
+            mixed_contact.energy(first, left, lever_left, 1.0, force, 1.0, 0.0),
+            mixed_contact.energy(second, right, joint, 0.0, force, 1.0, 0.0),
+        ]
+        assert energy[0] == pytest.approx(energy[1], rel=1e-10, abs=1e-18)
+        if shear == 0:
+            # without shear both tangents point along the node's rotation: the force's component along them is one
+            along = [
+                gradient[10] * l0 / np.hypot(c.dx, c.dy) / np.hypot(1.0, c.deflection(xi)[1])
+                for gradient, c, xi in ((a, Curve(first, left), 1.0), (b, Curve(second, right), 0.0))
+            ]
+            assert along[0] == pytest.approx(along[1], abs=1e-10 * size)
