@@ -78,6 +78,31 @@ def beams_against_solid(gates: list[Gate], times: dict[str, float]) -> None:
         gates.append(Gate(f"cut-backs, {name}", result.cutbacks, 0, False))
 
 
+def scenes_and_elements(gates: list[Gate], times: dict[str, float]) -> None:
+    """Double beam against the KS run, and the element without critical area against the paper's, per iteration."""
+    ks, both = load_scene("ks-cantilever"), load_scene("double-beam")
+    one, two = to_structure(ks, elements=20), to_structure(both, elements=10)
+    t, depths = np.arange(1, 51) / 50, np.arange(1, both.load_parameters + 1) / both.load_parameters
+    single, double = seconds(lambda: tsm.solve(one, t), lambda: tsm.solve(two, depths))
+    times |= {"tsm mixed 20, KS": single, "tsm mixed 10 + 10, double beam": double}
+    gates.append(Gate("double beam over KS with 20 elements, seconds", double / single, 4, False))
+
+    actions = []
+    for element in ("mixed", "timoshenko"):
+        structure = to_structure(ks, elements=20, element=element)
+        result = tsm.solve(structure, np.array([0.1]))
+        assembler, state = Assembler(result.model), result.equilibria[-1].state
+
+        def iterate(assembler: Assembler = assembler, state: Any = state) -> None:
+            for _ in range(200):
+                assembler.solve(assembler.linearise(state))
+
+        actions.append(iterate)
+    mixed, paper = seconds(*actions)
+    times |= {"200 iterations, mixed 20": mixed, "200 iterations, timoshenko 20": paper}
+    gates.append(Gate("mixed over timoshenko, seconds per iteration", mixed / paper, 1.3, False))
+
+
 def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
     """Exponent of the cost of one iteration over the elements, largest chord from 200 to 2000."""
     scene = load_scene("ks-cantilever")
@@ -151,7 +176,7 @@ def main() -> None:
     out = parser.parse_args().out
     gates: list[Gate] = []
     times: dict[str, float] = {}
-    for part in (beams_against_solid, linear_cost, assembly, import_time):
+    for part in (beams_against_solid, scenes_and_elements, linear_cost, assembly, import_time):
         part(gates, times)
     for gate in gates:
         print(gate)

@@ -1,4 +1,4 @@
-"""The paper's matrices with their misprints, to see what they do. They are wrong: see docs/errata.md.
+"""The paper's matrices with their misprints, to see what they do. They are wrong: see tsm/elements/errata.md.
 
 Each is the corrected matrix except for the misprinted entries, which mix dimensions: what these elements
 do depends on the unit of length. Lengths on the chord are measured as in the corrected elements, as parts of l0, so

@@ -1,4 +1,4 @@
-"""The paper's matrices against sympy, entry by entry; docs/errata.md against both; the elements they make."""
+"""The paper's matrices against sympy, entry by entry; tsm/elements/errata.md against both; the elements they make."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tsm.elements import ELEMENTS, as_printed, cantilever, chord_contact, mixed_
 from tsm.elements.properties import Properties
 
 STEP = 1e-30j
-ERRATA = Path(__file__).parents[3] / "docs" / "errata.md"
+ERRATA = Path(__file__).parents[3] / "tsm" / "elements" / "errata.md"
 PAPER = [name for name, kind in ELEMENTS.items() if not kind.carries_force]
 PRINTED = [name for name in PAPER if name.endswith("-as-printed")]
 
