@@ -12,7 +12,7 @@ K is solved for both right-hand sides at once, so its band is kept; the path pas
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -155,11 +155,7 @@ class _Path:
         return _Tangent(x=sign * x / size, load=sign / size)
 
     def _moved(self, state: State, step: Array, load: float) -> State:
-        moved = self.newton.update(state, step)
-        q = moved.q.copy()
-        t = state.load_parameter + load
-        q[self.model.fixed] = t * self.model.fixed_values
-        return replace(moved, q=q, load_parameter=t)
+        return self.newton.prescribed(self.newton.update(state, step), state.load_parameter + load)
 
     def _step(self, length: float) -> tuple[tuple[Equilibrium, _Tangent] | None, int]:
         """Equilibrium a distance along the tangent, and the iterations it took."""

@@ -106,6 +106,14 @@ class Newton:
         noise = max(self.noise, min(system.noise / self.model.force_scale, _CRITICAL))
         return residuals[-1] <= self.tolerance or (len(residuals) > 1 and max(residuals[-2:]) <= noise)
 
+    def prescribed(self, state: State, t: float) -> State:
+        """State at a load parameter, its supports where they are prescribed."""
+        if not self.model.fixed_values.any():
+            return replace(state, load_parameter=t)
+        q = state.q.copy()
+        q[self.model.fixed] = t * self.model.fixed_values
+        return replace(state, load_parameter=t, q=q)
+
     def update(self, state: State, step: Array) -> State:
         """State after a step, shortened so that no node and no contact moves too far at once."""
         model = self.model

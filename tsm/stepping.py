@@ -16,6 +16,7 @@ import numpy as np
 from tsm.contact import arc_position, chord_owner, node_position, owner_at, project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
+from tsm.guard import PathGuard
 from tsm.model import Model, PairModel
 from tsm.newton import Equilibrium, Newton
 from tsm.settings import Settings
@@ -75,6 +76,13 @@ class Stepper:
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.step = 1.0
         self.failure = start.status
+        self.driven = bool(model.load.any() or model.fixed_values.any())
+        self.guard = self._guard()
+
+    def _guard(self) -> PathGuard | None:
+        if not self.driven or self.accepted.status is not Status.CONVERGED:
+            return None
+        return PathGuard(self.newton, self.accepted.state)
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
@@ -87,7 +95,8 @@ class Stepper:
         for target in load_parameters.tolist():
             while (t := self.accepted.state.load_parameter) < target:
                 left = target - t
-                goal = target if left <= self.step * (1 + 1e-6) else t + self.step
+                step = min(self.step, self.guard.reach(left)) if self.guard else self.step
+                goal = target if left <= step * (1 + 1e-6) else t + step
                 status = self._attempt(goal)
                 if status is Status.CONVERGED:
                     yield self._record(self.accepted.state.load_parameter == target, status)
@@ -96,7 +105,7 @@ class Stepper:
                     return
                 else:
                     self.cutbacks += 1
-                    self.step = min(self.step, left) / 2
+                    self.step = min(step, left) / 2
                     if self.step < self.settings.smallest_step:
                         yield self._record(False, self._verdict())
                         return
@@ -157,24 +166,22 @@ class Stepper:
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
     def _solve(self, t: float) -> Equilibrium | None:
-        starts = [self._moved_to(self.history[-1], t)]
-        if len(self.history) > 1:
-            starts.insert(0, self._moved_to(extrapolate(self.model, self.history, t), t))
+        if self.guard:
+            starts = [self.guard.predicted(t)]
+        else:
+            starts = [replace(self.history[-1], load_parameter=t)]
+            if len(self.history) > 1:
+                starts.insert(0, extrapolate(self.model, self.history, t))
         for start in starts:
             equilibrium = self.newton.solve(start)
             self.iterations += equilibrium.iterations
             if equilibrium.status is Status.CONVERGED:
+                if self.guard and not self.guard.keeps(equilibrium.state):
+                    self.failure = Status.ITERATION_LIMIT
+                    return None
                 return equilibrium
             self.failure = equilibrium.status
         return None
-
-    def _moved_to(self, state: State, t: float) -> State:
-        """State at a load parameter, its supports where they are prescribed."""
-        if not self.model.fixed_values.any():
-            return replace(state, load_parameter=t)
-        q = state.q.copy()
-        q[self.model.fixed] = t * self.model.fixed_values
-        return replace(state, load_parameter=t, q=q)
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -324,6 +331,7 @@ class Stepper:
         self.accepted = replace(equilibrium, state=state)
         self.history = [*self.history[1 - _MEMORY :], state]
         self.margins = self._measure(self.accepted)
+        self.guard = self._guard()
 
     def _note_passes(self, equilibrium: Equilibrium) -> None:
         """Note changes of owner since the last state, at linearly interpolated load parameters."""

@@ -191,17 +191,31 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     return _GATHER @ reduced, _SPREAD @ entries
 
 
+def axial_force(a: Coefficients, x: Array) -> Array:
+    """Axial force along the chord, shape (n,); arguments as for `response`."""
+    e, mm, hh = _deformation(a, x)
+    polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
+    force: Array = (e + polynomial[0]) / polynomial[1]
+    return force
+
+
 def energy(a: Coefficients, x: Array) -> Array:
     """Strain energy of beam elements, shape (n,); arguments as for `response`."""
+    e, mm, hh = _deformation(a, x)
+    polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
+    stretch = (e + polynomial[0]) ** 2 / polynomial[1]
+    bending = a.constant[2] * mm + a.constant[3] * hh
+    value: Array = (stretch + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2
+    return value
+
+
+def _deformation(a: Coefficients, x: Array) -> tuple[Array, Array, Array]:
+    """Elongation of the chord and the squares of m and h."""
     shift = x[3:5] - x[:2]
     chord = a.chord + shift
     (x0, y0), (dx, dy) = a.chord, chord
-    stretched = ((a.chord + chord) * shift).sum(axis=0)
+    stretched = (a.chord + chord) * shift
+    e = (stretched[0] + stretched[1]) / (np.sqrt(dx * dx + dy * dy) + a.l0)
     turn = chord_rotation(x0 * dy - y0 * dx, x0 * dx + y0 * dy)
     m, h = unwind((x[2] + x[5]) / 2 - turn), (x[2] - x[5]) / 2
-    mm, hh = m * m, h * h
-    polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
-    e = stretched / (np.sqrt(dx * dx + dy * dy) + a.l0) + polynomial[0]
-    bending = a.constant[2] * mm + a.constant[3] * hh
-    value: Array = (e * e / polynomial[1] + bending + a.r4 * mm * mm / 4 + a.r2 * mm * hh / 2) / 2
-    return value
+    return e, m * m, h * h

@@ -1,0 +1,72 @@
+"""How far the tangent of the path can be trusted, where loads or supports drive the structure.
+
+Newton's method finds some equilibrium; near a buckling load or a limit point it may be one of another branch. A step that keeps
+to its branch stays close to the tangent: its prediction is short, and the equilibrium is near the prediction. A node that is driven
+through its contact needs no guard: its force and position are unknowns that the extrapolation follows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tsm.elements import beam
+from tsm.elements.properties import Array
+from tsm.newton import Newton
+from tsm.state import State
+
+SHORT = 0.1
+"""Longest prediction, in largest Newton steps (0.3 L, 0.7 rad)."""
+FORCE = 0.1
+"""Largest predicted change of an axial force, in parts of ``EI/L^2 + max |N|``."""
+
+
+class PathGuard:
+    """Tangent at a configuration.
+
+    Parameters
+    ----------
+    newton : Newton
+        Its assembler gives the tangent.
+    state : State
+        In equilibrium.
+    """
+
+    def __init__(self, newton: Newton, state: State) -> None:
+        self.newton = newton
+        self.state = state
+        assembler, model = newton.assembler, newton.model
+        solved = assembler.solve(assembler.linearise(state), -assembler.rate(state))
+        self.rates: Array | None = None if solved is None else solved[:, 1]
+        q = np.zeros(model.dof_count)
+        q[model.fixed] = model.fixed_values
+        if self.rates is not None:
+            q[model.free] = self.rates[: model.equations]
+        self.q_rate = q
+        at = self._axial_force(state.q + 1e-60j * q)
+        self.force, self.force_rate = at.real, at.imag / 1e-60
+        self.force_scale = FORCE * (model.force_scale + np.abs(self.force).max())
+
+    def reach(self, longest: float) -> float:
+        """Longest step of the load parameter that the tangent is trusted for."""
+        speed = np.abs(self.q_rate[self.newton.model.free] * self.newton.per_limit).max(initial=0.0) / SHORT
+        fastest = max(speed, np.abs(self.force_rate).max() / self.force_scale)
+        return longest if fastest * longest <= 1 else float(1 / fastest)
+
+    def predicted(self, t: float) -> State:
+        """State at a load parameter along the tangent."""
+        moved = self.newton.prescribed(self.state, t)
+        if self.rates is None:
+            return moved
+        return self.newton.update(moved, (t - self.state.load_parameter) * self.rates)
+
+    def keeps(self, found: State) -> bool:
+        """Whether an equilibrium is near its prediction, in displacements and in axial forces."""
+        model = self.newton.model
+        step = found.load_parameter - self.state.load_parameter
+        miss = (found.q - self.state.q - step * self.q_rate)[model.free] * self.newton.per_limit
+        force = self._axial_force(found.q) - self.force - step * self.force_rate
+        return bool(np.abs(miss).max(initial=0.0) <= SHORT / 2 and np.abs(force).max() <= self.force_scale)
+
+    def _axial_force(self, q: Array) -> Array:
+        model = self.newton.model
+        return beam.axial_force(model.coefficients, q[model.dofs])
