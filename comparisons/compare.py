@@ -79,6 +79,7 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
         If `folder` cannot be written; nothing is computed.
     """
     rod = to_rod(scene)
+    pair = None if rod.contact is None else rod.contact.pair
     folder = writable_folder(folder)
     responses = _solve_all(scene, report)
     reference = responses[ROD.label]
@@ -88,7 +89,7 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
             response=response,
             errors=None
             if response is reference
-            else errors(response, reference, pair=rod.pair, beam=rod.beam.name, length=rod.beam.length),
+            else errors(response, reference, pair=pair, beam=rod.beam.name, length=rod.beam.length),
         )
         for label, response in responses.items()
     ]

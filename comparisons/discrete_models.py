@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from comparisons.options import Options
-from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
-from comparisons.scene import BeamSpec, Scene
+from comparisons.response import Array, ContactEvent, ContactHistory, Grid, Response, SupportHistory
+from comparisons.scene import Scene, SupportSpec
 from comparisons.translate import to_solid, to_structure
 
 
@@ -25,17 +25,64 @@ def solve_tsm(scene: Scene, options: Options) -> Response:
     def grid(k: int) -> Grid:
         return _beam_grid(scene, result, k)
 
-    tips = {
-        beam.name: np.array([_free_end(result, beam, k) for k in range(len(result.load_parameter))]).reshape(
-            -1, 2
-        )
-        for beam in scene.beams
-    }
+    response = _response("tsm", scene, result, result.axis_line, grid)
+    return replace(
+        response,
+        tips={beam.name: _tip(scene, result, beam.name) for beam in scene.beams},
+        supports=_beam_supports(scene, result),
+        contacts=_beam_contacts(response, result),
+        events=tuple(_event(event) for event in result.events),
+    )
+
+
+def _event(event: Any) -> ContactEvent:
+    return ContactEvent(
+        kind=event.kind.value,
+        load_parameter=event.load_parameter,
+        pair=event.pair,
+        element=int(event.element),
+        arc_position=event.arc_position,
+        force=event.force,
+        released=event.released,
+    )
+
+
+def _beam_contacts(response: Response, result: Any) -> dict[str, ContactHistory]:
+    """Add the force vectors and the first slip-off of each pair."""
     slipped = {
         event.pair: event.load_parameter for event in reversed(result.events) if event.kind.name == "SLIP_OFF"
     }
-    response = _response("tsm", scene, result, result.axis_line, grid, slipped=slipped)
-    return replace(response, tips=tips)
+    return {
+        pair: replace(
+            history,
+            slip_off=slipped.get(pair, np.nan),
+            vector=_rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
+        )
+        for number, (pair, history) in enumerate(response.contacts.items())
+    }
+
+
+def _beam_supports(scene: Scene, result: Any) -> dict[str, SupportHistory]:
+    supports: dict[str, SupportHistory] = {}
+    for beam in scene.beams:
+        own = [_reaction(support, result) for support in scene.supports_of(beam.name)]
+        if own:
+            supports[beam.name] = replace(own[0], other_end=own[1]) if len(own) > 1 else own[0]
+    return supports
+
+
+def _reaction(support: SupportSpec, result: Any) -> SupportHistory:
+    """Forces on the held components of a supported node."""
+    node = 3 * result.model.end_node(support.node)
+    held = [value is not None for value in support.motion]
+    table = _rows(
+        [np.where(held, state.system.nodal[node : node + 3], 0.0) for state in result.equilibria], 3
+    )
+    return SupportHistory(force=table[:, :2], moment=table[:, 2])
+
+
+def _rows(rows: list[Any], width: int) -> Array:
+    return np.array(rows, dtype=np.float64).reshape(-1, width)
 
 
 def solve_solid(scene: Scene, options: Options) -> Response:
@@ -71,7 +118,6 @@ def _response(
     grid: Callable[[int], Grid],
     *,
     compliance: float = 0.0,
-    slipped: dict[str, float] | None = None,
 ) -> Response:
     """Take over what both solvers' results have in common."""
     contacts = {
@@ -80,7 +126,6 @@ def _response(
             arc_position=history.arc_position,
             gap=history.gap,
             compliance=compliance,
-            slip_off=(slipped or {}).get(pair, np.nan),
         )
         for pair, history in result.contacts.items()
     }
@@ -135,10 +180,10 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
     }
 
 
-def _free_end(result: Any, beam: BeamSpec, k: int) -> Array:
-    """Return the deformed position of the end that is not clamped, of the beam's end if both are."""
-    node = 0 if beam.clamped == ("end",) else -1
-    return np.asarray(result.shape(beam.name, k)[node, :2])
+def _tip(scene: Scene, result: Any, beam: str) -> Array:
+    """Deformed positions (s, 2) of a beam's less held end."""
+    node = 0 if scene.tip(beam) == "start" else -1
+    return _rows([result.shape(beam, k)[node, :2] for k in range(len(result.load_parameter))], 2)
 
 
 def _pairs(values: Array) -> Array:

@@ -1,7 +1,7 @@
 """The two exact models, Reissner's rod and the elastica, as responses."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from comparisons.exact.elastica import ElasticaState, elastica_under_pin
 from comparisons.exact.outcome import Outcome
-from comparisons.exact.rod import rod_under_pin
+from comparisons.exact.rod import RodPath, rod_under_pin
+from comparisons.exact.tied import TiedPath, rod_with_tied_tip
 from comparisons.options import ModelError, Options
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene
@@ -21,9 +22,9 @@ POINTS = 401
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LocalStates:
-    """States of a cantilever in its local frame (`RodScene`), one per pin position; forces are those of the pin."""
+    """States of a cantilever in its local frame (`RodScene`), one per load parameter; forces are those of pin or tied point."""
 
-    outcome: tuple[Outcome, ...]
+    outcome: Sequence[Outcome]
     force: Array
     arc_position: Array
     clamp_moment: Array
@@ -32,30 +33,45 @@ class LocalStates:
     shape: Callable[[int], Array]
 
 
+STOPS = {
+    "LOST": "no stable equilibrium is connected with the straight beam",
+    "LOST_CONTACT": "a contact that must persist was released",
+    "SLIPPED_OFF": "a contact that must persist slipped off the beam",
+}
+"""How an exact solution can stop."""
+
+
 def solve_rod(scene: Scene, _: Options) -> Response:
     """Solve `scene` as a Reissner rod."""
     local = to_rod(scene)
-    beam = local.beam
+    beam, hits = local.beam, local.hits
+    stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
+    path: TiedPath | RodPath
     began = perf_counter()
-    path = rod_under_pin(
-        local.path, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length, offset=local.offset
-    )
+    if local.contact is None:
+        path = rod_with_tied_tip(local.path, **stiffness)
+        arc_position = np.full(len(path.force), beam.length)
+    else:
+        path = rod_under_pin(local.path, offset=local.offset, **stiffness)
+        arc_position = path.arc_position
     seconds = perf_counter() - began
     states = LocalStates(
-        outcome=tuple(path.outcome[hit] for hit in local.hits),
-        force=path.force[local.hits],
-        arc_position=path.arc_position[local.hits],
-        clamp_moment=path.clamp_moment[local.hits],
-        tip=path.tip[local.hits],
-        iterations=np.diff(np.cumsum(path.iterations)[local.hits], prepend=0),
-        shape=lambda k: path.shape(int(local.hits[k]), POINTS)[:, :2],
+        outcome=[path.outcome[hit] for hit in hits],
+        force=path.force[hits],
+        arc_position=arc_position[hits],
+        clamp_moment=path.clamp_moment[hits],
+        tip=path.tip[hits],
+        iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
+        shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
     )
-    return _response("rod", scene, local, states, unknowns=2, seconds=seconds)
+    return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
 
 def solve_elastica(scene: Scene, _: Options) -> Response:
     """Solve `scene` as an elastica, in closed form."""
     local = to_rod(scene)
+    if local.contact is None:
+        raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
     if local.offset:
         raise ModelError('the elastica has contact on its axis only, the scene has surface = "face"')
     beam = local.beam
@@ -84,20 +100,8 @@ def _response(
 ) -> Response:
     """Turn local states into the scene's frame; what lies beyond a lost equilibrium is left out."""
     name, length = local.beam.name, local.beam.length
-    reached = next(
-        (k for k, outcome in enumerate(states.outcome) if outcome is Outcome.LOST), len(states.outcome)
-    )
-    lost = reached < len(states.outcome)
-    outcome = np.array(states.outcome[:reached], dtype=object)
     times = np.array(scene.times)
-    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
-    below = -local.points[:reached, 1] - local.offset
-    contact = ContactHistory(
-        force=np.hypot(*states.force[:reached].T),
-        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
-        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
-        slip_off=float(times[np.argmax(slipped)]) if slipped.any() else np.nan,
-    )
+    stop, reached = _end(states.outcome, keep=local.contact is not None and local.contact.keep)
 
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
         arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
@@ -114,18 +118,21 @@ def _response(
     support = SupportHistory(
         force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
     )
+    if local.contact is None:
+        at_tip = SupportHistory(force=-support.force, moment=np.zeros(reached))
+        support = replace(support, other_end=at_tip)
     return Response(
         model=model,
         scene=scene.name,
-        status="LOST" if lost else "COMPLETED",
+        status=stop or "COMPLETED",
         message=(
-            f"no equilibrium is connected with the straight beam at load parameter {times[reached]:.6g}"
-            if lost
+            f"{STOPS[stop]} at load parameter {times[reached]:.6g}"
+            if stop
             else "all load parameters were reached"
         ),
-        completed=not lost,
+        completed=stop is None,
         load_parameter=times[:reached],
-        contacts={local.pair: contact},
+        contacts=_contacts(scene, local, states, reached),
         supports={name: support},
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
@@ -135,3 +142,31 @@ def _response(
         axis_line=axis_line,
         grid=grid,
     )
+
+
+def _end(outcome: Sequence[Outcome], *, keep: bool) -> tuple[str | None, int]:
+    """Return why the solution stops, None if it does not, and the number of load parameters before."""
+    closed = False
+    for k, state in enumerate(outcome):
+        if state is Outcome.LOST:
+            return "LOST", k
+        if keep and closed and state is not Outcome.CONTACT:
+            return ("SLIPPED_OFF" if state is Outcome.SLIPPED else "LOST_CONTACT"), k
+        closed = closed or state is Outcome.CONTACT
+    return None, len(outcome)
+
+
+def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
+    if local.contact is None:
+        return {}
+    outcome = np.array(states.outcome[:reached], dtype=object)
+    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
+    below = -local.points[:reached, 1] - local.offset
+    history = ContactHistory(
+        force=np.hypot(*states.force[:reached].T),
+        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
+        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
+        slip_off=float(scene.times[np.argmax(slipped)]) if slipped.any() else np.nan,
+        vector=local.vector(states.force[:reached]),
+    )
+    return {local.contact.pair: history}

@@ -33,8 +33,7 @@ def _three(vectors: Array) -> Array:
 def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     """Return the pins as points: displacement, contact force on the beam, and gap (nan without contact).
 
-    The force vector of a single pair is the one that the supports balance; with more pairs the force acts along the
-    normal of the deflected axis at its arc position.
+    A model that states no force vectors has one pair, whose force is the one that the support balances.
     """
     t = float(response.load_parameter[k])
     pins = [(contact, scene.pin(contact.node)) for contact in scene.contacts if "." not in contact.node]
@@ -43,13 +42,7 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     force = np.zeros_like(start)
     for i, (contact, _) in enumerate(pins):
         history = response.contacts[contact.pair]
-        if len(scene.contacts) == 1:
-            force[i] = -response.supports[contact.beam].force[k]
-        elif history.force[k] > 0.0:
-            sign = 1.0 if contact.side == "right" else -1.0
-            force[i] = (
-                sign * history.force[k] * _normal(response, contact.beam, k, float(history.arc_position[k]))
-            )
+        force[i] = -response.supports[contact.beam].force[k] if history.vector is None else history.vector[k]
     data = {
         "displacement": deformed - start,
         "deformed": deformed,
@@ -59,15 +52,8 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     return Grid(points=start, cells={"vertex": np.arange(len(pins)).reshape(-1, 1)}, point_data=data)
 
 
-def _normal(response: Response, beam: str, k: int, arc: float) -> Array:
-    """Left normal of the deflected axis at an arc position."""
-    stations, line = response.axis_line(beam, k)
-    tangent = np.array([np.interp(arc, stations, np.gradient(line[:, i], stations)) for i in range(2)])
-    return np.asarray(np.array([-tangent[1], tangent[0]]) / np.hypot(*tangent))
-
-
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
-    """Write one VTU of the body and one of the pins per load parameter, and ``MODEL.pvd`` that lists them.
+    """Write one VTU of the body and one of the pins, if any, per load parameter, and ``MODEL.pvd`` that lists them.
 
     Files of an earlier, longer series are removed.
 
@@ -80,7 +66,9 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     written: set[Path] = set()
     entries: list[str] = []
     for k, t in enumerate(response.load_parameter):
-        parts = {response.model: response.grid(k), "pin": pin_grid(response, scene, k)}
+        parts = {response.model: response.grid(k)}
+        if scene.pins:
+            parts["pin"] = pin_grid(response, scene, k)
         for part, (name, grid) in enumerate(parts.items()):
             path = folder / f"{name}-{k + 1:04d}.vtu"
             write_vtu(path, grid)

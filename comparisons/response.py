@@ -25,6 +25,8 @@ class ContactHistory:
         Penetration per force of a penalty model, ``gap = -compliance force``.
     slip_off : float
         Load parameter at which the node left the beam over its free end; nan if it did not.
+    vector : ndarray, shape (s, 2), optional
+        The contact force on the beam, where the model states it.
     """
 
     force: Array
@@ -32,14 +34,57 @@ class ContactHistory:
     gap: Array
     compliance: float = 0.0
     slip_off: float = np.nan
+    vector: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportHistory:
-    """What the supports of one beam exert on it: force (s, 2), moment about the clamped point (s,)."""
+    """What the support of a beam exerts on it; of two supports, the one that holds more, the start's if they hold the same.
+
+    Attributes
+    ----------
+    force : ndarray, shape (s, 2)
+        Force.
+    moment : ndarray, shape (s,)
+        Moment about the supported point, zero where the rotation is free.
+    other_end : SupportHistory or None
+        What a second support exerts, at the beam's other end.
+    """
 
     force: Array
     moment: Array
+    other_end: "SupportHistory | None" = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactEvent:
+    """A change of the contact, located by the model.
+
+    Attributes
+    ----------
+    kind : str
+        ``touch``, ``release``, ``slip-off`` or ``pass-through``: the contact point moved on to the neighbouring element.
+    load_parameter : float
+        Where.
+    pair : str
+        ``node->beam``.
+    element : int
+        Element that is touched, from 0 at the beam's start; after a pass-through, the new one.
+    arc_position : float
+        Distance along the undeformed axis from the beam's start.
+    force : float
+        Contact force before the event.
+    released : float
+        Strain energy set free by the jump after a slip-off.
+    """
+
+    kind: str
+    load_parameter: float
+    pair: str
+    element: int
+    arc_position: float
+    force: float
+    released: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,11 +121,13 @@ class Response:
     load_parameter : ndarray, shape (s,)
         The accepted load parameters of the scene.
     contacts : dict of ContactHistory
-        By pair, ``node->beam``.
+        By pair, ``node->beam``; empty without contact.
+    events : tuple of ContactEvent or None
+        In order; None for a model that does not locate them.
     supports : dict of SupportHistory
-        By beam.
+        By beam; beams without a support are left out.
     tips : dict of ndarray, shape (s, 2)
-        Position of the free end, by beam.
+        Position of the end that is held less, by beam: the beam's end unless that is clamped and its start is not.
     newton_iterations : ndarray of int, shape (s,)
         All iterations spent since the previous load parameter.
     cutbacks, unknowns : int
@@ -108,3 +155,4 @@ class Response:
     wall_seconds: float
     axis_line: Callable[[str, int], tuple[Array, Array]] = field(repr=False)
     grid: Callable[[int], Grid] = field(repr=False)
+    events: tuple[ContactEvent, ...] | None = None

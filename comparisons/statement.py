@@ -3,12 +3,15 @@
 import json
 import math
 import sys
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
 import numpy as np
 
-from comparisons.response import Response
+from comparisons.response import ContactEvent, Response, SupportHistory
 
 DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
@@ -25,7 +28,12 @@ def as_json(response: Response) -> str:
 
 
 def as_dict(response: Response) -> dict[str, Any]:
-    """Return what a response states, by the names of the JSON file."""
+    """Return what a response states, by the names of the JSON file.
+
+    ``supports.{beam}`` holds moment and force of the beam's support, and those of a second one under ``other_end``: where a clamped
+    beam's tip is moved, the first is the clamp and the other the force on the tip. ``events`` is null for a model that
+    does not locate them.
+    """
     return {
         "status": response.status,
         "model": response.model,
@@ -35,17 +43,20 @@ def as_dict(response: Response) -> dict[str, Any]:
             pair: {"force": contact.force, "arc_position": contact.arc_position, "gap": contact.gap}
             for pair, contact in response.contacts.items()
         },
-        "supports": {
-            beam: {"moment": support.moment, "force": support.force}
-            for beam, support in response.supports.items()
-        },
+        "supports": {beam: _support(support) for beam, support in response.supports.items()},
         "tips": response.tips,
+        "events": None if response.events is None else [asdict(event) for event in response.events],
         "newton_iterations": response.newton_iterations,
         "cutbacks": response.cutbacks,
         "unknowns": response.unknowns,
         "wall_seconds": response.wall_seconds,
         "versions": versions(),
     }
+
+
+def _support(support: SupportHistory) -> dict[str, Any]:
+    own = {"moment": support.moment, "force": support.force}
+    return own if support.other_end is None else {**own, "other_end": _support(support.other_end)}
 
 
 def plain(value: Any) -> Any:
@@ -70,11 +81,15 @@ def summary(response: Response, units: str) -> str:
             if np.isfinite(contact.arc_position[-1]):
                 rows.append((f"{pair} arc position", f"{contact.arc_position[-1]:.9g} {length}"))
         for beam, support in response.supports.items():
-            rows.append((f"{beam} clamp moment", f"{support.moment[-1]:.9g} {force} {length}"))
+            rows.append((f"{beam} support moment", f"{support.moment[-1]:.9g} {force} {length}"))
+            if support.other_end is not None:
+                x, y = support.other_end.force[-1]
+                rows.append((f"{beam} other end's force", f"({x:.9g}, {y:.9g}) {force}"))
         rows += [
             (f"{beam} tip", f"({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g}) {length}")
             for beam, tip in response.tips.items()
         ]
+    rows += _event_rows(response.events or (), force, length)
     rows += [
         ("unknowns", f"{response.unknowns}"),
         ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
@@ -84,3 +99,17 @@ def summary(response: Response, units: str) -> str:
     return "\n".join(
         [f"{response.scene}, model {response.model}", *(f"  {a:<{width}}  {b}" for a, b in rows)]
     )
+
+
+def _event_rows(events: Sequence[ContactEvent], force: str, length: str) -> list[tuple[str, str]]:
+    """Count the events, and list those that change which contacts are closed."""
+    counts = Counter(event.kind for event in events)
+    rows = [("events", ", ".join(f"{kind} {count}" for kind, count in counts.items()))] if counts else []
+    for event in events:
+        if event.kind != "pass-through":
+            text = (
+                f"{event.pair} at {event.load_parameter:.6g}: arc position {event.arc_position:.6g} {length}"
+            )
+            jump = f", {event.released:.6g} {force} {length} released" if event.released else ""
+            rows.append((f"  {event.kind}", f"{text}, {event.force:.6g} {force}{jump}"))
+    return rows

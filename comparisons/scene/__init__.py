@@ -1,7 +1,9 @@
-"""The scene: one file that states beams, pins and contacts for every model."""
+"""The scene: one file that states beams, supports, loads, pins and contacts for every model."""
 
+from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.read import SceneError, built_in_scenes, load_scene, read_scene
-from comparisons.scene.records import BeamSpec, ContactSpec, PinSpec, Scene
+from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.toml import to_toml
 
@@ -9,9 +11,11 @@ __all__ = [
     "BeamSpec",
     "ContactSpec",
     "FieldError",
+    "LoadSpec",
     "PinSpec",
     "Scene",
     "SceneError",
+    "SupportSpec",
     "built_in_scenes",
     "load_scene",
     "read_scene",

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterable
 
-from comparisons.scene.records import BeamSpec, ContactSpec, Scene
-from comparisons.scene.rules import FieldError, Point, shown
+from comparisons.scene.contact import ContactSpec
+from comparisons.scene.joints import check_joints
+from comparisons.scene.records import BeamSpec, Scene
+from comparisons.scene.rules import MISSING, FieldError, Point, shown
 
 
 def check_scene(scene: Scene) -> None:
@@ -17,6 +19,22 @@ def check_scene(scene: Scene) -> None:
             raise error.within(f"contact[{i}].") from None
         _check_side(scene, contact)
     _distinct([(f"contact[{i}].node", contact.pair) for i, contact in enumerate(scene.contacts)])
+    named = [(f"support[{i}].beam", support.beam) for i, support in enumerate(scene.supports)]
+    named += [(f"load[{i}].beam", load.beam) for i, load in enumerate(scene.loads)]
+    for key, name in named:
+        if name not in [beam.name for beam in scene.beams]:
+            raise FieldError(key, name, f"must name a beam: {_known(beam.name for beam in scene.beams)}")
+    _distinct([(f"load[{i}].end", load.node) for i, load in enumerate(scene.loads)])
+    check_joints(scene)
+    _check_cause(scene)
+
+
+def _check_cause(scene: Scene) -> None:
+    for i, pin in enumerate(scene.pins):
+        if pin.name not in [contact.node for contact in scene.contacts]:
+            raise FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
+    if not (scene.pins or scene.loads or any(support.moves for support in scene.all_supports)):
+        raise FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
 
 
 def _distinct(named: list[tuple[str, str]]) -> None:
@@ -40,7 +58,10 @@ def _check_contact(scene: Scene, contact: ContactSpec) -> None:
         raise FieldError("node", contact.node, f"must name a pin or a beam's end: {_known(nodes)}")
     if contact.node.split(".")[0] == contact.beam and "." in contact.node:
         raise FieldError("node", contact.node, "must not be an end of the beam itself")
-    if contact.surface == "face" and scene.beam(contact.beam).height is None:
+    beam = scene.beam(contact.beam)
+    if contact.node.count(".") and scene.place(contact.node) in (beam.start, beam.end):
+        raise FieldError("node", contact.node, f'must not be joined to beam "{beam.name}"')
+    if contact.surface == "face" and beam.height is None:
         raise FieldError("surface", contact.surface, f'needs the height of beam "{contact.beam}"')
 
 
@@ -60,7 +81,7 @@ def _check_side(scene: Scene, contact: ContactSpec) -> None:
     if "." in contact.node:
         other, end = contact.node.split(".")
         number = [item.name for item in scene.beams].index(other)
-        key, position = f"beam[{number}].{end}", getattr(scene.beams[number], end)
+        key, position = f"beam[{number}].{end}", scene.place(contact.node)
     else:
         number = [item.name for item in scene.pins].index(contact.node)
         pin = scene.pins[number]

@@ -8,12 +8,16 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
 
-from comparisons.scene.records import BeamSpec, ContactSpec, PinSpec, Scene
+from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.contact import ContactSpec, PinSpec
+from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import MISSING, FieldError
 
 Record = TypeVar("Record")
-LISTS: dict[str, type[BeamSpec] | type[PinSpec] | type[ContactSpec]] = {
+LISTS: dict[str, type[BeamSpec | SupportSpec | LoadSpec | PinSpec | ContactSpec]] = {
     "beam": BeamSpec,
+    "support": SupportSpec,
+    "load": LoadSpec,
     "pin": PinSpec,
     "contact": ContactSpec,
 }
@@ -85,11 +89,11 @@ def read_scene(text: str, source: str) -> Scene:
 
 
 def _scene(tables: dict[str, Any]) -> Scene:
-    _check_keys(tables, {"scene", *LISTS}, required=("scene", *LISTS))
+    _check_keys(tables, {"scene", *LISTS}, required=("scene", "beam"))
     if not isinstance(tables["scene"], dict):
         raise FieldError("scene", tables["scene"], "must be a table, [scene]")
-    lists: dict[str, Any] = {f"{kind}s": _records(kind, tables[kind]) for kind in LISTS}
-    own = {item.name for item in fields(Scene)} - set(lists)
+    lists: dict[str, Any] = {f"{kind}s": _records(kind, tables[kind]) for kind in LISTS if kind in tables}
+    own = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
     try:
         _check_keys(tables["scene"], own, required=("name", "load_parameters"))
     except FieldError as error:

@@ -1,11 +1,12 @@
-"""The records of a scene: hashable, without arrays, checked when they are made."""
+"""The records of a beam and of the whole scene: hashable, without arrays, checked when they are made."""
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated
 
 from comparisons.scene import rules
+from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.rules import (
     Count,
     FieldError,
@@ -41,7 +42,7 @@ class BeamSpec:
     area, second_moment, shear_area : float
         [length^2], [length^4], [length^2].
     clamped : tuple of {"start", "end"}
-        Clamped ends.
+        Clamped ends, none by default: the short form of a `SupportSpec`.
     elements : int
         Number of TSM elements.
     mesh : (int, int)
@@ -68,7 +69,7 @@ class BeamSpec:
     area: Positive | None = None
     second_moment: Positive | None = None
     shear_area: Positive | None = None
-    clamped: Annotated[tuple[str, ...], rules.ends] = ("start",)
+    clamped: Annotated[tuple[str, ...], rules.ends] = ()
     elements: Count = 20
     mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
     solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
@@ -124,99 +125,10 @@ class BeamSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinSpec:
-    """A frictionless point on a prescribed path, traversed at constant speed by the load parameter.
-
-    Parameters
-    ----------
-    name : str
-        Letters, digits, ``-`` and ``_``.
-    start, displacement : (float, float)
-        A straight path [length].
-    path : tuple of (float, float)
-        A polyline [length], instead of `start` and `displacement`.
-
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    name: Name
-    start: Vector | None = None
-    displacement: Vector | None = None
-    path: Annotated[tuple[Point, ...], rules.polyline] | None = None
-
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
-        if self.displacement is not None and self.points[0] == self.points[1]:
-            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
-        if not all(math.isfinite(value) for point in self.points for value in point):
-            raise FieldError("displacement", self.displacement, "must end at a finite point")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """The path's points."""
-        if self.start is None or self.displacement is None:
-            return self.path or ()
-        (x, y), (dx, dy) = self.start, self.displacement
-        return (x, y), (x + dx, y + dy)
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """The load parameters of the path's inner points."""
-        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
-        return tuple(math.fsum(lengths[:i]) / math.fsum(lengths) for i in range(1, len(lengths)))
-
-    def position(self, load_parameter: float) -> Point:
-        """Return the point at the fraction `load_parameter` of the path's length."""
-        segments = [(a, b, math.dist(a, b)) for a, b in pairwise(self.points)]
-        ahead = load_parameter * math.fsum(length for _, _, length in segments)
-        for start, end, length in segments:
-            if ahead <= length:
-                u = ahead / length
-                return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
-            ahead -= length
-        return self.points[-1]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactSpec:
-    """A frictionless contact of a node with a beam.
-
-    Parameters
-    ----------
-    node : str
-        A pin's name, or a beam's end as ``upper.end``.
-    beam : str
-        The beam touched.
-    side : {"right", "left"}
-        Side of the beam's direction, start to end, from which the node comes.
-    surface : {"axis", "face"}
-        The beam's axis, or its face at half the height.
-    penalty : float
-        Penalty stiffness of the solid model [force/length]; automatic if not given.
-    """
-
-    node: Annotated[str, rules.text]
-    beam: Name
-    side: Annotated[str, rules.choice("right", "left")]
-    surface: Annotated[str, rules.choice("axis", "face")] = "axis"
-    penalty: Positive | None = None
-
-    def __post_init__(self) -> None:
-        apply_rules(self)
-
-    @property
-    def pair(self) -> str:
-        """Name of the pair, ``node->beam``."""
-        return f"{self.node}->{self.beam}"
-
-
-@dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Beams, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
+    """Beams, what holds and loads them, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
+
+    Beams whose ends have the same coordinates are rigidly joined there.
 
     Parameters
     ----------
@@ -226,8 +138,10 @@ class Scene:
         Units of force and length, as ``"N, m"``.
     load_parameters : int
         Number n of load parameters.
-    beams, pins, contacts : tuple of BeamSpec, PinSpec, ContactSpec
-        At least one of each.
+    beams : tuple of BeamSpec
+        At least one.
+    supports, loads, pins, contacts : tuple of SupportSpec, LoadSpec, PinSpec, ContactSpec
+        Every pin is in a contact; a pin, a load or a moving support there must be, and no beam may be free.
 
     Raises
     ------
@@ -238,9 +152,11 @@ class Scene:
     name: Name
     units: Annotated[str, rules.units] = "N, m"
     load_parameters: Count
-    beams: Annotated[tuple[BeamSpec, ...], rules.records(BeamSpec)]
-    pins: Annotated[tuple[PinSpec, ...], rules.records(PinSpec)]
-    contacts: Annotated[tuple[ContactSpec, ...], rules.records(ContactSpec)]
+    beams: Annotated[tuple[BeamSpec, ...], rules.records(BeamSpec, at_least=1)]
+    supports: Annotated[tuple[SupportSpec, ...], rules.records(SupportSpec)] = ()
+    loads: Annotated[tuple[LoadSpec, ...], rules.records(LoadSpec)] = ()
+    pins: Annotated[tuple[PinSpec, ...], rules.records(PinSpec)] = ()
+    contacts: Annotated[tuple[ContactSpec, ...], rules.records(ContactSpec)] = ()
 
     def __post_init__(self) -> None:
         from comparisons.scene.consistency import check_scene
@@ -260,6 +176,33 @@ class Scene:
         """Distance of the contact surface from the axis."""
         height = self.beam(contact.beam).height
         return 0.0 if contact.surface == "axis" or height is None else height / 2.0
+
+    @property
+    def all_supports(self) -> tuple[SupportSpec, ...]:
+        """The clamped ends of the beams, then `supports`."""
+        clamps = (
+            SupportSpec(beam=beam.name, end=end, kind="clamped")
+            for beam in self.beams
+            for end in beam.clamped
+        )
+        return (*clamps, *self.supports)
+
+    def place(self, node: str) -> Point:
+        """Return the undeformed position of a beam's end, ``upper.end``."""
+        name, end = node.split(".")
+        beam = self.beam(name)
+        return beam.start if end == "start" else beam.end
+
+    def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
+        """Return the supports of a beam, the one that holds most first; of equals, the start's."""
+        own = (support for support in self.all_supports if support.beam == beam)
+        return tuple(sorted(own, key=lambda support: (-len(support.held), support.end == "end")))
+
+    def tip(self, beam: str) -> str:
+        """Return the less held end of a beam: "end", but "start" where the beam's end holds more."""
+        own = self.supports_of(beam)
+        more = bool(own) and own[0].end == "end" and (len(own) == 1 or own[0].held != own[1].held)
+        return "start" if more else "end"
 
     @property
     def times(self) -> tuple[float, ...]:

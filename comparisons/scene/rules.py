@@ -181,6 +181,13 @@ def units(value: object) -> str:
     return result
 
 
+def truth(value: object) -> bool:
+    """Accept true or false."""
+    if not isinstance(value, bool):
+        raise RuleError("must be true or false")
+    return value
+
+
 def choice(*options: str) -> Rule:
     """Return the rule: one of `options`."""
 
@@ -192,23 +199,35 @@ def choice(*options: str) -> Rule:
     return rule
 
 
+def subset(*options: str) -> Rule:
+    """Return the rule: some of `options`, each once."""
+
+    def rule(value: object) -> tuple[str, ...]:
+        items = sequence(value)
+        wanted = ", ".join(f'"{option}"' for option in options)
+        if not items or any(item not in options for item in items) or len(set(items)) != len(items):
+            raise RuleError(f"must be a list of some of {wanted}, each once")
+        return tuple(str(item) for item in items)
+
+    return rule
+
+
 def ends(value: object) -> tuple[str, ...]:
-    """Accept one or both ends of a beam."""
-    items = sequence(value)
-    if not items or len(set(map(repr, items))) != len(items):
-        raise RuleError('must be ["start"], ["end"] or ["start", "end"]')
-    if any(item not in ("start", "end") for item in items):
-        raise RuleError('must be ["start"], ["end"] or ["start", "end"]')
-    return tuple(str(item) for item in items)
+    """Accept no, one or both ends of a beam."""
+    if sequence(value) in ((), ("start",), ("end",), ("start", "end"), ("end", "start")):
+        return tuple(str(item) for item in sequence(value))
+    raise RuleError('must be [], ["start"], ["end"] or ["start", "end"]')
 
 
-def records(kind: type) -> Rule:
-    """Return the rule: a list, not empty, of records of one kind."""
+def records(kind: type, at_least: int = 0) -> Rule:
+    """Return the rule: a list of records of one kind."""
 
     def rule(value: object) -> tuple[object, ...]:
         items = sequence(value)
-        if not items or not all(isinstance(item, kind) for item in items):
-            raise RuleError(f"must be at least one {kind.__name__}")
+        if len(items) < at_least or not all(isinstance(item, kind) for item in items):
+            raise RuleError(
+                f"must be {'at least one' if at_least else 'records of the kind'} {kind.__name__}"
+            )
         return items
 
     return rule

@@ -37,8 +37,9 @@ def to_toml(scene: Scene) -> str:
     >>> read_scene(to_toml(scene), "copy") == scene
     True
     """
-    tables = [_table("[scene]", scene, leave=("beams", "pins", "contacts"))]
-    tables += [_table("[[beam]]", beam) for beam in scene.beams]
-    tables += [_table("[[pin]]", pin) for pin in scene.pins]
-    tables += [_table("[[contact]]", contact) for contact in scene.contacts]
+    lists = {f"{kind}s": kind for kind in ("beam", "support", "load", "pin", "contact")}
+    tables = [_table("[scene]", scene, leave=tuple(lists))]
+    tables += [
+        _table(f"[[{kind}]]", record) for name, kind in lists.items() for record in getattr(scene, name)
+    ]
     return "\n\n".join(tables) + "\n"

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.options import ModelError
 from comparisons.scene import BeamSpec, Scene
+from comparisons.translate.one_beam import one_beam_under_a_pin
 
 if TYPE_CHECKING:
     from fem_reference import SolidProblem, Strip
@@ -15,7 +16,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     Parameters
     ----------
     scene : Scene
-        One beam given by width and height, clamped at one end, and one pin.
+        One beam given by width and height, clamped at one end and not supported at the other, and one pin.
     mesh : (int, int), optional
         Elements along and across, in place of the scene's.
 
@@ -26,9 +27,8 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     """
     from fem_reference import Contact, Pin, SolidProblem, default_penalty
 
-    if len(scene.beams) > 1 or len(scene.pins) > 1 or len(scene.contacts) > 1:
-        raise ModelError("the solid model has one beam, one pin and one contact")
-    strip, pin, contact = _strip(scene.beams[0], mesh), scene.pins[0], scene.contacts[0]
+    clamp = one_beam_under_a_pin(scene, "the solid model has")
+    strip, pin, contact = _strip(scene.beams[0], clamp.end, mesh), scene.pins[0], scene.contacts[0]
     return SolidProblem(
         strip=strip,
         pin=Pin(name=pin.name, path=pin.points),
@@ -42,13 +42,11 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     )
 
 
-def _strip(beam: BeamSpec, mesh: tuple[int, int] | None) -> "Strip":
+def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip":
     from fem_reference import Strip
 
     if beam.width is None or beam.height is None:
         raise ModelError(f'the solid model needs the width and height of beam "{beam.name}"')
-    if len(beam.clamped) != 1:
-        raise ModelError(f'the solid model clamps one end, beam "{beam.name}" has two')
     nu = beam.poissons_ratio
     if nu is None:
         nu = beam.youngs_modulus / (2.0 * (beam.shear_modulus or beam.youngs_modulus)) - 1.0
@@ -66,7 +64,7 @@ def _strip(beam: BeamSpec, mesh: tuple[int, int] | None) -> "Strip":
         width=beam.width,
         youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
-        clamped=beam.clamped,
+        clamped=(clamped,),
         clamp=beam.solid_clamp,
         mesh=mesh or beam.mesh,
         material=beam.material,

@@ -1,12 +1,12 @@
-"""A scene as TSM beams: Timoshenko sections on the axis, clamps that hold position and rotation."""
+"""A scene as TSM beams: Timoshenko sections on the axis, rigid joints, supports and dead loads at nodes."""
 
 from typing import TYPE_CHECKING
 
 from comparisons.options import ModelError
-from comparisons.scene import BeamSpec, Scene
+from comparisons.scene import BeamSpec, Scene, SupportSpec
 
 if TYPE_CHECKING:
-    from tsm import Beam, Structure
+    from tsm import Beam, Structure, Support
 
 
 def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> "Structure":
@@ -26,16 +26,21 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     ModelError
         If there is no such element.
     """
-    from tsm import ELEMENTS, ContactPair, Pin, Structure, Support
+    from tsm import ELEMENTS, ContactPair, Load, Pin, Structure
 
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
     return Structure(
         beams=tuple(_beam(beam, elements or beam.elements, element or "mixed") for beam in scene.beams),
-        supports=tuple(
-            Support(beam=beam.name, end="start" if end == "start" else "end")
-            for beam in scene.beams
-            for end in beam.clamped
+        supports=tuple(_support(support) for support in scene.all_supports),
+        loads=tuple(
+            Load(
+                beam=load.beam,
+                end="start" if load.end == "start" else "end",
+                force=load.force,
+                moment=load.moment,
+            )
+            for load in scene.loads
         ),
         pins=tuple(Pin(name=pin.name, path=pin.points) for pin in scene.pins),
         contacts=tuple(
@@ -44,9 +49,19 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
                 beam=contact.beam,
                 side="left" if contact.side == "left" else "right",
                 offset=scene.offset(contact),
+                keep=contact.keep,
             )
             for contact in scene.contacts
         ),
+    )
+
+
+def _support(spec: SupportSpec) -> "Support":
+    from tsm import Support
+
+    ux, uy, rotation = spec.motion
+    return Support(
+        beam=spec.beam, end="start" if spec.end == "start" else "end", ux=ux, uy=uy, rotation=rotation
     )
 
 

@@ -32,7 +32,9 @@ def run(*arguments: str) -> int:
 
 def test_scenes_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("scenes") == 0
-    assert capsys.readouterr().out.split() == ["ks-cantilever", "ks-face"]
+    listed = capsys.readouterr().out.split()
+    assert listed == sorted(built_in_scenes())
+    assert {"ks-cantilever", "ks-face", "ks-tied-tip"} <= set(listed)
     assert run("--version") == 0
     assert capsys.readouterr().out == f"crossval {metadata.version('tsm-crossval')}\n"
 

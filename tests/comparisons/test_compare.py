@@ -77,6 +77,6 @@ def test_a_run_that_stops_is_named_and_the_rest_goes_on(
 
 def test_without_the_reference_nothing_is_computed(tmp_path: Path) -> None:
     both = replace(KS.beams[0], clamped=("start", "end"))
-    with pytest.raises(ModelError, match="clamp one end"):
+    with pytest.raises(ModelError, match="have one support"):
         compare(replace(KS, beams=(both,)), tmp_path / "out", print)
     assert not (tmp_path / "out").exists()

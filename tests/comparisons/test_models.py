@@ -153,6 +153,7 @@ def test_double_beam_of_the_paper_by_tsm() -> None:
         "area": 3e-4,
         "second_moment": 2.2e-8,
         "elements": 10,
+        "clamped": ("start",),
     }
     upper = BeamSpec(name="upper", start=(0.0, 0.0), end=(1.0, 0.0), **material)
     lower = BeamSpec(name="lower", start=(0.0, -0.2), end=(1.0, -0.2), **material)

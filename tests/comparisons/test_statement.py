@@ -32,7 +32,7 @@ def beams() -> Response:
 def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
     data = json.loads(as_json(beams))
     assert list(data) == [
-        "status", "model", "scene", "load_parameter", "contacts", "supports", "tips",
+        "status", "model", "scene", "load_parameter", "contacts", "supports", "tips", "events",
         "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
     assert list(data["contacts"][PAIR]) == ["force", "arc_position", "gap"]
@@ -59,6 +59,37 @@ def test_summary_names_state_and_units(rod: Response) -> None:
         assert part in text
     stopped = replace(rod, load_parameter=np.zeros(0), status="NOT_FINITE", message="no number")
     assert "NOT_FINITE: no number" in summary(stopped, "N, m")
+
+
+def test_events_are_listed_where_the_model_locates_them(rod: Response) -> None:
+    pin = PinSpec(name="pin", start=(0.85, -0.06), displacement=(0.0, 0.6))
+    response = solve(replace(SCENE, pins=(pin,)), "tsm", Options(elements=10))
+    assert response.completed, response.message
+    events = json.loads(as_json(response))["events"]
+    assert list(events[0]) == [
+        "kind",
+        "load_parameter",
+        "pair",
+        "element",
+        "arc_position",
+        "force",
+        "released",
+    ]
+    touch, *passes, slip = events
+    assert (touch["kind"], touch["pair"], touch["element"]) == ("touch", PAIR, 8)
+    assert touch["load_parameter"] == pytest.approx(0.1, abs=1e-9)
+    assert touch["arc_position"] == pytest.approx(0.85, abs=1e-9)
+    assert [event["kind"] for event in passes] == ["pass-through"]
+    assert (slip["kind"], slip["element"], slip["arc_position"]) == ("slip-off", 9, pytest.approx(1.0))
+    assert slip["released"] > 0.0
+    assert response.contacts[PAIR].slip_off == slip["load_parameter"]
+    lines = summary(response, "N, m").splitlines()
+    assert any(
+        line.split() == ["events", "touch", "1,", "pass-through", "1,", "slip-off", "1"] for line in lines
+    )
+    assert sum(line.split()[0] in ("touch", "slip-off", "pass-through") for line in lines) == 2
+    assert any(line.endswith(" N m released") for line in lines)
+    assert json.loads(as_json(rod))["events"] is None
 
 
 def test_errors_are_relative_to_the_largest_reference(rod: Response) -> None:

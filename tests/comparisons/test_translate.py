@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import tsm
 from comparisons.options import ModelError
-from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
+from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 from comparisons.translate import to_rod, to_solid, to_structure
 
 KS = load_scene("ks-cantilever")
@@ -48,7 +49,7 @@ def test_solid_finds_nu_from_the_shear_modulus() -> None:
     ("changes", "reason"),
     [
         ({"width": None, "height": None, "area": 1.0, "second_moment": 1.0}, "needs the width and height"),
-        ({"clamped": ("start", "end")}, "clamps one end"),
+        ({"clamped": ("start", "end")}, "the solid model has one support, beam .* has two"),
         ({"poissons_ratio": None, "shear_modulus": 1e3}, "needs a Poisson's ratio between"),
         ({"mesh": (1, 1)}, "needs at least 2 elements along"),
     ],
@@ -99,3 +100,27 @@ def test_rod_path_keeps_corners_between_load_parameters() -> None:
     rod = to_rod(replace(KS, pins=(pin,), load_parameters=2))
     assert rod.path == pytest.approx(np.array([[1.0, -0.1], [1.0, 0.2], [0.9, 0.2], [0.5, 0.2]]))
     assert list(rod.hits) == [2, 3]
+
+
+def test_structure_takes_over_supports_loads_and_keep() -> None:
+    scene = replace(
+        KS,
+        supports=(
+            SupportSpec(beam="cantilever", end="end", kind="roller", free="y", displacement=(-0.1, 0.0)),
+        ),
+        loads=(LoadSpec(beam="cantilever", end="end", force=(0.0, 1.0), moment=-2.0),),
+        contacts=(replace(KS.contacts[0], keep=True),),
+    )
+    structure = to_structure(scene)
+    clamp, roller = structure.supports
+    assert (clamp.end, clamp.ux, clamp.uy, clamp.rotation) == ("start", 0.0, 0.0, 0.0)
+    assert (roller.end, roller.ux, roller.uy, roller.rotation) == ("end", -0.1, None, None)
+    assert [(load.beam, load.end, load.force, load.moment) for load in structure.loads] == [
+        ("cantilever", "end", (0.0, 1.0), -2.0)
+    ]
+    assert structure.contacts[0].keep
+
+
+@pytest.mark.parametrize("element", tsm.ELEMENTS)
+def test_every_element_of_tsm_can_be_chosen_by_name(element: str) -> None:
+    assert to_structure(KS, element=element).beams[0].element == element

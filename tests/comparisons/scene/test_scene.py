@@ -121,7 +121,7 @@ BAD = {
     "side": (('side = "right"', 'side = "below"'), 'contact[0].side = "below": must be one of "right", "left"'),
     "unhashable choice": (('side = "right"', "side = []"), 'contact[0].side = []: must be one of "right", "left"'),
     "clamp twice": (('clamped = ["start"]', 'clamped = ["start", "start"]'), "beam[0].clamped = "),
-    "no clamp": (('clamped = ["start"]', "clamped = []"), "beam[0].clamped = []: must be"),
+    "no clamp": (('clamped = ["start"]', "clamped = []"), 'beam[0].clamped = []: beam "cantilever" is free: clamp it'),
     "unknown beam": (('beam = "cantilever"', 'beam = "lower"'), 'contact[0].beam = "lower": must name a beam: "cantilever"'),
     "unknown pin": (('node = "pin"', 'node = "nip"'), 'contact[0].node = "nip": must name a pin or a beam\'s end: "pin", "cantilever.start"'),
     "own end": (('node = "pin"', 'node = "cantilever.end"'), "must not be an end of the beam itself"),

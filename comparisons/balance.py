@@ -1,0 +1,109 @@
+"""The balance of everything that acts on the whole structure, from nothing but a response and its scene."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.response import Array, Response
+from comparisons.scene import Scene
+
+BALANCE = 1e-6
+"""Largest unbalanced part of a force, relative to the largest that acts: Newton tolerances are far below."""
+
+
+class Action(NamedTuple):
+    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, a free moment included."""
+
+    force: Array
+    moment: Array
+
+
+def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield a sentence for forces and one for moments that do not cancel; contacts between beams are internal.
+
+    ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M,
+    the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, its force is taken to be what
+    balances the rest, and its magnitude and its moment are compared.
+    """
+    supports, loads = _supports(response, scene), _loads(response, scene)
+    outer = _sum([*supports, *loads], len(response.load_parameter))
+    pushing, magnitude, pins = _pins(response, scene, outer)
+    scale = BALANCE * max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
+    missing = np.hypot(*outer.force.T)
+    off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
+    length = max(beam.length for beam in scene.beams)
+    for what, failed in (
+        ("reactions", ~(off <= scale)),
+        ("moments", ~(np.abs(outer.moment + pins.moment) <= scale * length)),
+    ):
+        if failed.any():
+            t = response.load_parameter[np.argmax(failed)]
+            yield f"the support {what} do not balance contact forces and loads at load parameter {t:.6g}"
+
+
+def _sum(actions: list[Action], steps: int) -> Action:
+    nothing = Action(np.zeros((steps, 2)), np.zeros(steps))
+    both = [nothing, *actions]
+    return Action(sum(item.force for item in both), sum(item.moment for item in both))  # type: ignore[arg-type]
+
+
+def _largest(scene: Scene, actions: list[Action]) -> float:
+    """Largest force, or moment over length; not less than a millionth of what bends the beams."""
+    length = max(beam.length for beam in scene.beams)
+    forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
+    moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
+    return max(*forces, *moments, 1e-6 * min(beam.EI / beam.length**2 for beam in scene.beams))
+
+
+def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.0) -> Action:
+    x, y = (place - np.array(scene.beams[0].start)).T
+    return Action(force, np.asarray(moment + x * force[:, 1] - y * force[:, 0]))
+
+
+def _place(response: Response, scene: Scene, node: str) -> Array:
+    """Deformed position (s, 2) of a beam's end: prescribed if its support holds it, else as the response states it."""
+    for support in scene.all_supports:
+        ux, uy, _ = support.motion
+        if support.node == node and ux is not None and uy is not None:
+            return np.asarray(np.array(scene.place(node)) + np.outer(response.load_parameter, [ux, uy]))
+    beam, end = node.split(".")
+    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
+    return np.array([line[0 if end == "start" else -1] for line in lines]).reshape(-1, 2)
+
+
+def _supports(response: Response, scene: Scene) -> list[Action]:
+    actions: list[Action] = []
+    for beam, first in response.supports.items():
+        stated = [first] if first.other_end is None else [first, first.other_end]
+        for spec, history in zip(scene.supports_of(beam), stated, strict=True):
+            place = _place(response, scene, spec.node)
+            actions.append(_action(scene, history.force, place, history.moment))
+    return actions
+
+
+def _loads(response: Response, scene: Scene) -> list[Action]:
+    t = response.load_parameter
+    return [
+        _action(scene, np.outer(t, load.force), _place(response, scene, load.node), load.moment * t)
+        for load in scene.loads
+    ]
+
+
+def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:
+    """Return how many pins push, the sum of their magnitudes, and their action; of a single one as `outer` asks for it."""
+    steps = len(response.load_parameter)
+    pushing, magnitude, actions = np.zeros(steps, dtype=np.int64), np.zeros(steps), [_sum([], steps)]
+    touching = [spec for spec in scene.contacts if "." not in spec.node]
+    for spec in touching:
+        pushing += response.contacts[spec.pair].force > 0.0
+    for spec in touching:
+        history = response.contacts[spec.pair]
+        place = np.array([scene.pin(spec.node).position(float(t)) for t in response.load_parameter])
+        vector = np.full((steps, 2), np.nan) if history.vector is None else history.vector
+        force = np.where((pushing <= 1)[:, None], -outer.force, vector)
+        force = np.where((history.force > 0.0)[:, None], force, 0.0)
+        magnitude += history.force
+        actions.append(_action(scene, force, place))
+    return pushing, magnitude, _sum(actions, steps)

@@ -1,0 +1,111 @@
+"""What touches beams: records, hashable, without arrays, checked when they are made."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated
+
+from comparisons.scene import rules
+from comparisons.scene.rules import (
+    FieldError,
+    Name,
+    Point,
+    Positive,
+    Vector,
+    apply_rules,
+    exactly_one_of,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinSpec:
+    """A frictionless point on a prescribed path, traversed at constant speed by the load parameter.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``-`` and ``_``.
+    start, displacement : (float, float)
+        A straight path [length].
+    path : tuple of (float, float)
+        A polyline [length], instead of `start` and `displacement`.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    start: Vector | None = None
+    displacement: Vector | None = None
+    path: Annotated[tuple[Point, ...], rules.polyline] | None = None
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
+        if self.displacement is not None and self.points[0] == self.points[1]:
+            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
+        if not all(math.isfinite(value) for point in self.points for value in point):
+            raise FieldError("displacement", self.displacement, "must end at a finite point")
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """The path's points."""
+        if self.start is None or self.displacement is None:
+            return self.path or ()
+        (x, y), (dx, dy) = self.start, self.displacement
+        return (x, y), (x + dx, y + dy)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """The load parameters of the path's inner points."""
+        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
+        return tuple(math.fsum(lengths[:i]) / math.fsum(lengths) for i in range(1, len(lengths)))
+
+    def position(self, load_parameter: float) -> Point:
+        """Return the point at the fraction `load_parameter` of the path's length."""
+        segments = [(a, b, math.dist(a, b)) for a, b in pairwise(self.points)]
+        ahead = load_parameter * math.fsum(length for _, _, length in segments)
+        for start, end, length in segments:
+            if ahead <= length:
+                u = ahead / length
+                return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
+            ahead -= length
+        return self.points[-1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactSpec:
+    """A frictionless contact of a node with a beam.
+
+    Parameters
+    ----------
+    node : str
+        A pin's name, or a beam's end as ``upper.end``.
+    beam : str
+        The beam touched.
+    side : {"right", "left"}
+        Side of the beam's direction, start to end, from which the node comes.
+    surface : {"axis", "face"}
+        The beam's axis, or its face at half the height.
+    penalty : float
+        Penalty stiffness of the solid model [force/length]; automatic if not given.
+    keep : bool
+        Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.
+    """
+
+    node: Annotated[str, rules.text]
+    beam: Name
+    side: Annotated[str, rules.choice("right", "left")]
+    surface: Annotated[str, rules.choice("axis", "face")] = "axis"
+    penalty: Positive | None = None
+    keep: Annotated[bool, rules.truth] = False
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+
+    @property
+    def pair(self) -> str:
+        """Name of the pair, ``node->beam``."""
+        return f"{self.node}->{self.beam}"
