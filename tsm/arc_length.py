@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import Event, EventKind, broken, margins
 from tsm.model import Model
@@ -25,7 +26,7 @@ from tsm.settings import Settings
 from tsm.solve import SolveError
 from tsm.state import State
 from tsm.status import Status
-from tsm.stepping import Step, initial_state
+from tsm.stepping import Step
 from tsm.structure import Structure
 
 

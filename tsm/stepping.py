@@ -13,12 +13,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsm.contact import arc_position, chord_owner, node_position, owner_at, project
+from tsm.contact import arc_position, project
+from tsm.contact_set import changed, forbidden, initial_state, rearm
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
 from tsm.guard import PathGuard
-from tsm.model import Model, PairModel
+from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
+from tsm.predictor import extrapolate
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
@@ -229,22 +231,22 @@ class Stepper:
             assert touch is not None, "only a closed contact opens"
             arc = arc_position(model, pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
-            forbidden = _forbidden(model, margin.kind, pair, arc)
-            if forbidden is not None:
-                return forbidden
+            refused = forbidden(model, margin.kind, pair, arc)
+            if refused is not None:
+                return refused
             lost += self._consistent(at.system.forces[k], touch)
-            state = _with(state, k, None, armed=margin.kind is EventKind.RELEASE)
+            state = changed(state, k, None, armed=margin.kind is EventKind.RELEASE)
         return self._resume(at, state, lost)
 
     def _close(self, state: State, margin: Margin) -> State:
         """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
         k, pair = margin.pair, self.model.pairs[margin.pair]
         if margin.value < -ROUND_OFF:
-            return _with(state, k, None, armed=False)
+            return changed(state, k, None, armed=False)
         seen = project(self.model, pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
         self._note(EventKind.TOUCH, k, element, arc_position(self.model, pair.target, element, xi), 0.0)
-        return _with(state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
+        return changed(state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
     def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
@@ -271,7 +273,7 @@ class Stepper:
             if pair.pair.keep:
                 return Status.LOST_CONTACT
             lost = self._consistent(equilibrium.system.forces[k], touch)
-            state = _with(state, k, None, armed=True)
+            state = changed(state, k, None, armed=True)
         if jump:
             energy = self.newton.assembler.energy
             self._note_release(energy(at.state) - energy(state))
@@ -357,98 +359,3 @@ class Stepper:
                         force=forces[0] + part * (forces[1] - forces[0]),
                     )
                 )
-
-
-def _with(state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
-    touches, flags = list(state.touches), list(state.armed)
-    touches[k], flags[k] = touch, armed
-    return replace(state, touches=tuple(touches), armed=tuple(flags))
-
-
-def rearm(model: Model, state: State) -> State:
-    """State in which a passed pair may close again once its node is off the beam or back on the stated side."""
-    if all(flag or touch for flag, touch in zip(state.armed, state.touches, strict=True)):
-        return state
-    armed = list(state.armed)
-    for k, pair in enumerate(model.pairs):
-        if state.touches[k] is None and not armed[k]:
-            seen = project(model, pair, state)
-            armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
-    return replace(state, armed=tuple(armed))
-
-
-def initial_state(model: Model) -> State:
-    """Undeformed state; pairs whose node lies on the surface are closed with zero force.
-
-    Raises
-    ------
-    ValueError
-        If a node starts on the wrong side of its beam.
-    """
-    q = np.zeros(model.dof_count)
-    count = len(model.pairs)
-    start = State(load_parameter=0.0, q=q, touches=(None,) * count, armed=(True,) * count)
-    touches: list[Touch | None] = []
-    for pair in model.pairs:
-        seen = project(model, pair, start)
-        small = ROUND_OFF * model.length
-        over = seen.overshoot <= small
-        if over and seen.gap < -small:
-            position = node_position(model, pair, q, 0.0)
-            raise ValueError(
-                f"ContactPair({pair.pair.name}).side = {pair.pair.side!r}: "
-                f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
-            )
-        closed = over and seen.gap <= small
-        touches.append(
-            Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
-        )
-    return _owned(model, replace(start, touches=tuple(touches)))
-
-
-def _forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
-    """Status that ends the march where a contact may not open."""
-    if kind is EventKind.SLIP_OFF:
-        end = "start" if arc < pair.target.beam.length / 2 else "end"
-        node = model.end_node(f"{pair.target.beam.name}.{end}")
-        if any(3 * node + c in model.prescribed for c in range(3)):
-            return Status.FOLDED
-        return Status.SLIPPED_OFF if pair.pair.keep else None
-    return Status.LOST_CONTACT if pair.pair.keep else None
-
-
-def _owned(model: Model, state: State) -> State:
-    """State with the owners of projected contacts renewed."""
-    touches = [
-        chord_owner(model, pair, state, touch) if touch is not None and pair.slot < 0 else touch
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-    ]
-    return replace(state, touches=tuple(touches))
-
-
-def extrapolate(model: Model, history: list[State], t: float) -> State:
-    """State at t by the polynomial through earlier states, all with the same closed contacts."""
-    at = [state.load_parameter for state in history]
-    weights = [
-        float(np.prod([(t - other) / (own - other) for k, other in enumerate(at) if k != n]))
-        for n, own in enumerate(at)
-    ]
-    q = sum((w * state.q for w, state in zip(weights, history, strict=True)), np.zeros(model.dof_count))
-    last = history[-1]
-    touches: list[Touch | None] = []
-    for k, pair in enumerate(model.pairs):
-        trail = [state.touches[k] for state in history]
-        known = [touch for touch in trail if touch is not None]
-        if len(known) < len(trail):
-            touches.append(None)
-            continue
-        arc = sum(
-            w * arc_position(model, pair.target, touch.element, touch.xi)
-            for w, touch in zip(weights, known, strict=True)
-        )
-        element, xi = owner_at(model, pair.target, arc)
-        force = tuple(
-            sum(w * touch.force[c] for w, touch in zip(weights, known, strict=True)) for c in range(2)
-        )
-        touches.append(Touch(element=element, xi=xi, force=(force[0], force[1])))
-    return _owned(model, replace(last, load_parameter=t, q=q, touches=tuple(touches)))

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import tsm
+from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.state import Touch
 from tsm.status import Status
-from tsm.stepping import Stepper, initial_state
+from tsm.stepping import Stepper
 
 SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
 BEAM = tsm.Beam(name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=SECTION, elements=10)

@@ -1,0 +1,81 @@
+"""The set of closed contacts: how it starts, how it changes, when an open pair may close, what may not open."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tsm.contact import chord_owner, node_position, project
+from tsm.events import ROUND_OFF, EventKind
+from tsm.model import Model, PairModel
+from tsm.state import State, Touch
+from tsm.status import Status
+
+
+def changed(state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
+    """State with pair k closed by a touch, or open and armed or not."""
+    touches, flags = list(state.touches), list(state.armed)
+    touches[k], flags[k] = touch, armed
+    return replace(state, touches=tuple(touches), armed=tuple(flags))
+
+
+def rearm(model: Model, state: State) -> State:
+    """State in which a passed pair may close again once its node is off the beam or back on the stated side."""
+    if all(flag or touch for flag, touch in zip(state.armed, state.touches, strict=True)):
+        return state
+    armed = list(state.armed)
+    for k, pair in enumerate(model.pairs):
+        if state.touches[k] is None and not armed[k]:
+            seen = project(model, pair, state)
+            armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
+    return replace(state, armed=tuple(armed))
+
+
+def initial_state(model: Model) -> State:
+    """Undeformed state; pairs whose node lies on the surface are closed with zero force.
+
+    Raises
+    ------
+    ValueError
+        If a node starts on the wrong side of its beam.
+    """
+    q = np.zeros(model.dof_count)
+    count = len(model.pairs)
+    start = State(load_parameter=0.0, q=q, touches=(None,) * count, armed=(True,) * count)
+    touches: list[Touch | None] = []
+    for pair in model.pairs:
+        seen = project(model, pair, start)
+        small = ROUND_OFF * model.length
+        over = seen.overshoot <= small
+        if over and seen.gap < -small:
+            position = node_position(model, pair, q, 0.0)
+            raise ValueError(
+                f"ContactPair({pair.pair.name}).side = {pair.pair.side!r}: "
+                f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
+            )
+        closed = over and seen.gap <= small
+        touches.append(
+            Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
+        )
+    return owned(model, replace(start, touches=tuple(touches)))
+
+
+def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
+    """Status that ends the march where a contact may not open."""
+    if kind is EventKind.SLIP_OFF:
+        end = "start" if arc < pair.target.beam.length / 2 else "end"
+        node = model.end_node(f"{pair.target.beam.name}.{end}")
+        if any(3 * node + c in model.prescribed for c in range(3)):
+            return Status.FOLDED
+        return Status.SLIPPED_OFF if pair.pair.keep else None
+    return Status.LOST_CONTACT if pair.pair.keep else None
+
+
+def owned(model: Model, state: State) -> State:
+    """State with the owners of projected contacts renewed."""
+    touches = [
+        chord_owner(model, pair, state, touch) if touch is not None and pair.slot < 0 else touch
+        for pair, touch in zip(model.pairs, state.touches, strict=True)
+    ]
+    return replace(state, touches=tuple(touches))
