@@ -29,6 +29,8 @@ _MEMORY = 4
 """States that the predictor extrapolates from: a cubic in the load parameter."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
+_LAST_PART = 1e-2
+"""A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
 
@@ -282,21 +284,34 @@ class Stepper:
         return Status.CONVERGED
 
     def _unload(self, state: State, lost: Array) -> Equilibrium | None:
-        """Equilibrium without nodal forces that act at first, taken away in parts as large as converge."""
+        """Equilibrium without nodal forces that act at first, taken away in parts; what the beam falls on, it touches."""
         part, step = 1.0, 1.0
+        over: set[int] = set()
         while True:
             goal = max(part - step, 0.0)
             equilibrium = self.newton.solve(state, goal * lost if goal else None)
             self.iterations += equilibrium.iterations
-            if equilibrium.status is Status.CONVERGED:
+            met = self._met(equilibrium) if equilibrium.status is Status.CONVERGED and lost.any() else []
+            if equilibrium.status is Status.CONVERGED and not met:
                 state, part, step = equilibrium.state, goal, 2 * step
+                over = {
+                    m.pair for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < 1.0
+                }
                 if part == 0.0:
                     return equilibrium
-            else:
-                step /= 2
-                if step < 1e-4 or not lost.any():
-                    self.failure = equilibrium.status
-                    return None
+                continue
+            step /= 2
+            if met and step < _LAST_PART:
+                for margin in met:
+                    state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
+                step = part
+            elif step < 1e-2 * _LAST_PART or not lost.any():
+                self.failure = equilibrium.status
+                return None
+
+    def _met(self, equilibrium: Equilibrium) -> list[Margin]:
+        """Open pairs whose gap has closed."""
+        return [m for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < -ROUND_OFF]
 
     def _consistent(self, force: tuple[float, float], touch: Touch) -> Array:
         """Nodal forces that stand for the lost contact force; they act for the pair's node too."""

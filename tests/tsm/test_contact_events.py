@@ -236,3 +236,27 @@ def test_bad_structures_are_refused():
         tsm.Pin(name="p", path=((0, 0), (0, 0)))
     with pytest.raises(ValueError, match="finite"):
         tsm.Support(beam="b", end="start", ux=float("nan"))
+
+
+def test_a_beam_that_springs_back_lands_on_the_pin_below():
+    """When the outer pin slips off, the inner one is still below the bent beam and catches it."""
+    base = cantilever(((0.93, -0.1), (0.93, 0.4)))
+    both = tsm.Structure(
+        beams=base.beams,
+        supports=base.supports,
+        pins=(*base.pins, tsm.Pin(name="q", path=((0.97, 0.0), (0.97, 0.5)))),
+        contacts=(*base.contacts, tsm.ContactPair(node="q", beam="b")),
+    )
+    result = tsm.solve(both, np.arange(1, 41) / 40)
+    slip = next(e for e in result.events if e.kind is tsm.EventKind.SLIP_OFF)
+    assert slip.pair == "q->b"
+    assert slip.released > 0
+    t = result.load_parameter
+    before = (t > 0.2) & (t < slip.load_parameter)
+    caught = (t > slip.load_parameter) & (t < 0.85)
+    assert (result.contacts["p->b"].force[before] == 0).all()
+    assert (result.contacts["p->b"].force[caught] > 0).all()
+    alone = tsm.solve(base, np.arange(1, 41) / 40)
+    assert result.contacts["p->b"].force[caught] == pytest.approx(
+        alone.contacts["p->b"].force[caught], rel=1e-8
+    )
