@@ -41,10 +41,20 @@ def test_python_snippet():
     assert float(run.stdout) == pytest.approx(2.288274307175e-03, rel=1e-4)
 
 
+SCENES = [text for kind, text in BLOCKS if kind == "toml"]
+
+
+def test_frame_snippet(tmp_path, capsys):
+    scene = tmp_path / "portal.toml"
+    scene.write_text(SCENES[1])
+    assert main(["solve", str(scene), "--model", "tsm"]) == 0
+    assert "COMPLETED" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("model", ["tsm", "solid", "rod"])
 def test_scene_snippet(model, tmp_path, capsys):
     scene = tmp_path / "mine.toml"
-    scene.write_text(next(text for kind, text in BLOCKS if kind == "toml"))
+    scene.write_text(SCENES[0])
     assert main(["solve", str(scene), "--model", model]) == 0
     assert "COMPLETED" in capsys.readouterr().out
     scene.write_text(scene.read_text().replace("height = 0.01", "height = -0.01"))
