@@ -46,10 +46,19 @@ class PathGuard:
         self.force, self.force_rate = at.real, at.imag / 1e-60
         self.force_scale = FORCE * (model.force_scale + np.abs(self.force).max())
 
+    @property
+    def speed(self) -> float:
+        """Largest rate of a displacement or rotation, in largest Newton steps; infinite at a limit point."""
+        if self.rates is None:
+            return float("inf")
+        moving = self.q_rate[self.newton.model.free] * self.newton.per_limit
+        return float(np.abs(moving).max(initial=0.0))
+
     def reach(self, longest: float) -> float:
         """Longest step of the load parameter that the tangent is trusted for."""
-        speed = np.abs(self.q_rate[self.newton.model.free] * self.newton.per_limit).max(initial=0.0) / SHORT
-        fastest = max(speed, np.abs(self.force_rate).max() / self.force_scale)
+        if self.rates is None:
+            return longest
+        fastest = max(self.speed / SHORT, np.abs(self.force_rate).max() / self.force_scale)
         return longest if fastest * longest <= 1 else float(1 / fastest)
 
     def predicted(self, t: float) -> State:

@@ -119,15 +119,7 @@ class Stepper:
         told = {Status.NOT_FINITE, Status.SINGULAR_TANGENT, Status.TWO_CONTACTS, Status.PING_PONG}
         if self.failure in told or self.settings.smallest_step > 0.5:
             return self.failure
-        assembler = self.newton.assembler
-        rates = assembler.solve(
-            assembler.linearise(self.accepted.state), -assembler.rate(self.accepted.state)
-        )
-        speed = (
-            np.inf
-            if rates is None
-            else np.abs(rates[: self.model.equations, 1] * self.newton.per_limit).max()
-        )
+        speed = PathGuard(self.newton, self.accepted.state).speed
         return Status.UNREACHABLE if speed > _FOLD else Status.CUTBACK_FLOOR
 
     def _record(self, requested: bool, status: Status) -> Step:
