@@ -10,6 +10,7 @@ from comparisons.files import OutputError, writable_file, writable_folder, write
 from comparisons.options import OPTIONS, ModelError, Options
 from comparisons.scene import Scene, SceneError, built_in_scenes, load_scene
 from comparisons.scene.rules import RuleError, whole_number
+from comparisons.studies.figures import FIGURES
 
 if TYPE_CHECKING:
     from comparisons.response import Response
@@ -57,6 +58,28 @@ def _parser() -> argparse.ArgumentParser:
     compare.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
     compare.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE)")
     compare.set_defaults(run=_compare)
+
+    shown = "; ".join(f"{name}: {what}" for name, what in FIGURES.items())
+    reproduce = commands.add_parser(
+        "reproduce",
+        help="reproduce the paper's figures and judge its claims",
+        description=shown,
+        epilog=EPILOG,
+    )
+    reproduce.add_argument(
+        "figure", metavar="FIGURE", choices=(*FIGURES, "all"), help=f"{', '.join(FIGURES)} or all"
+    )
+    reproduce.add_argument(
+        "--out",
+        type=Path,
+        default=Path("out/reproduce"),
+        metavar="DIR",
+        help="folder of the results (out/reproduce)",
+    )
+    reproduce.add_argument(
+        "--quick", action="store_true", help="coarse settings, about half a minute for all"
+    )
+    reproduce.set_defaults(run=_reproduce)
     return parser
 
 
@@ -117,6 +140,17 @@ def _compare(given: argparse.Namespace) -> int:
     print(table_text(found.rows, ROD.label))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     return _status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
+
+
+def _reproduce(given: argparse.Namespace) -> int:
+    writable_folder(given.out)
+    from comparisons.studies.reproduce import reproduce
+
+    done = reproduce(given.figure, given.out, quick=given.quick, report=_report)
+    print("files:", *(f"  {path}" for path in done.files), sep="\n")
+    for reason in done.stopped:
+        print(f"crossval: {reason}", file=sys.stderr)
+    return STOPPED if done.stopped else DONE
 
 
 def _report(line: str) -> None:

@@ -1,0 +1,178 @@
+"""How near to a beam node Newton's method still finds equilibrium, at a fixed tolerance.
+
+`tsm.solve` knows the round-off of a contact and accepts what it leaves. Here nothing is accepted but a stated tolerance, as in a
+program that knows only that. The contact is led towards the next beam node in steps that shrink with the distance, so that
+neither the step nor the start of the iteration stops it before round-off does: where no smaller step helps, the critical area of
+[P] section 4.1 begins. Behind it the march goes on from a state inside the next element.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from comparisons.response import Array
+from tsm import Structure
+from tsm.contact import arc_position
+from tsm.contact_set import initial_state
+from tsm.model import Model
+from tsm.newton import Newton
+from tsm.predictor import extrapolate
+from tsm.state import State
+from tsm.status import Status
+
+NEAREST = 2e-8
+"""Distances from a node, in element lengths, that count as none.
+
+Newton's method leaves positions uncertain by the tolerance times L/1000, which is 1.8e-8 of 18 elements at a tolerance of 1e-6.
+"""
+
+_SHRINK = 0.3  # part of the distance to the node that one step covers
+_LARGEST = 0.02  # step of the load parameter
+_SLOWEST = 1e-9  # element lengths per load parameter, where a contact does not move
+_HALVINGS = 6
+_ITERATIONS = 25
+_BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in element lengths
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Approach:
+    """Equilibria on the way to a beam node.
+
+    Attributes
+    ----------
+    node : float
+        Arc position of the beam node, or of the tip.
+    load_parameter : ndarray, shape (k,)
+        Where equilibrium was found; empty if it was not found anywhere in the element.
+    ratio : ndarray, shape (k,)
+        Distance of the contact from the node in element lengths: l_i/l of [P].
+    """
+
+    node: float
+    load_parameter: Array
+    ratio: Array
+
+    @property
+    def smallest(self) -> float:
+        """Smallest ratio with equilibrium, the measured critical area; nan if there is none."""
+        return float(self.ratio.min()) if len(self.ratio) else np.nan
+
+
+def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
+    """Lead the only contact of a structure towards every beam node on its way to the beam's end.
+
+    Parameters
+    ----------
+    structure : Structure
+        One beam under one pin, in contact from the start.
+    tolerance : float
+        Bound on the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
+
+    Returns
+    -------
+    tuple of Approach
+        One per node, the tip last.
+    """
+    return tuple(_approaches(_Contact(structure, tolerance)))
+
+
+class _Contact:
+    """The contact's model, its solver and where it is."""
+
+    def __init__(self, structure: Structure, tolerance: float) -> None:
+        self.model = Model(structure)
+        self.newton = Newton(self.model, tolerance=tolerance, max_iterations=_ITERATIONS)
+        beam = structure.beams[0]
+        self.l0 = beam.length / beam.elements
+        self.length = beam.length
+
+    def arc(self, state: State) -> float:
+        """Arc position of the contact."""
+        touch = state.touches[0]
+        assert touch is not None, "this march opens no contact"
+        return arc_position(self.model, self.model.pairs[0].target, touch.element, touch.xi)
+
+    def equilibrium(self, state: State) -> State | None:
+        """Newton's method from a start, None unless the residual falls below the tolerance.
+
+        What the solver accepts as round-off is iterated further: a later iteration may hit the tolerance.
+        """
+        spent = 0
+        while spent < _ITERATIONS:
+            found = self.newton.solve(state)
+            if found.residuals[-1] <= self.newton.tolerance:
+                return found.state
+            if found.status is not Status.CONVERGED:
+                return None
+            state, spent = found.state, spent + found.iterations
+        return None
+
+
+def _approaches(contact: _Contact) -> Iterator[Approach]:
+    history = [initial_state(contact.model)]
+    first = int(np.floor(contact.arc(history[0]) / contact.l0 + NEAREST)) + 1
+    for number in range(first, contact.model.structure.beams[0].elements + 1):
+        node = number * contact.l0
+        trail = _towards(contact, history, node) if history else []
+        yield Approach(
+            node=node,
+            load_parameter=np.array([state.load_parameter for state in trail]),
+            ratio=np.array([(node - contact.arc(state)) / contact.l0 for state in trail]),
+        )
+        history = _behind(contact, trail, node) if node < contact.length - NEAREST else []
+
+
+def _towards(contact: _Contact, history: list[State], node: float) -> list[State]:
+    """Equilibria with the contact nearer and nearer to the node."""
+    states = list(history)
+    step = _LARGEST / 2
+    while (ratio := (node - contact.arc(states[-1])) / contact.l0) > NEAREST:
+        if len(states) > 1:
+            step = min(_LARGEST, _SHRINK * ratio / max(_rate(contact, states), _SLOWEST))
+        for _ in range(_HALVINGS):
+            target = states[-1].load_parameter + step
+            if target > 1.0:
+                return states
+            found = contact.equilibrium(extrapolate(contact.model, states[-4:], target))
+            if found is not None and contact.arc(found) < node:
+                states.append(found)
+                break
+            step /= 2
+        else:
+            return states
+    return states
+
+
+def _rate(contact: _Contact, states: list[State]) -> float:
+    """Element lengths that the contact slides per load parameter."""
+    before, last = states[-2:]
+    way = contact.arc(last) - contact.arc(before)
+    return way / contact.l0 / (last.load_parameter - before.load_parameter)
+
+
+def _behind(contact: _Contact, trail: list[State], node: float) -> list[State]:
+    """One equilibrium inside the element behind the node, the nearest of a few places; none if none is found.
+
+    The starts are extrapolated from states that lie apart: those crowded before the node know only its round-off.
+    """
+    apart = _apart(trail)
+    if len(apart) < 2:
+        return []
+    rate, last = _rate(contact, apart), apart[-1]
+    for part in _BEHIND:
+        ahead = (node - contact.arc(last)) / contact.l0 + part
+        target = last.load_parameter + ahead / max(rate, _SLOWEST)
+        found = contact.equilibrium(extrapolate(contact.model, apart, target)) if target <= 1.0 else None
+        if found is not None and node < contact.arc(found) < node + contact.l0:
+            return [found]
+    return []
+
+
+def _apart(trail: list[State]) -> list[State]:
+    """The last three states that are a step apart."""
+    chosen: list[State] = []
+    for state in reversed(trail):
+        if len(chosen) < 3 and (not chosen or chosen[0].load_parameter - state.load_parameter > _LARGEST / 2):
+            chosen.insert(0, state)
+    return chosen
