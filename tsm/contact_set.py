@@ -61,6 +61,16 @@ def initial_state(model: Model) -> State:
     return owned(model, replace(start, touches=tuple(touches)))
 
 
+def crowded(model: Model, state: State) -> bool:
+    """Whether two nodes touch one element of the paper's, whose matrix knows a single contact."""
+    owners = [
+        touch.element
+        for pair, touch in zip(model.pairs, state.touches, strict=True)
+        if touch is not None and pair.slot < 0
+    ]
+    return len(set(owners)) < len(owners)
+
+
 def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
     """Status that ends the march where a contact may not open."""
     if kind is EventKind.SLIP_OFF:

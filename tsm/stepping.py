@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tsm.contact import arc_position, project
-from tsm.contact_set import changed, forbidden, initial_state, rearm
+from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
 from tsm.guard import PathGuard
@@ -230,7 +230,7 @@ class Stepper:
                 return refused
             lost += self._consistent(at.system.forces[k], touch)
             state = changed(state, k, None, armed=margin.kind is EventKind.RELEASE)
-        return self._resume(at, state, lost)
+        return Status.TWO_CONTACTS if crowded(model, state) else self._resume(at, state, lost)
 
     def _close(self, state: State, margin: Margin) -> State:
         """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
