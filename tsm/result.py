@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -77,8 +78,6 @@ class Result:
         Steps given up.
     events : tuple of Event
         Contact events in order.
-    strain_energy : ndarray, shape (s,)
-        Energy of beams and contact dents.
     unknowns : int
         Number of unknowns.
     wall_seconds : float
@@ -94,11 +93,16 @@ class Result:
     newton_iterations: Array
     cutbacks: int
     events: tuple[Event, ...]
-    strain_energy: Array
     unknowns: int
     wall_seconds: float
     model: Model = field(repr=False)
     equilibria: tuple[Equilibrium, ...] = field(repr=False)
+
+    @cached_property
+    def strain_energy(self) -> Array:
+        """Strain energy of beams and contact dents, shape (s,)."""
+        assembler = Assembler(self.model)
+        return np.array([assembler.energy(equilibrium.state) for equilibrium in self.equilibria])
 
     def shape(self, beam: str, k: int) -> Array:
         """Deformed nodes of a beam at accepted load parameter k: x, y, rotation; shape (elements + 1, 3)."""
@@ -159,7 +163,6 @@ class Result:
 
 def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:
     """Result of the accepted steps."""
-    assembler = Assembler(model)
     requested = [step for step in steps if step.requested]
     equilibria = tuple(step.equilibrium for step in requested)
     spent = np.cumsum([step.iterations for step in steps])
@@ -184,7 +187,6 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         newton_iterations=np.diff(upto, prepend=0),
         cutbacks=sum(step.cutbacks for step in steps),
         events=tuple(event for step in steps for event in step.events),
-        strain_energy=np.array([assembler.energy(e.state) for e in equilibria]),
         unknowns=model.unknowns,
         wall_seconds=seconds,
         model=model,

@@ -213,6 +213,7 @@ class Stepper:
         if at is not self.accepted:
             self._accept(at)
         model, state, lost = self.model, at.state, np.zeros(self.model.dof_count)
+        noted = len(self.events)
         for margin in changes:
             k, pair = margin.pair, model.pairs[margin.pair]
             self.chatter[k, state.load_parameter] += 1
@@ -228,9 +229,15 @@ class Stepper:
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
                 return refused
-            lost += self._consistent(at.system.forces[k], touch)
+            if margin.kind is EventKind.SLIP_OFF:
+                lost += self._consistent(at.system.forces[k], touch)
             state = changed(state, k, None, armed=margin.kind is EventKind.RELEASE)
-        return Status.TWO_CONTACTS if crowded(model, state) else self._resume(at, state, lost)
+        if crowded(model, state):
+            return Status.TWO_CONTACTS
+        status = self._resume(at, state, lost)
+        if status is not Status.CONVERGED and status is self.failure:
+            del self.events[noted:]
+        return status
 
     def _close(self, state: State, margin: Margin) -> State:
         """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
