@@ -1,6 +1,7 @@
 """The command ``crossval``."""
 
 import argparse
+import os
 import sys
 from importlib import metadata
 from pathlib import Path
@@ -27,6 +28,10 @@ def main(arguments: list[str] | None = None) -> int:
     except (SceneError, ModelError, OutputError) as error:
         print(f"crossval: {error}", file=sys.stderr)
         return BAD_INPUT
+    except BrokenPipeError:
+        # whoever read the output has had enough; spare the interpreter its last flush
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
     except OSError as error:
         print(f"crossval: {error.filename or 'output'}: {error.strerror}", file=sys.stderr)
         return BAD_INPUT

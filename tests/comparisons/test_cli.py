@@ -175,3 +175,13 @@ def test_installed_command_runs() -> None:
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert "ks-cantilever" in done.stdout
+
+
+def test_a_reader_that_stops_early_is_no_error() -> None:
+    command = "crossval solve ks-cantilever --model rod --json - | head -1"
+    path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}
+    run = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, env=path, check=False
+    )
+    assert run.stdout.strip() == "{"
+    assert run.stderr == ""
