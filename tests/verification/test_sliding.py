@@ -234,3 +234,32 @@ def test_either_neighbour_as_owner(shear):
                 for gradient, c, xi in ((a, Curve(first, left), 1.0), (b, Curve(second, right), 0.0))
             ]
             assert along[0] == pytest.approx(along[1], abs=1e-10 * size)
+
+
+def test_shear_turns_the_force_at_a_node_by_less_than_the_kink():
+    """In equilibrium with the contact on a node, the other neighbour's normal differs by less than the kink lam/GA."""
+    structure = cantilever(((4.05, 0.0), (4.05, 1.6)))
+    result = tsm.solve(structure, np.arange(1, 9) / 8)
+    event = next(e for e in result.events if e.kind is tsm.EventKind.PASS_THROUGH and e.arc_position > 4.2)
+    low, high = event.load_parameter - 0.02, event.load_parameter + 0.02
+    for _ in range(60):
+        t = (low + high) / 2
+        at = tsm.solve(structure, np.array([0.5 * t, t]))
+        low, high = (t, high) if at.contacts["p->b"].arc_position[-1] < event.arc_position else (low, t)
+    model, state = at.model, at.equilibria[-1].state
+    touch = state.touches[0]
+    assert touch is not None
+    force = np.array(touch.force)
+    node = np.array(structure.pins[0].position(state.load_parameter))
+    across = []
+    for element, xi in (
+        (touch.element, touch.xi),
+        (touch.element + (1 if touch.xi > 0.5 else -1), 1 - round(touch.xi)),
+    ):
+        x = state.q[model.dofs[:, element]]
+        lever = np.array(model.element_start[element]) + x[:2] - node
+        gradient, _ = mixed_contact.response(model.element[element], x, lever, float(xi), force, 1.0, 0.0)
+        assert np.abs(gradient[8:10]).max() <= 1e-8
+        across.append(abs(gradient[10]) / np.hypot(*force))
+    assert across[0] <= 1e-9
+    assert across[1] <= np.hypot(*force) / GA
