@@ -164,19 +164,21 @@ def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
 
 def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array]:
     beam = scene.beams[number]
-    shape, forces = result.shape(beam.name, k), result.section_forces(beam.name, k).reshape(-1, 3)
-    fraction = np.linspace(0.0, 1.0, len(shape))[:, None]
+    stations = result.stations(beam.name, k)
+    arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
+    fraction = arc[:, None] / beam.length
     reference = (1.0 - fraction) * np.array(beam.start) + fraction * np.array(beam.end)
+    N, V, M = stations.forces.reshape(-1, 3).T
     return {
-        "reference": _pairs(reference),
-        "displacement": _pairs(shape[:, :2] - reference),
-        "deformed": _pairs(shape[:, :2]),
-        "rotation": _pairs(shape[:, 2]),
-        "N": forces[:, 0],
-        "V": forces[:, 1],
-        "M": forces[:, 2],
-        "beam": np.full(len(forces), float(number)),
-        "arc": _pairs(fraction[:, 0] * beam.length),
+        "reference": reference,
+        "displacement": deformed - reference,
+        "deformed": deformed,
+        "rotation": stations.rotation.ravel(),
+        "N": N,
+        "V": V,
+        "M": M,
+        "beam": np.full(len(arc), float(number)),
+        "arc": arc,
     }
 
 
@@ -184,8 +186,3 @@ def _tip(scene: Scene, result: Any, beam: str) -> Array:
     """Deformed positions (s, 2) of a beam's less held end."""
     node = 0 if scene.tip(beam) == "start" else -1
     return _rows([result.shape(beam, k)[node, :2] for k in range(len(result.load_parameter))], 2)
-
-
-def _pairs(values: Array) -> Array:
-    """Values (e + 1, ...) at nodes as values (2 e, ...) at the elements' ends."""
-    return np.repeat(values, 2, axis=0)[1:-1]

@@ -28,6 +28,7 @@ from tsm.state import State
 from tsm.status import Status
 from tsm.stepping import Step
 from tsm.structure import Structure
+from tsm.system import Linearisation
 
 
 def trace(
@@ -88,10 +89,11 @@ def trace(
 
 @dataclass(frozen=True, kw_only=True)
 class _Tangent:
-    """Direction of the path over the unknowns of the system, of unit length, and of the load parameter."""
+    """Direction of the path over the unknowns of the system, of unit length, of the load parameter, and where it was taken."""
 
     x: Array
     load: float
+    system: Linearisation
 
 
 class _Path:
@@ -100,7 +102,7 @@ class _Path:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.settings = settings
-        self.newton = Newton(model, tolerance=settings.tolerance, max_iterations=settings.max_iterations)
+        self.newton = Newton(model, settings)
         self.here = self.newton.solve(initial_state(model))
         self.weight = np.concatenate([self.newton.per_limit, np.zeros(model.contact_unknowns)]) ** 2
         self.tangent = self._tangent(self.here.state, None)
@@ -146,17 +148,21 @@ class _Path:
     def _tangent(self, state: State, last: _Tangent | None) -> _Tangent | None:
         """Tangent of the path, in the sense of the last one; at first, of an increasing load."""
         assembler = self.newton.assembler
-        solved = assembler.solve(assembler.linearise(state), -assembler.rate(state))
+        system = assembler.linearise(state)
+        solved = assembler.solve(system, -assembler.rate(state))
         if solved is None:
             return None
         x = solved[:, 1]
         size = float(np.sqrt(x @ (self.weight * x)))
         ahead = 1.0 if last is None else float(x @ (self.weight * last.x))
         sign = 1.0 if ahead >= 0 else -1.0
-        return _Tangent(x=sign * x / size, load=sign / size)
+        return _Tangent(x=sign * x / size, load=sign / size, system=system)
 
-    def _moved(self, state: State, step: Array, load: float) -> State:
-        return self.newton.prescribed(self.newton.update(state, step), state.load_parameter + load)
+    def _moved(
+        self, state: State, system: Linearisation, step: Array, load: float, *, residual: bool
+    ) -> State:
+        moved = self.newton.update(state, step, system, along=load, residual=residual)
+        return self.newton.prescribed(moved, state.load_parameter + load)
 
     def _step(self, length: float) -> tuple[tuple[Equilibrium, _Tangent] | None, int]:
         """Equilibrium a distance along the tangent, and the iterations it took."""
@@ -164,7 +170,9 @@ class _Path:
         if along is None:
             self.failure = Status.SINGULAR_TANGENT
             return None, 0
-        state = self._moved(self.here.state, length * along.x, length * along.load)
+        state = self._moved(
+            self.here.state, along.system, length * along.x, length * along.load, residual=False
+        )
         residuals: list[float] = []
         for iteration in range(self.settings.max_iterations + 1):
             system = assembler.linearise(state)
@@ -172,7 +180,15 @@ class _Path:
             if not np.isfinite(residuals[-1]):
                 self.failure = Status.NOT_FINITE
                 return None, iteration
+            finer = self.newton.finer(state, system, residuals[-1])
+            if finer is not None:
+                state = finer
+                continue
             if self.newton.converged(residuals, system):
+                verdict = self.newton.verdict(system)
+                if verdict is not Status.CONVERGED:
+                    self.failure = verdict
+                    return None, iteration
                 there = Equilibrium(
                     state=state,
                     status=Status.CONVERGED,
@@ -189,7 +205,7 @@ class _Path:
             back, rate = solved.T
             across = self.weight * along.x
             load = -float(across @ back) / float(across @ rate)
-            state = self._moved(state, back + load * rate, load)
+            state = self._moved(state, system, back + load * rate, load, residual=True)
         self.failure = Status.ITERATION_LIMIT
         return None, self.settings.max_iterations
 

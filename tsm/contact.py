@@ -19,6 +19,9 @@ from tsm.elements.properties import Array
 from tsm.model import BeamModel, Model, PairModel
 from tsm.state import State, Touch
 
+_SAMPLES = 33
+"""Points of an exact element among which the nearest is looked for."""
+
 
 class Projection(NamedTuple):
     """Closest point of a beam's deflected axis to a node.
@@ -39,14 +42,6 @@ class Projection(NamedTuple):
     xi: float
     gap: float
     overshoot: float
-
-
-def node_position(model: Model, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
-    """Current position of the contacting node."""
-    if pair.pin is not None:
-        return pair.pin.position(load_parameter)
-    x, y = model.coordinates[pair.node] + q[3 * pair.node : 3 * pair.node + 2]
-    return float(x), float(y)
 
 
 def arc_position(model: Model, target: BeamModel, element: int, xi: float) -> float:
@@ -81,7 +76,7 @@ def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
     """Touch with its owner and position renewed by projection on the chords."""
-    node = node_position(model, pair, state.q, state.load_parameter)
+    node = model.node_position(pair, state.q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, state.q, node)
     return Touch(element=element, xi=min(max(xi, 0.0), 1.0), force=touch.force)
 
@@ -91,8 +86,10 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
 
     The chords give the owner, Newton's method on the owner's curve the point.
     """
+    if pair.cuts:
+        return _project_on_rods(model, pair, state)
     q = state.q
-    node = node_position(model, pair, q, state.load_parameter)
+    node = model.node_position(pair, q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, q, node)
     for _ in range(20):
         rx, ry, curve = _lever(model, element, q, node)
@@ -111,6 +108,36 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
     local = element - pair.target.first + xi
     beyond = max(local - pair.target.beam.elements, -local, 0.0) * model.element[element].l0
     return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
+
+
+def _project_on_rods(model: Model, pair: PairModel, state: State) -> Projection:
+    """Closest point of exact elements: of points along the axis the nearest, and Newton's method from there."""
+    assert model.rods is not None, "the pair touches an exact element"
+    shape, target = model.rods.shape(state), pair.target
+    node = np.array(model.node_position(pair, state.q, state.load_parameter))
+    l0 = model.element[target.first].l0
+    samples = np.linspace(0, l0, _SAMPLES)
+    first = int(model.place[target.first])
+    count = target.beam.elements
+    points = np.array([shape.at(first + e, samples).position for e in range(count)]) - node
+    nearest = np.argmin(np.einsum("emi,emi->em", points, points))
+    e, sample = divmod(int(nearest), _SAMPLES)
+    arc = float(samples[sample])
+    for _ in range(30):
+        inside = min(max(arc, 0.0), l0)
+        at = shape.at(first + e, np.array([inside]))
+        tangent, bend = model.rods.tangent(state, int(at.segment[0]), float(at.angle[0]), float(at.moment[0]))
+        apart = at.position[0] + (arc - inside) * tangent - node
+        slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
+        step = float(apart @ tangent) / slope if slope > 0 else 0.0
+        arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
+        element, xi = slide(target, target.first + e, arc / l0)
+        e, arc = element - target.first, xi * l0
+        if abs(step) < 1e-14 * l0:
+            break
+    height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
+    beyond = max(e * l0 + arc - target.beam.length, -(e * l0 + arc), 0.0)
+    return Projection(target.first + e, arc / l0, pair.side * height - pair.pair.offset, beyond)
 
 
 def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:

@@ -6,18 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsm.contact import chord_owner, node_position, project
+from tsm.contact import chord_owner, project
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model, PairModel
 from tsm.state import State, Touch
 from tsm.status import Status
 
 
-def changed(state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
+def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: bool) -> State:
     """State with pair k closed by a touch, or open and armed or not."""
     touches, flags = list(state.touches), list(state.armed)
     touches[k], flags[k] = touch, armed
-    return replace(state, touches=tuple(touches), armed=tuple(flags))
+    state = replace(state, armed=tuple(flags))
+    if model.rods:
+        return model.rods.recut(state, tuple(touches))
+    return replace(state, touches=tuple(touches))
 
 
 def rearm(model: Model, state: State) -> State:
@@ -42,14 +45,16 @@ def initial_state(model: Model) -> State:
     """
     q = np.zeros(model.dof_count)
     count = len(model.pairs)
-    start = State(load_parameter=0.0, q=q, touches=(None,) * count, armed=(True,) * count)
+    none: tuple[Touch | None, ...] = (None,) * count
+    straight = model.rods.undeformed(none) if model.rods else None
+    start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count, profile=straight)
     touches: list[Touch | None] = []
     for pair in model.pairs:
         seen = project(model, pair, start)
         small = ROUND_OFF * model.length
         over = seen.overshoot <= small
         if over and seen.gap < -small:
-            position = node_position(model, pair, q, 0.0)
+            position = model.node_position(pair, q, 0.0)
             raise ValueError(
                 f"ContactPair({pair.pair.name}).side = {pair.pair.side!r}: "
                 f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
@@ -58,7 +63,9 @@ def initial_state(model: Model) -> State:
         touches.append(
             Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
         )
-    return owned(model, replace(start, touches=tuple(touches)))
+    if model.rods:
+        start = model.rods.recut(start, tuple(touches))
+    return owned(model, replace(start, touches=start.touches if model.rods else tuple(touches)))
 
 
 def crowded(model: Model, state: State) -> bool:

@@ -14,6 +14,7 @@ lies where its margin is zero. A pass-through changes nothing and is interpolate
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
@@ -83,9 +84,12 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     fx, fy = equilibrium.system.forces[k]
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
-    i, j = model.element_nodes[touch.element]
-    q = equilibrium.state.q
-    dx, dy = model.coordinates[j] - model.coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
+    if model.pairs[k].cuts:
+        dx, dy = math.cos(touch.angle), math.sin(touch.angle)
+    else:
+        i, j = model.element_nodes[touch.element]
+        q = equilibrium.state.q
+        dx, dy = model.coordinates[j] - model.coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
     push = model.pairs[k].side * (fy * dx - fx * dy)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if push >= 0 else -size

@@ -17,7 +17,7 @@ from tsm.state import State
 SHORT = 0.1
 """Longest prediction, in largest Newton steps (0.3 L, 0.7 rad)."""
 FORCE = 0.1
-"""Largest predicted change of an axial force, in parts of ``EI/L^2 + max |N|``."""
+"""Largest predicted change of an internal force, in parts of ``EI/L^2 + max |N|``."""
 
 
 class PathGuard:
@@ -35,14 +35,15 @@ class PathGuard:
         self.newton = newton
         self.state = state
         assembler, model = newton.assembler, newton.model
-        solved = assembler.solve(assembler.linearise(state), -assembler.rate(state))
+        system = assembler.linearise(state)
+        solved = assembler.solve(system, -assembler.rate(state))
         self.rates: Array | None = None if solved is None else solved[:, 1]
-        q = np.zeros(model.dof_count)
-        q[model.fixed] = model.fixed_values
+        self.system = system
+        q = assembler.prescribed_rate()
         if self.rates is not None:
             q[model.free] = self.rates[: model.equations]
         self.q_rate = q
-        at = self._axial_force(state.q + 1e-60j * q)
+        at = self._internal_force(state.q + 1e-60j * q)
         self.force, self.force_rate = at.real, at.imag / 1e-60
         self.force_scale = FORCE * (model.force_scale + np.abs(self.force).max())
 
@@ -66,16 +67,22 @@ class PathGuard:
         moved = self.newton.prescribed(self.state, t)
         if self.rates is None:
             return moved
-        return self.newton.update(moved, (t - self.state.load_parameter) * self.rates)
+        length = t - self.state.load_parameter
+        return self.newton.update(moved, length * self.rates, self.system, along=length)
 
     def keeps(self, found: State) -> bool:
-        """Whether an equilibrium is near its prediction, in displacements and in axial forces."""
+        """Whether an equilibrium is near its prediction, in displacements and in internal forces."""
         model = self.newton.model
         step = found.load_parameter - self.state.load_parameter
         miss = (found.q - self.state.q - step * self.q_rate)[model.free] * self.newton.per_limit
-        force = self._axial_force(found.q) - self.force - step * self.force_rate
+        force = self._internal_force(found.q) - self.force - step * self.force_rate
         return bool(np.abs(miss).max(initial=0.0) <= SHORT / 2 and np.abs(force).max() <= self.force_scale)
 
-    def _axial_force(self, q: Array) -> Array:
+    def _internal_force(self, q: Array) -> Array:
+        """Axial forces along chords, and both components of the exact elements' forces."""
         model = self.newton.model
-        return beam.axial_force(model.coefficients, q[model.dofs])
+        force: Array = q[model.exact_dofs[3:5]].ravel()
+        if model.coefficients:
+            axial = beam.axial_force(model.coefficients, q[model.dofs[:, model.closed]])
+            force = np.concatenate([axial, force])
+        return force

@@ -11,9 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, ElementType
+from tsm.elements import ELEMENTS, EXACT, ClosedForm, ElementType
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
+from tsm.rods import Rods
 from tsm.structure import Beam, ContactPair, Pin, Structure
 
 
@@ -60,7 +61,7 @@ class PairModel:
     node : int
         Global number of the beam's end that touches, -1 for a pin.
     slot : int
-        Position of its unknowns (force x and y, arc position) in the border, -1 without.
+        Position of its unknowns (force x and y, arc position, of exact elements the angle) in the border, -1 without.
     """
 
     pair: ContactPair
@@ -71,6 +72,16 @@ class PairModel:
     node: int
     slot: int
 
+    @property
+    def cuts(self) -> bool:
+        """Whether the contact cuts the touched element."""
+        return self.element_type is EXACT
+
+    @property
+    def slots(self) -> slice:
+        """Positions of its unknowns among the contacts' unknowns."""
+        return slice(self.slot, self.slot + self.element_type.contact_unknowns)
+
 
 class Model:
     """Numbering and constants of a structure.
@@ -80,7 +91,13 @@ class Model:
     coordinates : ndarray, shape (nodes, 2)
         Undeformed node positions.
     dofs : ndarray of int, shape (6, elements)
-        Degrees of freedom of the elements, three per node.
+        Degrees of freedom of the elements' nodes, three per node.
+    closed : ndarray of int, shape (c,)
+        Elements in closed form.
+    rods : Rods or None
+        The exact elements; their force and moment are three degrees of freedom each, after those of the nodes.
+    place : ndarray of int, shape (elements,)
+        Number of every element among those of its kind.
     free : ndarray of int, shape (equations,)
         Degree of freedom of every equation, banded ones first.
     banded : int
@@ -92,11 +109,13 @@ class Model:
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self._place_beams(structure.beams)
+        self._sort_elements(structure.beams)
         self._prescribe(structure)
         self._place_pairs(structure)
         self._number_equations()
         self.properties = self._properties()
         self.coefficients = self._coefficients()
+        self.rods = Rods(self) if len(self.exact) else None
         longest = max(structure.beams, key=lambda beam: beam.length)
         self.length = longest.length
         self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
@@ -128,6 +147,15 @@ class Model:
         self.dofs = (3 * self.element_nodes[:, :, None] + np.arange(3)).reshape(-1, 6).T.copy()
         self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
 
+    def _sort_elements(self, beams: tuple[Beam, ...]) -> None:
+        exact = np.repeat([ELEMENTS[b.element] is EXACT for b in beams], [b.elements for b in beams])
+        self.exact, self.closed = np.flatnonzero(exact), np.flatnonzero(~exact)
+        self.place = np.where(exact, np.cumsum(exact), np.cumsum(~exact)) - 1
+        own = 3 * (len(self.coordinates) + np.arange(len(self.exact))) + np.arange(3)[:, None]
+        nodal = self.dofs[:, self.exact]
+        self.exact_dofs = np.concatenate([nodal[:3], own, nodal[3:]])
+        self.dof_count = 3 * (len(self.coordinates) + len(self.exact))
+
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}
         self.prescribed: dict[int, float] = {}
@@ -143,7 +171,7 @@ class Model:
                     self.prescribed[3 * node + k] = value
         self.fixed = np.array(sorted(self.prescribed), dtype=int)
         self.fixed_values = np.array([self.prescribed[dof] for dof in self.fixed])
-        self.load = np.zeros(3 * len(self.coordinates))
+        self.load = np.zeros(self.dof_count)
         for load in structure.loads:
             node = self.end_node(f"{load.beam}.{load.end}")
             self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
@@ -169,42 +197,47 @@ class Model:
                     side=1.0 if pair.side == "right" else -1.0,
                     pin=pin,
                     node=-1 if pin else self.end_node(pair.node),
-                    slot=slots if element_type.carries_force else -1,
+                    slot=slots if element_type.contact_unknowns else -1,
                 )
             )
-            slots += 3 if element_type.carries_force else 0
+            slots += element_type.contact_unknowns
         self.contact_unknowns = slots
 
     def _number_equations(self) -> None:
-        count = 3 * len(self.coordinates)
         bordered = [
             3 * pair.node + k for pair in self.pairs if pair.node >= 0 and pair.slot < 0 for k in range(2)
         ]
         border_dofs = [dof for dof in dict.fromkeys(bordered) if dof not in self.prescribed]
         aside = {*self.prescribed, *border_dofs}
-        band_dofs = [
-            3 * node + k for node in self._node_order() for k in range(3) if 3 * node + k not in aside
-        ]
+        band_dofs = [3 * block + k for block in self._order() for k in range(3) if 3 * block + k not in aside]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)
-        self.dof_count = count
         # fixed degrees of freedom point past the last equation
-        self.equation = np.full(count, self.equations)
+        self.equation = np.full(self.dof_count, self.equations)
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]
 
-    def _node_order(self) -> list[int]:
-        """Order of the nodes with a small bandwidth; along the beams where none are joined."""
+    def _order(self) -> list[int]:
+        """Order of the nodes and exact elements with a small bandwidth; along the beams where none are joined."""
+        blocks = np.full(len(self.element_nodes), -1)
+        blocks[self.exact] = len(self.coordinates) + np.arange(len(self.exact))
         if not self.joined:
-            return list(range(len(self.coordinates)))
+            along = []
+            for beam in self.beams.values():
+                own = np.append(blocks[beam.first : beam.last + 1], -1)
+                along.append(np.stack([beam.nodes, own], axis=1).ravel())
+            return [block for block in np.concatenate(along).tolist() if block >= 0]
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-        shape = (len(self.coordinates),) * 2
-        near = coo_array((np.ones(len(self.element_nodes)), tuple(self.element_nodes.T)), shape=shape)
+        i, j = self.element_nodes.T
+        own = blocks[self.exact]
+        pairs = np.concatenate([[i, j], [i[self.exact], own], [own, j[self.exact]]], axis=1)
+        shape = (self.dof_count // 3,) * 2
+        near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=shape)
         order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
         return order
 
@@ -216,9 +249,12 @@ class Model:
     @cached_property
     def bandwidth(self) -> int:
         """Largest distance of two coupled banded equations."""
-        rows = np.where(self.element_equations < self.banded, self.element_equations, -1)
-        least = np.where(rows < 0, self.banded, rows).min(axis=0)
-        return int(max((rows.max(axis=0) - least).max(), 0))
+        widest = 0
+        for equations in (self.element_equations[:, self.closed], self.equation[self.exact_dofs]):
+            rows = np.where(equations < self.banded, equations, -1)
+            least = np.where(rows < 0, self.banded, rows).min(axis=0)
+            widest = max(widest, int((rows.max(axis=0) - least).max(initial=0)))
+        return widest
 
     def _properties(self) -> Properties:
         d = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0]
@@ -228,16 +264,28 @@ class Model:
             np.repeat([getattr(b.beam.section, name) for b in self.beams.values()], repeats)
             for name in ("EA", "GA", "EI")
         )
-        sheared = np.repeat([ELEMENTS[b.beam.element].sheared for b in self.beams.values()], repeats)
+        kinds = [ELEMENTS[beam.beam.element] for beam in self.beams.values()]
+        sheared = np.repeat([not isinstance(kind, ClosedForm) or kind.sheared for kind in kinds], repeats)
         Phi = np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
         return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=Phi)
 
-    def _coefficients(self) -> Coefficients:
+    def _coefficients(self) -> Coefficients | None:
         parts = []
         for beam in self.beams.values():
-            own = Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
-            parts.append(ELEMENTS[beam.beam.element].coefficients(own))
+            kind = ELEMENTS[beam.beam.element]
+            if isinstance(kind, ClosedForm):
+                own = Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
+                parts.append(kind.coefficients(own))
+        if not parts:
+            return None
         return Coefficients(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
+
+    def node_position(self, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
+        """Current position of a pair's contacting node."""
+        if pair.pin is not None:
+            return pair.pin.position(load_parameter)
+        x, y = self.coordinates[pair.node] + q[3 * pair.node : 3 * pair.node + 2]
+        return float(x), float(y)
 
     @cached_property
     def element(self) -> list[Properties]:

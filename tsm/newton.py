@@ -8,7 +8,8 @@ import numpy as np
 
 from tsm.contact import chord_owner, slide
 from tsm.elements.properties import Array
-from tsm.model import Model
+from tsm.model import Model, PairModel
+from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Linearisation
@@ -16,6 +17,8 @@ from tsm.system import Assembler, Linearisation
 _ROUND_OFF = 4 * float(np.finfo(float).eps)
 _SHARP = 1e-3
 """Positions are held this much sharper than forces: they cost nothing, and a stiff contact needs them."""
+_NEAR = 1.0
+"""Residual below which a state is worth more Gauss nodes."""
 _CRITICAL = 1e-6
 """A contact so stiff that round-off leaves a larger residual than this has no equilibrium: the critical area."""
 
@@ -53,25 +56,37 @@ class Newton:
     below the residual's round-off, ``4 eps (EA L/l0 + EI/l0^2)`` and ``4 eps k_c L`` for a contact of stiffness k_c.
     """
 
-    def __init__(self, model: Model, *, tolerance: float, max_iterations: int) -> None:
+    def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.assembler = Assembler(model)
-        self.max_iterations = max_iterations
-        p = model.properties
-        noise = _ROUND_OFF * (p.EA * model.length / p.l0 + p.EI / p.l0**2).max() / model.force_scale
+        self.max_iterations = settings.max_iterations
+        self.accuracy = settings.accuracy
+        tolerance = settings.tolerance
+        EA, EI, l0 = (
+            value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
+        )
+        noise = _ROUND_OFF * (EA * model.length / l0 + EI / l0**2).max(initial=0.0) / model.force_scale
         self.tolerance = tolerance
         blur = _ROUND_OFF * np.abs(model.coordinates).max() / (_SHARP * model.length)
-        self.noise = float(max(noise, blur if model.contact_unknowns else 0.0))
+        self.noise = float(max(noise, blur if model.contact_unknowns or model.rods else 0.0))
         force, length = model.force_scale, model.length
-        scale = np.array([1 / force, 1 / force, 1 / (force * length)])
-        own = np.array([1 / (_SHARP * length), 1 / (_SHARP * length), 1 / force])
-        self.scale = np.concatenate([scale[model.free % 3], np.tile(own, model.contact_unknowns // 3)])
-        limit = np.array([0.3 * length, 0.3 * length, 0.7])
-        self.per_limit = 1 / limit[model.free % 3]
+        sharp = 1 / (_SHARP * length)
+        scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / _SHARP])
+        own = [
+            [sharp, sharp, 1 / force, 1 / _SHARP][: pair.element_type.contact_unknowns]
+            for pair in model.pairs
+        ]
+        kind = model.free % 3 + 3 * (model.free >= 3 * len(model.coordinates))
+        self.scale = np.concatenate([scale[kind], *own])
+        per_limit = np.array([1 / (0.3 * length), 1 / (0.3 * length), 1 / 0.7])
+        own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
+        self.per_limit = np.concatenate([per_limit, np.zeros(3)])[kind]
+        self.own_per_limit = np.concatenate([np.empty(0), *own])
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
-        return float(np.abs(system.residual * self.scale).max())
+        largest = float(np.abs(system.residual * self.scale).max())
+        return largest if system.rods is None else max(largest, system.rods.inside / _SHARP)
 
     def solve(self, start: State, load: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium at the start's load parameter, under nodal forces if given."""
@@ -86,9 +101,13 @@ class Newton:
             if not np.isfinite(residuals[-1]):
                 status = Status.NOT_FINITE
             elif self.converged(residuals, system):
-                status = Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
+                status = self.verdict(system)
             elif iteration == self.max_iterations:
                 status = Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
+            finer = self.finer(state, system, residuals[-1])
+            if finer is not None and iteration < self.max_iterations:
+                state = finer
+                continue
             step = self.assembler.solve(system) if status is None else None
             if step is None:
                 return Equilibrium(
@@ -98,8 +117,22 @@ class Newton:
                     residuals=tuple(residuals),
                     system=system,
                 )
-            state = self.update(state, step[:, 0])
+            state = self.update(state, step[:, 0], system, residual=True)
         raise AssertionError("the last iteration returns")
+
+    def finer(self, state: State, system: Linearisation, residual: float) -> State | None:
+        """State with more Gauss nodes where it is near equilibrium and those of the exact elements are too few."""
+        rods = self.model.rods
+        if rods is None or system.rods is None or not residual <= _NEAR:
+            return None
+        return rods.finer(state, system.rods, self.accuracy)
+
+    def verdict(self, system: Linearisation) -> Status:
+        """Status of a small residual."""
+        rods = self.model.rods
+        if rods and system.rods and rods.truncation(system.rods.segments) > self.accuracy:
+            return Status.INACCURATE
+        return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
         """Whether the last residual is small enough, or the last two are round-off."""
@@ -114,35 +147,81 @@ class Newton:
         q[self.model.fixed] = t * self.model.fixed_values
         return replace(state, load_parameter=t, q=q)
 
-    def update(self, state: State, step: Array) -> State:
-        """State after a step, shortened so that no node and no contact moves too far at once."""
+    def update(
+        self,
+        state: State,
+        step: Array,
+        system: Linearisation,
+        *,
+        along: float = 0.0,
+        residual: bool = False,
+    ) -> State:
+        """State after a step, shortened so that no node and no contact moves too far at once.
+
+        Parameters
+        ----------
+        state : State
+            Where the step starts.
+        step : ndarray, shape (equations + contact unknowns,)
+            Change of the unknowns.
+        system : Linearisation
+            The one that the step solves.
+        along : float
+            Change of the load parameter in the step; the prescribed displacements are left to `prescribed`.
+        residual : bool
+            Whether the step removes the residual.
+        """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
         largest = float(np.abs(dq * self.per_limit).max(initial=0.0))
         if len(dz):
-            largest = max(largest, float(np.abs(dz[2::3]).max()) / (0.3 * model.length))
+            largest = max(largest, float(np.abs(dz * self.own_per_limit).max()))
         factor = 1 / largest if largest > 1 else 1.0
         q = state.q.copy()
         q[model.free] += factor * dq
-        moved = State(load_parameter=state.load_parameter, q=q, touches=state.touches, armed=state.armed)
-        if not state.touches or not np.isfinite(largest):
+        moved = replace(state, q=q)
+        if not np.isfinite(largest):
+            return moved
+        if model.rods and system.rods and state.profile:
+            change = np.zeros(model.dof_count)
+            change[model.free], change[model.fixed] = dq, along * model.fixed_values
+            inside = model.rods.inside(system.rods, state, change, dz, float(residual))
+            angle = state.profile.angle + factor * inside
+            moved = replace(moved, profile=replace(state.profile, angle=angle))
+        if not state.touches:
             return moved
         own = (factor * dz).tolist()
-        return replace(
-            moved,
-            touches=tuple(
-                self._moved(k, moved, touch, own) if touch is not None else None
-                for k, touch in enumerate(state.touches)
-            ),
-        )
+        touches = [
+            self._moved(k, moved, touch, own) if touch is not None else None
+            for k, touch in enumerate(state.touches)
+        ]
+        return self._handed_over(replace(moved, touches=tuple(touches)))
 
     def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
         pair = self.model.pairs[k]
         if pair.slot < 0:
             return chord_owner(self.model, pair, state, touch)
-        dFx, dFy, ds = dz[pair.slot : pair.slot + 3]
-        element, xi = slide(pair.target, touch.element, touch.xi + ds / self.model.element[touch.element].l0)
-        return Touch(element=element, xi=xi, force=(touch.force[0] + dFx, touch.force[1] + dFy))
+        dFx, dFy, ds, *turned = dz[pair.slots]
+        return Touch(
+            element=touch.element,
+            xi=touch.xi + ds / self.model.element[touch.element].l0,
+            force=(touch.force[0] + dFx, touch.force[1] + dFy),
+            angle=touch.angle + sum(turned),
+        )
+
+    def _handed_over(self, state: State) -> State:
+        """State in which contacts that left their element belong to the neighbour."""
+        touches = tuple(
+            touch if touch is None else self._owned(pair, touch)
+            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
+        )
+        if self.model.rods:
+            return self.model.rods.recut(state, touches)
+        return replace(state, touches=touches)
+
+    def _owned(self, pair: PairModel, touch: Touch) -> Touch:
+        element, xi = slide(pair.target, touch.element, touch.xi)
+        return touch if element == touch.element else replace(touch, element=element, xi=xi)
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

@@ -36,5 +36,9 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
         force = tuple(
             sum(w * touch.force[c] for w, touch in zip(weights, known, strict=True)) for c in range(2)
         )
-        touches.append(Touch(element=element, xi=xi, force=(force[0], force[1])))
-    return owned(model, replace(last, load_parameter=t, q=q, touches=tuple(touches)))
+        angle = sum(w * touch.angle for w, touch in zip(weights, known, strict=True))
+        touches.append(Touch(element=element, xi=xi, force=(force[0], force[1]), angle=angle))
+    moved = replace(last, load_parameter=t, q=q)
+    if model.rods is None:
+        return owned(model, replace(moved, touches=tuple(touches)))
+    return owned(model, model.rods.extrapolated(history, weights, moved, tuple(touches)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,6 +14,7 @@ from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.model import Model
 from tsm.newton import Equilibrium
+from tsm.rod_shape import Stations
 from tsm.status import Status
 from tsm.stepping import Step
 from tsm.system import Assembler
@@ -111,37 +113,83 @@ class Result:
         shape[:, :2] += self.model.coordinates[nodes]
         return shape
 
-    def axis_line(self, beam: str, k: int, points_per_element: int = 10) -> tuple[Array, Array]:
+    def axis_line(self, beam: str, k: int, points_per_element: int | None = None) -> tuple[Array, Array]:
         """Deflected axis of a beam at accepted load parameter k.
+
+        Parameters
+        ----------
+        beam : str
+            Name of the beam.
+        k : int
+            Number of the accepted load parameter.
+        points_per_element : int, optional
+            Intervals in every element: 10, and of exact elements so many that the beam has 100.
 
         Returns
         -------
         arc : ndarray, shape (m,)
             Distance along the undeformed axis.
         xy : ndarray, shape (m, 2)
-            Deformed position, without the dent of a contact inside its element.
+            Deformed position, in closed-form elements without the dent of a contact.
         """
-        place = self.model.beams[beam]
-        q = self.equilibria[k].state.q
-        xi = np.linspace(0, 1, points_per_element + 1)
+        place, exact = self.model.beams[beam], self.model.rods is not None and self._exact(beam)
+        default = max(10, math.ceil(100 / place.beam.elements)) if exact else 10
+        xi = np.linspace(0, 1, (points_per_element or default) + 1)
         arcs, points = [], []
         for e in range(place.first, place.last + 1):
-            x = q[self.model.dofs[:, e]]
-            curve = Curve(self.model.element[e], x)
-            w = curve.deflection(xi)[0]
-            start = self.model.element_start[e] + x[:2]
-            d = np.array([curve.dx, curve.dy])
-            xy = start + xi[:, None] * d + w[:, None] * np.array([-d[1], d[0]])
+            xy = self._exact_axis(e, k, xi) if exact else self._curve(e, k, xi)
             keep = slice(None) if e == place.last else slice(-1)
             points.append(xy[keep])
             arcs.append((e - place.first + xi[keep]) * self.model.element[e].l0)
         return np.concatenate(arcs), np.concatenate(points)
 
+    def _exact(self, beam: str) -> bool:
+        return bool(np.isin(self.model.beams[beam].first, self.model.exact))
+
+    def _exact_axis(self, e: int, k: int, xi: Array) -> Array:
+        rods = self.model.rods
+        assert rods is not None, "an exact element has rods"
+        state = self.equilibria[k].state
+        return rods.shape(state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
+
+    def _curve(self, e: int, k: int, xi: Array) -> Array:
+        x = self.equilibria[k].state.q[self.model.dofs[:, e]]
+        curve = Curve(self.model.element[e], x)
+        w = curve.deflection(xi)[0]
+        d = np.array([curve.dx, curve.dy])
+        xy: Array = self.model.element_start[e] + x[:2] + xi[:, None] * d
+        xy += w[:, None] * np.array([-d[1], d[0]])
+        return xy
+
+    def stations(self, beam: str, k: int) -> Stations:
+        """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
+        place, state = self.model.beams[beam], self.equilibria[k].state
+        if not self._exact(beam):
+            shape, forces = self.shape(beam, k), self.section_forces(beam, k)
+            pairs = np.arange(len(forces))[:, None] + np.arange(2)
+            arc = np.linspace(0, place.beam.length, len(shape))
+            return Stations(arc[pairs], shape[pairs, :2], shape[pairs, 2], forces)
+        rods = self.model.rods
+        assert rods is not None, "an exact element has rods"
+        count = max(4, math.ceil(60 / place.beam.elements))
+        pieces = [
+            rods.pieces(state, int(self.model.place[e]), count) for e in range(place.first, place.last + 1)
+        ]
+        l0 = self.model.element[place.first].l0
+        arc = np.concatenate([part.arc + n * l0 for n, part in enumerate(pieces)])
+        rotation = np.concatenate([part.rotation for part in pieces])
+        return Stations(
+            arc,
+            np.concatenate([part.position for part in pieces]),
+            rotation,
+            np.concatenate([part.forces for part in pieces]),
+        )
+
     def section_forces(self, beam: str, k: int) -> Array:
         """Axial force, shear force and moment at both ends of the elements of a beam.
 
         Positive are tension, a force to the left of the beam's direction on the right-hand cut, and an anticlockwise
-        moment on it. Axial and shear force are along and across the chord.
+        moment on it. Axial and shear force are along and across the chord, of exact elements along and across the section's axis.
 
         Returns
         -------
@@ -150,10 +198,15 @@ class Result:
         place = self.model.beams[beam]
         part = slice(place.first, place.last + 1)
         force = self.equilibria[k].system.element_force[:, part].T
-        d = np.diff(self.shape(beam, k)[:, :2], axis=0)
+        shape = self.shape(beam, k)
+        d = np.diff(shape[:, :2], axis=0)
         t = d / np.linalg.norm(d, axis=1)[:, None]
         out = np.empty((len(force), 2, 3))
         for end, sign in ((0, -1), (1, 1)):
+            if self._exact(beam):
+                p = self.model.element[place.first]
+                angle = np.arctan2(p.dy0, p.dx0) + shape[end : len(shape) - 1 + end, 2]
+                t = np.stack([np.cos(angle), np.sin(angle)], axis=1)
             f = sign * force[:, 3 * end : 3 * end + 3]
             out[:, end, 0] = f[:, 0] * t[:, 0] + f[:, 1] * t[:, 1]
             out[:, end, 1] = f[:, 1] * t[:, 0] - f[:, 0] * t[:, 1]

@@ -16,6 +16,9 @@ class Settings:
         Bound on the scaled residual, see `Newton`.
     max_iterations : int
         Newton iterations before a step is cut back.
+    accuracy : float
+        Bound on the estimated error of the integration inside exact elements, in positions over the longest beam's length,
+        angles, and forces over ``EI/L^2``.
     smallest_step : float
         Floor of the load step, as a part of the whole load.
     max_chatter : int
@@ -24,11 +27,12 @@ class Settings:
 
     tolerance: float = 1e-10
     max_iterations: int = 25
+    accuracy: float = 1e-9
     smallest_step: float = 1e-7
     max_chatter: int = 6
 
     def __post_init__(self) -> None:
-        for field in ("tolerance", "smallest_step"):
+        for field in ("tolerance", "accuracy", "smallest_step"):
             value = getattr(self, field)
             if not (math.isfinite(value) and 0 < value < 1):
                 raise ValueError(f"Settings.{field} = {value!r}: must lie between 0 and 1")

@@ -14,6 +14,7 @@ class Status(Enum):
     NOT_FINITE = "a residual or an update was not finite"
     SINGULAR_TANGENT = "the tangent is singular"
     CUTBACK_FLOOR = "the load step was cut back to its floor"
+    INACCURATE = "the integration inside an exact element does not reach its accuracy"
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
     UNREACHABLE = "no equilibrium lies beyond: the load parameter has a limit point"

@@ -69,7 +69,7 @@ class Stepper:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.settings = settings
-        self.newton = Newton(model, tolerance=settings.tolerance, max_iterations=settings.max_iterations)
+        self.newton = Newton(model, settings)
         self.iterations = 0
         self.cutbacks = 0
         self.events: list[Event] = []
@@ -231,7 +231,7 @@ class Stepper:
                 return refused
             if margin.kind is EventKind.SLIP_OFF:
                 lost += self._consistent(at.system.forces[k], touch)
-            state = changed(state, k, None, armed=margin.kind is EventKind.RELEASE)
+            state = changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
         if crowded(model, state):
             return Status.TWO_CONTACTS
         status = self._resume(at, state, lost)
@@ -243,11 +243,11 @@ class Stepper:
         """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
         k, pair = margin.pair, self.model.pairs[margin.pair]
         if margin.value < -ROUND_OFF:
-            return changed(state, k, None, armed=False)
+            return changed(self.model, state, k, None, armed=False)
         seen = project(self.model, pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
         self._note(EventKind.TOUCH, k, element, arc_position(self.model, pair.target, element, xi), 0.0)
-        return changed(state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
+        return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
     def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
@@ -274,7 +274,7 @@ class Stepper:
             if pair.pair.keep:
                 return Status.LOST_CONTACT
             lost = self._consistent(equilibrium.system.forces[k], touch)
-            state = changed(state, k, None, armed=True)
+            state = changed(self.model, state, k, None, armed=True)
         if jump:
             energy = self.newton.assembler.energy
             self._note_release(energy(at.state) - energy(state))

@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg.lapack import dgbsv, dgesv
 
-from tsm.contact import node_position
-from tsm.elements import beam, mixed_contact
+from tsm.elements import ClosedForm, beam, mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
+from tsm.rods import OWN, CutElement, RodSystem
 from tsm.state import State, Touch
 
 _EPS = float(np.finfo(float).eps)
@@ -48,6 +48,10 @@ class Linearisation(NamedTuple):
         Round-off of the residual by contact stiffness, ``4 eps k_c L``.
     crowded : bool
         Whether two nodes touch one element of the paper's, which knows one contact only.
+    carried : ndarray, shape (equations + contact unknowns,)
+        What the residual inside exact elements adds to the residual once it is eliminated.
+    rods : RodSystem or None
+        The exact elements.
     """
 
     nodal: Array
@@ -60,6 +64,8 @@ class Linearisation(NamedTuple):
     element_force: Array
     noise: float
     crowded: bool
+    carried: Array | None
+    rods: RodSystem | None
 
 
 class Assembler:
@@ -69,83 +75,133 @@ class Assembler:
         self.model = model
         self.k = model.bandwidth
         self.ldab = 3 * self.k + 1
-        eq, banded, last = model.element_equations, model.banded, model.equations
-        shape = (6, 6, eq.shape[1])
-        rows, columns = np.broadcast_to(eq[:, None], shape), np.broadcast_to(eq[None], shape)
+        banded, last = model.banded, model.equations
+        self.nodal_dofs = model.dofs[:, model.closed]
+        maps = [_pairs(model.equation[dofs]) for dofs in (self.nodal_dofs, model.exact_dofs)]
+        rows, columns = (np.concatenate(part) for part in zip(*maps, strict=True))
         self.band_size = banded * self.ldab
         flat = columns * self.ldab + 2 * self.k + rows - columns
-        self.scatter = np.where((rows < banded) & (columns < banded), flat, self.band_size).ravel()
-        self.dofs_flat = model.dofs.ravel()
+        self.scatter = np.where((rows < banded) & (columns < banded), flat, self.band_size)
+        self.closed_dofs, self.exact_dofs = self.nodal_dofs.ravel(), model.exact_dofs.ravel()
         width, height = model.border, last + 1
         self.size = width * height
         in_right = (rows < last) & (columns >= banded) & (columns < last)
         in_below = (rows >= banded) & (rows < last) & (columns < banded)
-        self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size).ravel()
-        self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size).ravel()
+        self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
+        self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
 
     def linearise(self, state: State, load: Array | None = None) -> Linearisation:
         """Residual and tangent at a state, under given nodal forces besides the model's own if any."""
         model = self.model
-        force, tangent = beam.response(model.coefficients, state.q[model.dofs])
         border = _Border(model)
-        for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
-            if touch is None:
-                border.leave_open(pair)
-                continue
-            gradient, block = self._contact(pair, touch, state)
-            if pair.slot < 0:
-                force[:, touch.element] = tangent[:, touch.element] = 0.0
-            force[:, touch.element] += gradient[:6]
-            tangent[:, touch.element] += block[:6, :6].ravel()
-            border.close(k, pair, touch, gradient, block)
-        nodal: Array = np.bincount(self.dofs_flat, weights=force.ravel(), minlength=model.dof_count)
+        force, tangent = self._closed_form(state, border)
+        values, rods, carried = tangent.ravel(), None, None
+        nodal: Array = np.bincount(self.closed_dofs, weights=force.ravel(), minlength=model.dof_count)
+        if model.rods:
+            rods = model.rods.linearise(state)
+            for part in rods.cut:
+                border.cut(part, state)
+            values = np.concatenate([values, rods.tangent.ravel()])
+            weights = (rods.residual.ravel(), rods.carried.ravel())
+            both = [np.bincount(self.exact_dofs, weights=w, minlength=model.dof_count) for w in weights]
+            nodal, carried = nodal + both[0], np.concatenate([both[1][model.free], border.carried])
+            force = self._end_forces(force, rods)
         for dof, reaction in border.pushed:
             nodal[dof : dof + 2] += reaction
         if load is not None:
             nodal = nodal - load
         if len(model.structure.loads):
             nodal = nodal - state.load_parameter * model.load
-        values = tangent.ravel()
         band = np.bincount(self.scatter, weights=values, minlength=self.band_size + 1)[:-1]
-        below = self._cross(values, border) if model.border_dofs else border.right.T
+        if model.border_dofs:
+            self._cross(values, border)
         return Linearisation(
             nodal=nodal,
             residual=np.concatenate([nodal[model.free], border.own]),
             band=band.reshape(model.banded, self.ldab),
             right=border.right,
-            below=below,
+            below=border.below,
             corner=border.corner,
             forces=border.forces,
             element_force=force,
             noise=4 * _EPS * border.stiffest * model.length,
             crowded=border.crowded,
+            carried=carried,
+            rods=rods,
         )
+
+    def _closed_form(self, state: State, border: _Border) -> tuple[Array, Array]:
+        """Forces (6, c) and tangents (36, c) of the elements in closed form; their contacts enter the border."""
+        model = self.model
+        force, tangent = np.empty((6, 0)), np.empty((36, 0))
+        if model.coefficients:
+            force, tangent = beam.response(model.coefficients, state.q[self.nodal_dofs])
+        for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
+            if touch is None:
+                border.leave_open(pair)
+            elif not pair.cuts:
+                place = model.place[touch.element]
+                gradient, block = self._contact(pair, touch, state)
+                if pair.slot < 0:
+                    force[:, place] = tangent[:, place] = 0.0
+                force[:, place] += gradient[:6]
+                tangent[:, place] += block[:6, :6].ravel()
+                border.close(k, pair, touch, gradient, block)
+        return force, tangent
+
+    def _end_forces(self, closed: Array, rods: RodSystem) -> Array:
+        """Nodal forces of all elements from those in closed form and the exact ones."""
+        model = self.model
+        force = np.empty((6, len(model.place)))
+        force[:, model.closed] = closed
+        force[:, model.exact] = rods.residual[[0, 1, 2, 6, 7, 8]]
+        return force
 
     def rate(self, state: State) -> Array:
         """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins."""
         model = self.model
         nodal, own = -model.load, np.zeros(model.contact_unknowns)
         for pair, touch in zip(model.pairs, state.touches, strict=True):
-            if touch is not None and pair.pin is not None:
+            if touch is not None and pair.pin is not None and pair.cuts:
+                own[pair.slot : pair.slot + 2] = -np.array(pair.pin.velocity(state.load_parameter))
+            elif touch is not None and pair.pin is not None:
                 _, block = self._contact(pair, touch, state)
                 moved = block[:, 6:8] @ np.array(pair.pin.velocity(state.load_parameter))
                 nodal[model.dofs[:, touch.element]] += moved[:6]
                 if pair.slot >= 0:
-                    own[pair.slot : pair.slot + 3] = moved[8:]
+                    own[pair.slots] = moved[8:]
         if model.fixed_values.any():
-            q = np.zeros(model.dof_count)
-            q[model.fixed] = model.fixed_values
-            _, tangent = beam.response(model.coefficients, state.q[model.dofs])
-            pulled = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[model.dofs])
-            nodal = nodal + np.bincount(self.dofs_flat, weights=pulled.ravel(), minlength=model.dof_count)
+            q = self.prescribed_rate()
+            pulled = np.empty(0)
+            if model.coefficients:
+                _, tangent = beam.response(model.coefficients, state.q[self.nodal_dofs])
+                pulled = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.nodal_dofs]).ravel()
+            if model.rods:
+                rods, x = model.rods.linearise(state), q[model.exact_dofs]
+                by_rods = np.einsum("ijn,jn->in", rods.tangent.reshape(OWN, OWN, -1), x)
+                pulled = np.concatenate([pulled, by_rods.ravel()])
+                for part in rods.cut:
+                    own[model.rods.slots(part.pairs)] += part.tangent[OWN:, :OWN] @ x[:, part.element]
+            dofs = np.concatenate([self.closed_dofs, self.exact_dofs])
+            nodal = nodal + np.bincount(dofs, weights=pulled, minlength=model.dof_count)
         return np.concatenate([nodal[model.free], own])
+
+    def prescribed_rate(self) -> Array:
+        """Derivative of the prescribed displacements in the load parameter, over all degrees of freedom."""
+        q = np.zeros(self.model.dof_count)
+        q[self.model.fixed] = self.model.fixed_values
+        return q
 
     def energy(self, state: State) -> float:
         """Strain energy of a state in equilibrium."""
         model = self.model
-        total = float(beam.energy(model.coefficients, state.q[model.dofs]).sum())
+        total = 0.0
+        if model.coefficients:
+            total += float(beam.energy(model.coefficients, state.q[self.nodal_dofs]).sum())
+        if model.rods:
+            total += model.rods.energy(state)
         for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
-            if touch is None:
+            if touch is None or pair.cuts:
                 continue
             if pair.slot < 0:
                 gradient, block = self._contact(pair, touch, state)
@@ -165,19 +221,19 @@ class Assembler:
     ) -> tuple[Any, list[float], tuple[float, float]]:
         """Constants and displacements of the owner, and the vector from the node to its end i."""
         model = self.model
-        cx, cy = node_position(model, pair, state.q, state.load_parameter)
+        cx, cy = model.node_position(pair, state.q, state.load_parameter)
         x = state.q[model.dofs[:, touch.element]].tolist()
         start_x, start_y = model.element_start[touch.element]
         return model.element[touch.element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
 
     def _contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
         p, x, lever = self._place(pair, touch, state)
+        assert isinstance(pair.element_type, ClosedForm), "an exact element is cut instead"
         return pair.element_type.contact(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
 
-    def _cross(self, values: Array, border: _Border) -> Array:
-        """Couple beam ends that touch chord elements, whose equations lie in the border; return the border's rows."""
-        model, right, corner = self.model, border.right, border.corner
-        below = right.T.copy()
+    def _cross(self, values: Array, border: _Border) -> None:
+        """Couple beam ends that touch chord elements, whose equations lie in the border."""
+        model, right, below, corner = self.model, border.right, border.below, border.corner
         right += np.bincount(self.scatter_right, values, self.size + 1)[:-1].reshape(right.shape)
         below += np.bincount(self.scatter_below, values, self.size + 1)[:-1].reshape(below.shape)
         for pair, e, block in border.coupled:
@@ -189,8 +245,7 @@ class Assembler:
             below[np.ix_(unknown, eq)] += block[6:8, :6][free]
         own = slice(model.banded, model.equations)
         corner[: model.border_dofs] = right[own]
-        corner[model.border_dofs :, : model.border_dofs] = right[own, model.border_dofs :].T
-        return below
+        corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, own]
 
     def solve(self, system: Linearisation, *more: Array) -> Array | None:
         """Solutions of the linear system, None if the tangent is singular.
@@ -209,7 +264,8 @@ class Assembler:
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")
-        given = np.stack([-system.residual, *more], axis=1)
+        residual = system.residual if system.carried is None else system.residual + system.carried
+        given = np.stack([-residual, *more], axis=1)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = system.right[:banded]
         _, _, X, info = dgbsv(self.k, self.k, system.band.T, rhs, overwrite_ab=True, overwrite_b=True)
@@ -230,8 +286,10 @@ class _Border:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.right = np.zeros((model.equations + 1, model.border))
+        self.below = np.zeros((model.border, model.equations + 1))
         self.corner = np.zeros((model.border, model.border))
         self.own = np.zeros(model.contact_unknowns)
+        self.carried = np.zeros(model.contact_unknowns)
         self.forces: dict[int, tuple[float, float]] = {}
         self.pushed: list[tuple[int, Array]] = []
         self.coupled: list[tuple[PairModel, int, Array]] = []
@@ -243,7 +301,7 @@ class _Border:
         """Let the unknowns of an open pair stand alone."""
         if pair.slot >= 0:
             slots = self._slots(pair)
-            self.corner[slots, slots] = np.eye(3)
+            self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
 
     def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
         """Enter a closed pair."""
@@ -258,21 +316,43 @@ class _Border:
             if pair.node >= 0:
                 self.coupled.append((pair, e, block))
         else:
-            slots = self._slots(pair)
-            self.right[model.element_equations[:, e], slots] = block[:6, 8:]
+            slots, eq = self._slots(pair), model.element_equations[:, e]
+            self.right[eq, slots], self.below[slots, eq] = block[:6, 8:], block[8:, :6]
             if pair.node >= 0:
-                self.right[model.equation[3 * pair.node : 3 * pair.node + 2], slots] = block[6:8, 8:]
+                eq = model.equation[3 * pair.node : 3 * pair.node + 2]
+                self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
             self.corner[slots, slots] += block[8:, 8:]
-            self.own[pair.slot : pair.slot + 3] += gradient[8:]
+            self.own[pair.slots] += gradient[8:]
             for other, earlier in others:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
+
+    def cut(self, part: CutElement, state: State) -> None:
+        """Enter the contacts of an exact element."""
+        model = self.model
+        assert model.rods is not None, "a cut element is exact"
+        own = model.rods.slots(part.pairs)
+        slots, eq = [model.border_dofs + i for i in own], model.equation[model.exact_dofs[:, part.element]]
+        self.right[np.ix_(eq, slots)] = part.tangent[:OWN, OWN:-1]
+        self.below[np.ix_(slots, eq)] = part.tangent[OWN:, :OWN]
+        self.corner[np.ix_(slots, slots)] = part.tangent[OWN:, OWN:-1]
+        self.own[own], self.carried[own] = part.residual[OWN:], part.tangent[OWN:, -1]
+        for k in part.pairs:
+            pair, touch = model.pairs[k], state.touches[k]
+            assert touch is not None, "a cut is a closed contact"
+            self.forces[k] = touch.force
+            if pair.node >= 0:
+                self.pushed.append((3 * pair.node, np.array(touch.force)))
+                for i in range(2):
+                    equation, slot = model.equation[3 * pair.node + i], self._slots(pair).start + i
+                    self.right[equation, slot] += 1
+                    self.below[slot, equation] -= 1
 
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Let two contacts on one element feel each other's dent."""
         (one, a), (two, b) = first, second
         gradient, block = mixed_contact.crossing(p, (a.xi, b.xi), a.force, b.force)
-        rows = (slice(one.slot, one.slot + 3), slice(two.slot, two.slot + 3))
+        rows = (one.slots, two.slots)
         parts = (slice(0, 3), slice(3, 6))
         for own, part in zip(rows, parts, strict=True):
             self.own[own] += gradient[part]
@@ -281,4 +361,14 @@ class _Border:
                 self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]
 
     def _slots(self, pair: PairModel) -> slice:
-        return slice(pair.slot + self.model.border_dofs, pair.slot + self.model.border_dofs + 3)
+        start = pair.slot + self.model.border_dofs
+        return slice(start, start + pair.element_type.contact_unknowns)
+
+
+def _pairs(equations: Array) -> tuple[Array, Array]:
+    """Row and column of every entry of the elements' matrices, flat."""
+    shape = (len(equations), *equations.shape)
+    return (
+        np.broadcast_to(equations[:, None], shape).ravel(),
+        np.broadcast_to(equations[None], shape).ravel(),
+    )

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.response import Array
-from tsm import Structure
+from tsm import Settings, Structure
 from tsm.contact import arc_position
 from tsm.contact_set import initial_state
 from tsm.model import Model
@@ -82,7 +82,7 @@ class _Contact:
 
     def __init__(self, structure: Structure, tolerance: float) -> None:
         self.model = Model(structure)
-        self.newton = Newton(self.model, tolerance=tolerance, max_iterations=_ITERATIONS)
+        self.newton = Newton(self.model, Settings(tolerance=tolerance, max_iterations=_ITERATIONS))
         beam = structure.beams[0]
         self.l0 = beam.length / beam.elements
         self.length = beam.length

@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, ElementType, beam
+from tsm.elements import CLOSED_FORM, ClosedForm, beam
 from tsm.elements.properties import Array, Properties
 
 _Extended = np.longdouble
@@ -33,7 +33,7 @@ class _State(NamedTuple):
 
 
 class _Element(NamedTuple):
-    kind: ElementType
+    kind: ClosedForm
     p: Properties
     start: Array
     contact_force: float
@@ -80,8 +80,8 @@ def force_floor(
         If `element` or `end` is not known, `ratio` does not lie in [0, 1], another number is not positive, and where the
         platform has no floating-point type beyond double precision.
     """
-    if element not in ELEMENTS:
-        raise ValueError(f"element = {element!r}: must be one of {', '.join(ELEMENTS)}")
+    if element not in CLOSED_FORM:
+        raise ValueError(f"element = {element!r}: must be one of {', '.join(CLOSED_FORM)}")
     if end not in {"start", "end"}:
         raise ValueError(f'end = {end!r}: must be "start" or "end"')
     if not 0 <= ratio <= 1:
@@ -93,16 +93,16 @@ def force_floor(
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(seed)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    return float(np.median([_sample(ELEMENTS[element], xi, Psi, elements, rng) for _ in range(samples)]))
+    return float(np.median([_sample(CLOSED_FORM[element], xi, Psi, elements, rng) for _ in range(samples)]))
 
 
-def _sample(kind: ElementType, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
+def _sample(kind: ClosedForm, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
     element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
     x = _random_displacements(p, rng).astype(_Extended)
-    state = (_carried if kind.carries_force else _deflected)(element, x, xi)
+    state = (_carried if kind.contact_unknowns else _deflected)(element, x, xi)
     rounded = _State(*(np.asarray(part).astype(float) for part in state))
     error = np.abs(_forces(element, rounded) - _forces(element, state)) / element.contact_force
     error[[2, 5]] /= elements
@@ -155,7 +155,7 @@ def _contact(element: _Element, state: _State) -> tuple[Array, Array]:
 def _forces(element: _Element, state: _State) -> Array:
     """Forces on element and node, and the contact's equation of direction where it has one."""
     gradient, _ = _contact(element, state)
-    if not element.kind.carries_force:
+    if not element.kind.contact_unknowns:
         return gradient
     column = Properties(*(np.array([value]) for value in element.p))
     own, _ = beam.response(element.kind.coefficients(column), state.x[:, None])

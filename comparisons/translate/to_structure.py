@@ -17,7 +17,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     scene : Scene
         Any scene.
     elements : int, optional
-        Elements of every beam, in place of the scene's.
+        Elements of every beam, in place of the scene's, or of one if they are exact.
     element : str, optional
         Key of `tsm.ELEMENTS`, ``"mixed"`` if not given.
 
@@ -31,7 +31,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
     return Structure(
-        beams=tuple(_beam(beam, elements or beam.elements, element or "mixed") for beam in scene.beams),
+        beams=tuple(_beam(beam, elements, element or "mixed") for beam in scene.beams),
         supports=tuple(_support(support) for support in scene.all_supports),
         loads=tuple(
             Load(
@@ -65,10 +65,15 @@ def _support(spec: SupportSpec) -> "Support":
     )
 
 
-def _beam(spec: BeamSpec, elements: int, element: str) -> "Beam":
+def _beam(spec: BeamSpec, elements: int | None, element: str) -> "Beam":
     from tsm import Beam, Section
 
     section = Section(EA=spec.EA, GA=spec.GA, EI=spec.EI)
     return Beam(
-        name=spec.name, start=spec.start, end=spec.end, section=section, elements=elements, element=element
+        name=spec.name,
+        start=spec.start,
+        end=spec.end,
+        section=section,
+        elements=elements or (1 if element == "exact" else spec.elements),
+        element=element,
     )

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from tsm.elements import ELEMENTS, beam, chord_contact, mixed_contact
+from tsm.elements import CLOSED_FORM, beam, chord_contact, mixed_contact
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Properties
 
 STEP = 1e-30j
-CHORD = [name for name, kind in ELEMENTS.items() if not kind.carries_force]
+CHORD = [name for name, kind in CLOSED_FORM.items() if not kind.contact_unknowns]
 
 
 def random_properties(rng, n=None):
@@ -29,12 +29,12 @@ def random_contact(rng):
     return p, x, lever, xi, rng.normal(size=2), rng.choice([-1.0, 1.0]), rng.choice([0.0, 0.1 * p.l0])
 
 
-@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("name", CLOSED_FORM)
 def test_beam_tangent_is_the_derivative_of_its_force(name):
     rng = np.random.default_rng(1)
     for _ in range(100):
         p = random_properties(rng, 10)
-        c = ELEMENTS[name].coefficients(p)
+        c = CLOSED_FORM[name].coefficients(p)
         x, direction = rng.normal(size=(6, 10)) * 0.3, rng.normal(size=(6, 10))
         force, tangent = beam.response(c, x)
         tangent = tangent.reshape(6, 6, 10)
@@ -48,16 +48,16 @@ def test_beam_tangent_is_the_derivative_of_its_force(name):
         assert force.shape == (6, 10)
 
 
-@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("name", CLOSED_FORM)
 def test_contact_tangent_is_the_derivative_of_its_gradient(name):
     """1,000 random states, among them contacts within 1e-9 of both ends."""
     rng = np.random.default_rng(2)
-    kind = ELEMENTS[name]
+    kind = CLOSED_FORM[name]
     for _ in range(1000):
         p, x, lever, xi, force, side, offset = random_contact(rng)
-        direction = rng.normal(size=11 if kind.carries_force else 8)
-        slid = direction[10] / p.l0 if kind.carries_force else 0.0
-        pushed = direction[8:10] if kind.carries_force else np.zeros(2)
+        direction = rng.normal(size=11 if kind.contact_unknowns else 8)
+        slid = direction[10] / p.l0 if kind.contact_unknowns else 0.0
+        pushed = direction[8:10] if kind.contact_unknowns else np.zeros(2)
         # tangent and derivative from one call: 1e-9 from an end, a last bit of the position moves both by 1e-7
         stepped, tangent = kind.contact(
             p,
@@ -79,7 +79,7 @@ def test_mixed_contact_tangent_is_symmetric():
         assert np.abs(tangent - tangent.T).max() <= 1e-13 * np.abs(tangent).max()
 
 
-@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("name", CLOSED_FORM)
 def test_rigid_motion_gives_no_force(name):
     rng = np.random.default_rng(4)
     for _ in range(100):
@@ -90,7 +90,7 @@ def test_rigid_motion_gives_no_force(name):
             [np.cos(turn) * d[0] - np.sin(turn) * d[1], np.sin(turn) * d[0] + np.cos(turn) * d[1]]
         )
         x = np.concatenate([shift, turn[None], shift + turned - d, turn[None]])
-        force, _ = beam.response(ELEMENTS[name].coefficients(p), x)
+        force, _ = beam.response(CLOSED_FORM[name].coefficients(p), x)
         scale = (p.EA + p.EI / p.l0**2).max() * (1 + 1 / p.l0.min())
         assert np.abs(force).max() <= 1e-14 * scale
 
@@ -98,7 +98,7 @@ def test_rigid_motion_gives_no_force(name):
 def test_contact_forces_of_an_element_balance_themselves():
     """Force and moment of element and node add up to nothing in any configuration."""
     rng = np.random.default_rng(5)
-    for name, kind in ELEMENTS.items():
+    for name, kind in CLOSED_FORM.items():
         for _ in range(100):
             p, x, lever, xi, force, side, offset = random_contact(rng)
             gradient, _ = kind.contact(p, x, lever, xi, force, side, offset)
@@ -107,7 +107,7 @@ def test_contact_forces_of_an_element_balance_themselves():
             total = f[:2] + f[3:5] + f[6:8]
             moment = f[2] + f[5] + d[0] * f[4] - d[1] * f[3] - lever[0] * f[7] + lever[1] * f[6]
             bound = 1e-12 * np.abs(f).max() * (1 + p.l0)
-            if not kind.carries_force:
+            if not kind.contact_unknowns:
                 assert max(np.abs(total).max(), abs(moment)) <= bound, name
                 continue
             # out of equilibrium the node is not on the curve: the force acts over that distance
@@ -116,12 +116,12 @@ def test_contact_forces_of_an_element_balance_themselves():
             assert abs(moment - (miss[0] * f[7] - miss[1] * f[6])) <= bound, name
 
 
-@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("name", CLOSED_FORM)
 def test_linear_beam_is_timoshenkos(name):
     """Bending stiffnesses (4 + Phi)/(1 + Phi) EI/l0 and (2 - Phi)/(1 + Phi) EI/l0; Euler-Bernoulli has Phi = 0."""
     p = Properties(*(np.array([value]) for value in (2.0, 0.0, 2.0, 30.0, 5.0, 0.7)))
     Phi = 0.0 if name.startswith("euler") else 0.7
-    _, K = beam.response(ELEMENTS[name].coefficients(p), np.zeros((6, 1)))
+    _, K = beam.response(CLOSED_FORM[name].coefficients(p), np.zeros((6, 1)))
     K = K.reshape(6, 6)
     assert K[2, 2] == pytest.approx((4 + Phi) / (1 + Phi) * 2.5, rel=1e-14)
     assert K[2, 5] == pytest.approx((2 - Phi) / (1 + Phi) * 2.5, rel=1e-14)

@@ -12,6 +12,7 @@ import tsm
 from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Newton
+from tsm.settings import Settings
 from tsm.state import Touch
 from tsm.status import Status
 from tsm.stepping import Stepper
@@ -57,7 +58,9 @@ def test_not_finite():
 def test_nan_in_a_start_state():
     model = Model(structure())
     state = replace(initial_state(model), q=np.full(model.dof_count, np.nan))
-    assert Newton(model, tolerance=1e-10, max_iterations=10).solve(state).status is Status.NOT_FINITE
+    assert (
+        Newton(model, Settings(tolerance=1e-10, max_iterations=10)).solve(state).status is Status.NOT_FINITE
+    )
 
 
 def test_iteration_limit():
@@ -122,7 +125,7 @@ def test_two_contacts_on_an_element_of_the_paper():
 def test_ping_pong():
     """A start that throws the contact to and fro between two elements of the paper's."""
     model = Model(structure(element="timoshenko"))
-    newton = Newton(model, tolerance=1e-10, max_iterations=12)
+    newton = Newton(model, Settings(tolerance=1e-10, max_iterations=12))
 
     class Swing:
         """Owner search that always answers with the other element."""

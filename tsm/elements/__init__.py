@@ -1,5 +1,5 @@
 """Beam elements and their contact, in one registry."""
 
-from tsm.elements.registry import ELEMENTS, ElementType
+from tsm.elements.registry import CLOSED_FORM, ELEMENTS, EXACT, ClosedForm, ElementType
 
-__all__ = ["ELEMENTS", "ElementType"]
+__all__ = ["CLOSED_FORM", "ELEMENTS", "EXACT", "ClosedForm", "ElementType"]

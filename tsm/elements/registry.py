@@ -27,20 +27,31 @@ class ElementType:
     ----------
     source : str
         Where the equations stand.
-    coefficients : callable
-        Coefficients of the beam's energy from its constants, see `beam.Coefficients`.
-    contact : callable
-        ``(properties, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and,
-        if `carries_force`, the force (2) and the arc position. See `mixed_contact.response`.
-    carries_force : bool
-        Whether contact force and arc position are unknowns and the response is added to the beam's. Otherwise the
-        force follows from the displacements, and the response stands for the whole element.
+    contact_unknowns : int
+        Unknowns that a closed contact adds: force (2) and arc position, and the section's angle if the element is cut there; or
+        none, where the force follows from the displacements.
     """
 
     source: str
+    contact_unknowns: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedForm(ElementType):
+    """An element whose force follows from its nodes' displacements in closed form.
+
+    Attributes
+    ----------
+    coefficients : callable
+        Coefficients of the beam's energy from its constants, see `beam.Coefficients`.
+    contact : callable
+        ``(properties, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and
+        the contact's unknowns. See `mixed_contact.response`. Where it has none, the response stands for the whole element,
+        otherwise it is added to the beam's.
+    """
+
     coefficients: Callable[[Properties], Coefficients]
     contact: ContactResponse
-    carries_force: bool
 
     @property
     def sheared(self) -> bool:
@@ -59,27 +70,31 @@ def _chord_normal(element_force: ElementForce) -> ContactResponse:
 
 def _of_paper(
     source: str, coefficients: Callable[[Properties], Coefficients], element_force: ElementForce
-) -> ElementType:
-    return ElementType(
+) -> ClosedForm:
+    return ClosedForm(
         source=source,
         coefficients=coefficients,
         contact=_chord_normal(element_force),
-        carries_force=False,
+        contact_unknowns=0,
     )
 
 
-ELEMENTS: dict[str, ElementType] = {
-    "mixed": ElementType(
+EXACT = ElementType(
+    source="the Reissner rod's own equations, integrated from load to load", contact_unknowns=4
+)
+
+CLOSED_FORM: dict[str, ClosedForm] = {
+    "mixed": ClosedForm(
         source="contact force as unknown, full derivative, strains of the Reissner rod to fourth order",
         coefficients=bowed_coefficients,
         contact=mixed_contact.response,
-        carries_force=True,
+        contact_unknowns=3,
     ),
-    "mixed-no-bow": ElementType(
+    "mixed-no-bow": ClosedForm(
         source="`mixed` with the linear strains of the paper's element",
         coefficients=linear_coefficients,
         contact=mixed_contact.response,
-        carries_force=True,
+        contact_unknowns=3,
     ),
     "timoshenko": _of_paper(
         "[P] (9)-(12), corrected", linear_coefficients, simply_supported(chord_contact.timoshenko)
@@ -104,3 +119,5 @@ ELEMENTS: dict[str, ElementType] = {
         cantilever.clamped(as_printed.euler_bernoulli_cantilever),
     ),
 }
+
+ELEMENTS: dict[str, ElementType] = {**CLOSED_FORM, "exact": EXACT}

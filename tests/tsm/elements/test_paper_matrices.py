@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from tsm.elements import ELEMENTS, as_printed, cantilever, chord_contact, mixed_contact
+from tsm.elements import CLOSED_FORM, as_printed, cantilever, chord_contact, mixed_contact
 from tsm.elements.properties import Properties
 
 STEP = 1e-30j
 ERRATA = Path(__file__).parents[3] / "tsm" / "elements" / "errata.md"
-PAPER = [name for name, kind in ELEMENTS.items() if not kind.carries_force]
+PAPER = [name for name, kind in CLOSED_FORM.items() if not kind.contact_unknowns]
 PRINTED = [name for name in PAPER if name.endswith("-as-printed")]
 
 a, b, EI, Psi, x = sp.symbols("a b EI Psi x", positive=True)
@@ -205,7 +205,7 @@ def test_tangent_within_1e_9_of_both_ends(name):
         distance = 10 ** rng.uniform(-13, -9) if k % 2 else rng.uniform(1e-9, 0.5)
         p, state, lever, side, offset = random_state(rng, distance)
         direction = rng.normal(size=8)
-        stepped, tangent = ELEMENTS[name].contact(
+        stepped, tangent = CLOSED_FORM[name].contact(
             p,
             state + STEP * direction[:6],
             lever + STEP * (direction[:2] - direction[6:]),
@@ -223,7 +223,7 @@ def test_euler_bernoulli_ignores_the_sections_shear():
     for name in PAPER:
         if not name.startswith("euler-bernoulli"):
             continue
-        kind = ELEMENTS[name]
+        kind = CLOSED_FORM[name]
         p, state, lever, side, offset = random_state(rng, 0.3)
         first, second = (
             kind.contact(p._replace(Phi=Phi), state, lever, 0.0, np.zeros(2), side, offset)
@@ -248,7 +248,7 @@ def test_cantilever_is_the_simply_supported_element():
     for _ in range(100):
         p, state, lever, side, offset = random_state(rng, rng.uniform(0.05, 0.5))
         simple, clamped = (
-            ELEMENTS[name].contact(p, state, lever, 0.0, np.zeros(2), side, offset) for name in names
+            CLOSED_FORM[name].contact(p, state, lever, 0.0, np.zeros(2), side, offset) for name in names
         )
         for ours, theirs in zip(clamped, simple, strict=True):
             assert np.abs(ours - theirs).max() <= 1e-11 * np.abs(theirs).max()
@@ -326,15 +326,15 @@ def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
 @pytest.mark.parametrize("name", PRINTED)
 def test_printed_elements_depend_on_the_unit_of_length(name):
     """Metres to millimetres: a force in newtons stays what it is, but not with the misprints."""
-    corrected = ELEMENTS[name.removesuffix("-as-printed")]
+    corrected = CLOSED_FORM[name.removesuffix("-as-printed")]
     forces = {}
     for unit in (1.0, 1000.0):
         p = Properties(unit, 0.0, unit, 10.0, 2.0 * unit**2, 0.4)
         state = np.array([0.0, 0.0, 0.1, 0.0, 0.0, -0.05]) * np.array([unit, unit, 1] * 2)
         lever = -unit * np.array([0.3, 0.03])
-        for kind in (corrected, ELEMENTS[name]):
+        for kind in (corrected, CLOSED_FORM[name]):
             gradient, _ = kind.contact(p, state, lever, 0.0, np.zeros(2), 1.0, 0.0)
             forces.setdefault(kind.source, []).append(gradient[4])
-    right, wrong = forces[corrected.source], forces[ELEMENTS[name].source]
+    right, wrong = forces[corrected.source], forces[CLOSED_FORM[name].source]
     assert right[1] == pytest.approx(right[0], rel=1e-12)
     assert abs(wrong[1] / wrong[0] - 1) > 1e-2
