@@ -26,6 +26,8 @@ from tsm.newton import Equilibrium
 ROUND_OFF = 1e-10
 """Margins smaller than this are zero."""
 
+_LOCATED = 1e-12
+"""Margin at which an event is found: what depends on its load parameter may be a thousand times as sensitive."""
 _SOLVES = 80
 
 
@@ -152,7 +154,7 @@ def locate(
             return None
         margin = next(m for m in measure(equilibrium) if (m.kind, m.pair) == (first.kind, first.pair))
         found = equilibrium, margin
-        if abs(margin.value) <= ROUND_OFF:
+        if abs(margin.value) <= _LOCATED:
             return found
         if margin.value > 0:
             t0, y0, y1 = t, margin.value, y1 / 2
