@@ -126,7 +126,7 @@ def _project_on_rods(model: Model, pair: PairModel, state: State) -> Projection:
     for _ in range(30):
         inside = min(max(arc, 0.0), l0)
         at = shape.at(first + e, np.array([inside]))
-        tangent, bend = model.rods.tangent(state, int(at.segment[0]), float(at.angle[0]), float(at.moment[0]))
+        tangent, bend = model.rods.tangent(first + e, at)
         apart = at.position[0] + (arc - inside) * tangent - node
         slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
         step = float(apart @ tangent) / slope if slope > 0 else 0.0

@@ -10,7 +10,7 @@ from tsm.contact import chord_owner, slide
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
 from tsm.settings import Settings
-from tsm.state import State, Touch
+from tsm.state import Profile, State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Linearisation
 
@@ -104,7 +104,7 @@ class Newton:
                 status = self.verdict(system)
             elif iteration == self.max_iterations:
                 status = Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
-            finer = self.finer(state, system, residuals[-1])
+            finer = self.finer(state, system, residuals)
             if finer is not None and iteration < self.max_iterations:
                 state = finer
                 continue
@@ -120,17 +120,19 @@ class Newton:
             state = self.update(state, step[:, 0], system, residual=True)
         raise AssertionError("the last iteration returns")
 
-    def finer(self, state: State, system: Linearisation, residual: float) -> State | None:
-        """State with more Gauss nodes where it is near equilibrium and those of the exact elements are too few."""
+    def finer(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
+        """State with more Gauss nodes where it comes near equilibrium, or in it, and those of the exact elements are too few."""
         rods = self.model.rods
-        if rods is None or system.rods is None or not residual <= _NEAR:
+        if rods is None or system.rods is None or not residuals[-1] <= _NEAR:
+            return None
+        if len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system):
             return None
         return rods.finer(state, system.rods, self.accuracy)
 
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
         rods = self.model.rods
-        if rods and system.rods and rods.truncation(system.rods.segments) > self.accuracy:
+        if rods and system.rods and rods.inaccurate(system.rods, self.accuracy):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
@@ -179,23 +181,29 @@ class Newton:
         factor = 1 / largest if largest > 1 else 1.0
         q = state.q.copy()
         q[model.free] += factor * dq
-        moved = replace(state, q=q)
         if not np.isfinite(largest):
-            return moved
-        if model.rods and system.rods and state.profile:
+            return replace(state, q=q)
+        profile, rods = state.profile, system.tangent.rods
+        if model.rods and rods and profile:
             change = np.zeros(model.dof_count)
             change[model.free], change[model.fixed] = dq, along * model.fixed_values
-            inside = model.rods.inside(system.rods, state, change, dz, float(residual))
-            angle = state.profile.angle + factor * inside
-            moved = replace(moved, profile=replace(state.profile, angle=angle))
+            inside = model.rods.inside(rods, state, change, dz, float(residual))
+            profile = Profile(cuts=profile.cuts, angle=profile.angle + factor * inside)
+        moved = State(
+            load_parameter=state.load_parameter,
+            q=q,
+            touches=state.touches,
+            armed=state.armed,
+            profile=profile,
+        )
         if not state.touches:
             return moved
         own = (factor * dz).tolist()
-        touches = [
+        touches = tuple(
             self._moved(k, moved, touch, own) if touch is not None else None
             for k, touch in enumerate(state.touches)
-        ]
-        return self._handed_over(replace(moved, touches=tuple(touches)))
+        )
+        return self._handed_over(moved, touches)
 
     def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
         pair = self.model.pairs[k]
@@ -209,15 +217,15 @@ class Newton:
             angle=touch.angle + sum(turned),
         )
 
-    def _handed_over(self, state: State) -> State:
-        """State in which contacts that left their element belong to the neighbour."""
-        touches = tuple(
+    def _handed_over(self, state: State, touches: tuple[Touch | None, ...]) -> State:
+        """State with moved contacts; those that left their element belong to the neighbour."""
+        own = tuple(
             touch if touch is None else self._owned(pair, touch)
-            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
+            for pair, touch in zip(self.model.pairs, touches, strict=True)
         )
-        if self.model.rods:
-            return self.model.rods.recut(state, touches)
-        return replace(state, touches=touches)
+        if self.model.rods is None:
+            return replace(state, touches=own)
+        return self.model.rods.recut(replace(state, touches=touches), own)
 
     def _owned(self, pair: PairModel, touch: Touch) -> Touch:
         element, xi = slide(pair.target, touch.element, touch.xi)

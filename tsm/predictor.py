@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +17,7 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
     at = [state.load_parameter for state in history]
     weights = [
-        float(np.prod([(t - other) / (own - other) for k, other in enumerate(at) if k != n]))
+        math.prod((t - other) / (own - other) for k, other in enumerate(at) if k != n)
         for n, own in enumerate(at)
     ]
     q = sum((w * state.q for w, state in zip(weights, history, strict=True)), np.zeros(model.dof_count))

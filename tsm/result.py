@@ -195,9 +195,13 @@ class Result:
         -------
         ndarray, shape (elements, 2, 3)
         """
-        place = self.model.beams[beam]
-        part = slice(place.first, place.last + 1)
-        force = self.equilibria[k].system.element_force[:, part].T
+        place, system = self.model.beams[beam], self.equilibria[k].system
+        part = self.model.place[place.first : place.last + 1]
+        if self._exact(beam):
+            assert system.rods is not None, "exact elements have a balance"
+            force = system.rods.residual[[0, 1, 2, 6, 7, 8]][:, part].T
+        else:
+            force = system.closed_force[:, part].T
         shape = self.shape(beam, k)
         d = np.diff(shape[:, :2], axis=0)
         t = d / np.linalg.norm(d, axis=1)[:, None]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.elements.collocation import collocation, integrals
+from tsm.elements.collocation import collocation, interpolation
 from tsm.elements.properties import Array
 
 
@@ -21,14 +21,14 @@ class Station(NamedTuple):
         Angle of the section from the x axis.
     moment : ndarray, shape (m,)
         Bending moment.
-    segment : ndarray of int, shape (m,)
-        Segment that holds the point.
+    force : ndarray, shape (m, 2)
+        Internal force.
     """
 
     position: Array
     angle: Array
     moment: Array
-    segment: Array
+    force: Array
 
 
 class Stations(NamedTuple):
@@ -61,6 +61,8 @@ class RodShape:
         First and last segment of every element.
     arc, length : ndarray, shape (s,)
         Arc position of the start within the element, and undeformed length, of every segment.
+    force : ndarray, shape (2, s)
+        Internal force of every segment.
     start : ndarray, shape (4, s)
         Position (x, y), angle and moment at the start of every segment.
     rates : ndarray, shape (4, s, p)
@@ -68,12 +70,19 @@ class RodShape:
     """
 
     def __init__(
-        self, first: Array, last: Array, arc: Array, length: Array, start: Array, rates: Array
+        self,
+        first: Array,
+        last: Array,
+        arc: Array,
+        length: Array,
+        force: Array,
+        start: Array,
+        rates: Array,
     ) -> None:
-        self.first, self.last, self.arc, self.length = first, last, arc, length
-        self.start = start
+        self.first, self.last, self.arc, self.length, self.force = first, last, arc, length, force
         self.order = rates.shape[2]
-        self.coefficients = rates @ collocation(self.order).legendre.T * length[:, None]
+        risen = start[:, :, None] + rates @ collocation(self.order).once.T * length[:, None]
+        self.values = np.concatenate([start[:, :, None], risen], axis=2)
 
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
@@ -86,7 +95,7 @@ class RodShape:
     def within(self, segment: Array | int, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of segments: one, or one for each."""
         segment = np.broadcast_to(segment, sigma.shape)
-        x, y, angle, moment = self.start[:, segment] + np.einsum(
-            "mp,imp->im", integrals(sigma, self.order), self.coefficients[:, segment]
+        x, y, angle, moment = np.einsum(
+            "mp,imp->im", interpolation(self.order, sigma), self.values[:, segment]
         )
-        return Station(np.stack([x, y], axis=1), angle, moment, segment)
+        return Station(np.stack([x, y], axis=1), angle, moment, self.force[:, segment].T)

@@ -8,17 +8,18 @@ the angle. The angles inside the segments are eliminated (`tsm.elements.rod`) an
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.elements.rod import INPUTS, Condensed, Field, Flexibility
-from tsm.rod_shape import RodShape, Stations
+from tsm.elements.rod import INPUTS, Arrival, Field, Flexibility, Segments
+from tsm.rod_shape import RodShape, Station, Stations
 from tsm.state import Cuts, Profile, State, Touch
 
 if TYPE_CHECKING:
@@ -26,9 +27,13 @@ if TYPE_CHECKING:
 
 OWN = 9
 """Unknowns of an element without contacts: node i (3), force and moment at its start (3), node j (3)."""
-START_ORDER = 6
+START_ORDER = 14
 """Gauss nodes of a straight element."""
 MOST_NODES = 96
+_AT_ONCE = 4
+"""Nodes added at least."""
+_SMOOTH = 1e-13
+"""Error inside that does not show."""
 _FALL = 100.0
 """What the error is expected to fall by with two nodes more."""
 CUT = 4
@@ -67,61 +72,72 @@ def layout(count: int, cuts: Cuts) -> Layout:
 
 
 @lru_cache(maxsize=16)
-def _chain(count: int) -> Array:
-    """Inputs of the segments of an element with `count` cuts by its unknowns, the moments at the cuts left open."""
+def _chain(count: int) -> tuple[Array, Array, Array]:
+    """What is constant in an element with `count` cuts.
+
+    Returns
+    -------
+    inputs : ndarray, shape (count + 1, 7, unknowns + 1)
+        Inputs of the segments by the element's unknowns, the moments at the cuts left open.
+    tangent : ndarray, shape (unknowns, unknowns + 1)
+        Tangent, all but the rows of arrival and of the contacts.
+    selectors : ndarray, shape (count, 5, unknowns + 1)
+        Angle, force before and contact force (x, y) of every cut by the unknowns.
+    """
     unknowns = OWN + CUT * count
     inputs = np.zeros((count + 1, INPUTS, unknowns + 1))
     inputs[:, 3, 3] = inputs[:, 4, 4] = inputs[:, 6, -1] = 1
     inputs[0, 0, 2] = inputs[0, 1, 5] = inputs[-1, 2, 8] = 1
+    selectors = np.zeros((count, 5, unknowns + 1))
     for k in range(count):
         own = OWN + CUT * k
+        selectors[k, [0, 3, 4], [own + 3, own, own + 1]] = 1
+        selectors[k, 1:3] = inputs[k, 3:5]
         inputs[k + 1 :, 3, own] = inputs[k + 1 :, 4, own + 1] = -1
         inputs[k, 5, own + 2] = inputs[k, 2, own + 3] = inputs[k + 1, 0, own + 3] = 1
         inputs[k + 1, 5, own + 2] = -1
-    return inputs
+    tangent = np.zeros((unknowns, unknowns + 1))
+    tangent[:OWN, :OWN] = _FIXED
+    tangent[6:8] = inputs[-1, 3:5]
+    tangent[3, 6] = tangent[4, 7] = 0
+    return inputs, tangent, selectors
 
 
-class CutElement(NamedTuple):
-    """Residual and tangent of an element with contacts.
+class Owned(NamedTuple):
+    """Constants of the elements, one for every segment.
 
     Attributes
     ----------
-    element : int
-        Counted over the exact elements.
-    pairs : tuple of int
-        Its contact pairs in order of arc position.
-    residual : ndarray, shape (9 + 4 k,)
-        Over the element's unknowns, then the contacts'.
-    tangent : ndarray, shape (9 + 4 k, 10 + 4 k)
-        Its derivatives; the last column is what the residual inside adds.
-    inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
-        Inputs of the segments by the same unknowns.
+    place : Layout
+        The segments.
+    dofs : ndarray of int, shape (9, s)
+        Degrees of freedom of the elements.
+    angle0, length : ndarray, shape (s,)
+        Angle of the undeformed elements, and their length.
+    flexibility : Flexibility
+        Of the elements.
     """
 
-    element: int
-    pairs: tuple[int, ...]
-    residual: Array
-    tangent: Array
-    inputs: Array
+    place: Layout
+    dofs: Array
+    angle0: Array
+    length: Array
+    flexibility: Flexibility
 
 
-class Segments(NamedTuple):
-    """The segments of a state, evaluated.
+class Entry(NamedTuple):
+    """Where the segments of a state begin and end.
 
     Attributes
     ----------
     place : Layout
         To which elements they belong.
-    flexibility : Flexibility
-        Of each.
-    force : ndarray, shape (2, s, 1)
-        Internal force.
-    start, end, moment, length : ndarray, shape (s, 1)
-        Angles at both ends, moment at the start, undeformed length.
-    angle : ndarray, shape (s, p)
-        Angles inside.
-    at : Field
+    at : rod.Segments
+        Force, length and angles inside.
+    of : rod.Field
         The rod's equations there.
+    start, end, moment : ndarray, shape (s, 1)
+        Angles at both ends, moment at the start.
     gain : ndarray, shape (s,)
         Moment at the end less that at the start.
     vector : ndarray, shape (2, s)
@@ -129,57 +145,82 @@ class Segments(NamedTuple):
     """
 
     place: Layout
-    flexibility: Flexibility
-    force: Array
+    at: Segments
+    of: Field
     start: Array
     end: Array
     moment: Array
-    length: Array
-    angle: Array
-    at: Field
     gain: Array
     vector: Array
 
-    def condense(self) -> Condensed:
-        """Eliminate the angles inside."""
-        return rod.condense(
-            collocation(self.angle.shape[1]),
-            self.flexibility,
-            self.at,
-            (self.start, self.moment, self.end),
-            self.length,
-            self.angle,
-        )
 
-
-class RodSystem(NamedTuple):
-    """Residual and tangent of the exact elements.
+class RodBalance(NamedTuple):
+    """Residual of the exact elements.
 
     Attributes
     ----------
+    entry : Entry
+        The segments.
+    arrival : rod.Arrival
+        Their residuals.
     residual : ndarray, shape (9, r)
         On node i, of the arrival at node j, and on node j.
-    carried : ndarray, shape (9, r)
-        What the residual inside adds once it is eliminated.
-    tangent : ndarray, shape (81, r)
-        Derivative of the residual, row by row.
-    cut : tuple of CutElement
-        Elements with contacts; theirs is in the arrays above too.
-    segments : Segments
-        What they were evaluated from.
-    condensed : Condensed
-        The same with their inside eliminated.
+    contacts : dict of list
+        By pair: the rows of position (2), direction and arrival of the angle.
+    tangents : dict of tuple
+        By pair: the axis' tangent vectors before and after the contact.
     inside : float
         Largest residual inside [rad].
     """
 
+    entry: Entry
+    arrival: Arrival
     residual: Array
+    contacts: dict[int, list[Any]]
+    tangents: dict[int, tuple[rod.Tangent, rod.Tangent]]
+    inside: float
+
+
+class CutElement(NamedTuple):
+    """Tangent of an element with contacts.
+
+    Attributes
+    ----------
+    element : int
+        Counted over the exact elements.
+    pairs : tuple of int
+        Its contact pairs in order of arc position.
+    tangent : ndarray, shape (9 + 4 k, 10 + 4 k)
+        Over the element's unknowns, then the contacts'; the last column is what the residual inside adds.
+    inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
+        Inputs of the segments by the same unknowns.
+    """
+
+    element: int
+    pairs: tuple[int, ...]
+    tangent: Array
+    inputs: Array
+
+
+class RodTangent(NamedTuple):
+    """Tangent of the exact elements.
+
+    Attributes
+    ----------
+    carried : ndarray, shape (9, r)
+        What the residual inside adds to the residual once it is eliminated.
+    tangent : ndarray, shape (81, r)
+        Derivative of the residual, row by row.
+    cut : tuple of CutElement
+        Elements with contacts; what they have in common with the others is in the arrays above too.
+    inner : ndarray, shape (s, p, 7)
+        Derivatives of the angles inside by the inputs of the segments.
+    """
+
     carried: Array
     tangent: Array
     cut: tuple[CutElement, ...]
-    segments: Segments
-    condensed: Condensed
-    inside: float
+    inner: Array
 
 
 class Rods:
@@ -194,17 +235,16 @@ class Rods:
         self.angle0 = np.arctan2(p.dy0[exact], p.dx0[exact])
         self.length = p.l0[exact]
         psi = p.Phi[exact] * self.length**2 / 12
-        self._last: tuple[State, RodShape] | None = None
         self.flexibility = Flexibility(1 / p.EA[exact], psi / p.EI[exact], 1 / p.EI[exact])
+        self._last: tuple[State, RodShape] | None = None
+        self._constants: dict[Cuts, Owned] = {}
 
-    def evaluate(self, state: State) -> Segments:
+    def enter(self, state: State) -> Entry:
         """Cut the elements at their contacts and evaluate the rod's equations inside."""
         profile = _profile(state)
-        place = layout(len(self.length), profile.cuts)
-        q = state.q[self.dofs][:, place.owner]
-        turned = self.angle0[place.owner]
-        force, start, end, moment = q[3:5, :, None], q[2] + turned, q[8] + turned, q[5]
-        length = self.length[place.owner]
+        place, dofs, angle0, length, flexibility = self._owned(profile.cuts)
+        q, length = state.q[dofs], length.copy()
+        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle0, q[5]
         for element, pairs in profile.cuts:
             s, behind = int(place.first[element]), 0.0
             for k in pairs:
@@ -216,141 +256,161 @@ class Rods:
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - behind
-        flexibility = Flexibility(*(value[place.owner, None] for value in self.flexibility))
-        at = rod.field(collocation(profile.angle.shape[1]), flexibility, force, profile.angle)
-        gain, *vector = length * at.sums[:3, :, 0]
+        at = Segments(flexibility, force, length[:, None], profile.angle)
+        of = rod.field(at)
+        sums = of.sums[:, :, 0] * length
+        gain = sums[0]
         for element, _ in profile.cuts:
             for s in range(place.first[element], place.last[element]):
                 moment[s + 1] = moment[s] + gain[s]
-        column = (slice(None), None)
-        return Segments(
-            place=place,
-            flexibility=flexibility,
-            force=force,
-            start=start[column],
-            end=end[column],
-            moment=moment[column],
-            length=length[column],
-            angle=profile.angle,
-            at=at,
-            gain=gain,
-            vector=np.array(vector),
-        )
+        return Entry(place, at, of, start[:, None], end[:, None], moment[:, None], gain, sums[1:])
 
-    def linearise(self, state: State) -> RodSystem:
-        """Residual and tangent at a state."""
-        segments = self.evaluate(state)
-        condensed, place, q = segments.condense(), segments.place, state.q[self.dofs]
-        first, last = place.first, place.last
+    def _owned(self, cuts: Cuts) -> Owned:
+        if cuts not in self._constants:
+            place = layout(len(self.length), cuts)
+            own = place.owner
+            stretch, shear, bend = (value[own, None] for value in self.flexibility)
+            flexibility = Flexibility(stretch, shear, bend)
+            self._constants[cuts] = Owned(
+                place, self.dofs[:, own], self.angle0[own], self.length[own], flexibility
+            )
+        return self._constants[cuts]
+
+    def balance(self, state: State) -> RodBalance:
+        """Residual at a state."""
+        entry = self.enter(state)
+        arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+        q = state.q[self.dofs]
+        first, last = entry.place.first, entry.place.last
         residual = np.empty_like(q)
         residual[0:3] = -q[3:6]
-        residual[3:5] = (self.start - self.end) + (q[0:2] - q[6:8]) + segments.vector[:, first]
-        residual[5] = condensed.miss[last]
-        residual[6:8] = segments.force[:, last, 0]
-        residual[8] = segments.moment[last, 0] + segments.gain[last]
-        tangent = np.empty((len(first), OWN, OWN), dtype=q.dtype)
-        tangent[:] = _FIXED
-        transfer = condensed.transfer[first]
-        tangent[:, _ROWS[:, None], _COLUMNS] = transfer[:, :, :5]
-        carried = np.zeros_like(q)
-        carried[_ROWS] = transfer[:, :, 6].T
-        cuts = _profile(state).cuts
-        cut = tuple(self._cut(state, e, pairs, segments, condensed) for e, pairs in cuts)
-        for part in cut:
-            e = part.element
-            residual[3:5, e] = part.residual[3:5]
-            tangent[e], carried[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
-        return RodSystem(
-            residual=residual,
-            carried=carried,
-            tangent=tangent.reshape(len(first), -1).T,
-            cut=cut,
-            segments=segments,
-            condensed=condensed,
-            inside=float(np.abs(condensed.residual).max()),
-        )
+        residual[3:5] = (self.start - self.end) + (q[0:2] - q[6:8]) + entry.vector[:, first]
+        residual[5] = arrival.miss[last]
+        residual[6:8] = entry.at.force[:, last, 0]
+        residual[8] = entry.moment[last, 0] + entry.gain[last]
+        contacts: dict[int, list[Any]] = {}
+        tangents: dict[int, tuple[rod.Tangent, rod.Tangent]] = {}
+        for element, pairs in _profile(state).cuts:
+            s = int(first[element])
+            x, y = (self.start[:, element] + q[:2, element]).tolist()
+            for k in pairs:
+                dx, dy = entry.vector[:, s].tolist()
+                x, y = x + dx, y + dy
+                tangents[k] = self._tangents(state, k, entry, s)
+                contacts[k] = [*self._contact(state, k, tangents[k], (x, y)), arrival.miss[s]]
+                residual[3:5, element] += entry.vector[:, s + 1]
+                s += 1
+        largest = float(np.abs(arrival.inside).max())
+        return RodBalance(entry, arrival, residual, contacts, tangents, largest)
 
-    def _cut(
-        self,
-        state: State,
-        element: int,
-        pairs: tuple[int, ...],
-        segments: Segments,
-        condensed: Condensed,
-    ) -> CutElement:
-        first, count, vectors = int(segments.place.first[element]), len(pairs), segments.vector
-        unknowns = OWN + CUT * count
-        inputs = _chain(count).astype(vectors.dtype)
-        tangent = np.zeros((unknowns, unknowns + 1), dtype=vectors.dtype)
-        residual = np.zeros(unknowns, dtype=vectors.dtype)
-        position = self.start[:, element] + state.q[self.dofs[:2, element]]
-        moved = np.zeros((2, unknowns + 1), dtype=vectors.dtype)
-        moved[[0, 1], [0, 1]] = 1
-        force = state.q[self.dofs[3:5, element]]
-        for k in range(count + 1):
-            s = first + k
-            out = condensed.transfer[s] @ inputs[k]
-            position, moved = position + vectors[:, s], moved + out[2:]
-            if k == count:
-                break
-            inputs[k + 1, 1] = out[1]
-            rows = slice(OWN + CUT * k, OWN + CUT * (k + 1))
-            contact, by_contact = self._contact(
-                state, pairs[k], element, force, position, moved, inputs[k : k + 2]
-            )
-            residual[rows.start : rows.start + 3], tangent[rows.start : rows.start + 3] = contact, by_contact
-            residual[rows.stop - 1], tangent[rows.stop - 1] = condensed.miss[s], out[0]
-            force = force - np.array(_touch(state, pairs[k]).force)
-        tangent[:3, 3:6] = -np.eye(3)
-        tangent[3:5], tangent[5], tangent[8] = moved, out[0], out[1]
-        tangent[3, 6] -= 1
-        tangent[4, 7] -= 1
-        tangent[6:8] = inputs[-1, 3:5]
-        residual[3:5] = position - self.end[:, element] - state.q[self.dofs[6:8, element]]
-        return CutElement(element, pairs, residual, tangent, inputs)
+    def _tangents(self, state: State, k: int, entry: Entry, s: int) -> tuple[rod.Tangent, rod.Tangent]:
+        """Tangent vectors before and after the contact at the end of segment s."""
+        flexibility = entry.at.flexibility
+        stretch, shear = float(flexibility.stretch[s, 0]), float(flexibility.shear[s, 0])
+        angle = _touch(state, k).angle
+        (x, y), (xx, yy) = (entry.at.force[:, n, 0].tolist() for n in (s, s + 1))
+        return rod.tangent(stretch, shear, (x, y), angle), rod.tangent(stretch, shear, (xx, yy), angle)
 
     def _contact(
         self,
         state: State,
         k: int,
-        element: int,
-        force: Array,
-        position: Array,
-        moved: Array,
-        inputs: Array,
-    ) -> tuple[Array, Array]:
-        """Residual (3,) and tangent of position and direction of a contact."""
+        tangents: tuple[rod.Tangent, rod.Tangent],
+        position: tuple[Any, Any],
+    ) -> list[Any]:
+        """Residual of position and direction of a contact."""
         pair, touch = self.model.pairs[k], _touch(state, k)
-        stretch, shear = (value[element] for value in self.flexibility[:2])
-        F = np.array(touch.force)
-        before = rod.tangent(stretch, shear, (force[0], force[1]), touch.angle)
-        after = rod.tangent(stretch, shear, (force[0] - F[0], force[1] - F[1]), touch.angle)
-        t = np.array(before.vector) + np.array(after.vector)
-        (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance
-        turned = np.array(before.turned) + np.array(after.turned)
-        by_t = (
-            turned[:, None] * inputs[0, 2]
-            + np.array([[xx, xy], [xy, yy]]) @ inputs[0, 3:5]
-            + np.array([[ax, ay], [ay, aa]]) @ inputs[1, 3:5]
-        )
-        by_force = inputs[0, 3:5] - inputs[1, 3:5]
-        node = self.model.node_position(pair, state.q, state.load_parameter)
-        miss, by_miss = position - np.array(node), moved.copy()
+        before, after = tangents
+        tx, ty = before.vector[0] + after.vector[0], before.vector[1] + after.vector[1]
+        cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
+        x, y = position[0] - cx, position[1] - cy
         if pair.pair.offset:
-            length = np.sqrt(t[0] * t[0] + t[1] * t[1])
-            normal = np.array([-t[1], t[0]]) / length
-            reach = pair.side * pair.pair.offset
-            miss = miss - reach * normal
-            by_miss += (reach / length**2) * np.outer(t, normal @ by_t)
-        direction = F @ by_t + t @ by_force
-        return np.append(miss, F @ t), np.concatenate([by_miss, direction[None]])
+            reach = pair.side * pair.pair.offset / (tx * tx + ty * ty) ** 0.5
+            x, y = x + reach * ty, y - reach * tx
+        return [x, y, touch.force[0] * tx + touch.force[1] * ty]
 
-    def inside(self, system: RodSystem, state: State, dq: Array, own: Array, constant: float) -> Array:
+    def linearise(self, state: State, balance: RodBalance) -> RodTangent:
+        """Tangent at a state."""
+        entry = balance.entry
+        condensed = rod.condense(entry.at, entry.of, balance.arrival, entry.moment)
+        first = entry.place.first
+        tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
+        tangent[:] = _FIXED
+        transfer = condensed.transfer[first]
+        tangent[:, _ROWS[:, None], _COLUMNS] = transfer[:, :, :5]
+        carried = np.zeros_like(balance.residual)
+        carried[_ROWS] = transfer[:, :, 6].T
+        cut = tuple(
+            self._cut(state, e, pairs, balance, condensed.transfer) for e, pairs in _profile(state).cuts
+        )
+        for part in cut:
+            e = part.element
+            tangent[e], carried[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
+        return RodTangent(carried, tangent.reshape(len(first), -1).T, cut, condensed.inner)
+
+    def _cut(
+        self, state: State, element: int, pairs: tuple[int, ...], balance: RodBalance, transfer: Array
+    ) -> CutElement:
+        first, count = int(balance.entry.place.first[element]), len(pairs)
+        chain, fixed, selectors = _chain(count)
+        inputs, tangent = chain.astype(transfer.dtype), fixed.astype(transfer.dtype)
+        moved = tangent[3:5].copy()
+        for k in range(count):
+            s, row = first + k, OWN + CUT * k
+            out = transfer[s] @ inputs[k]
+            inputs[k + 1, 1] = out[1]
+            moved += out[2:]
+            tangent[row : row + 2] = moved
+            self._turn(state, pairs[k], balance.tangents[pairs[k]], tangent[row : row + 3], selectors[k])
+            tangent[row + 3] = out[0]
+        out = transfer[first + count] @ inputs[count]
+        tangent[3:5] = moved + out[2:]
+        tangent[3, 6] = tangent[4, 7] = -1
+        tangent[5], tangent[8] = out[0], out[1]
+        return CutElement(element, pairs, tangent, inputs)
+
+    def _turn(
+        self,
+        state: State,
+        k: int,
+        tangents: tuple[rod.Tangent, rod.Tangent],
+        rows: Array,
+        selectors: Array,
+    ) -> None:
+        """Enter the derivatives of a contact's direction into its rows, and those of its offset."""
+        pair, (Fx, Fy) = self.model.pairs[k], _touch(state, k).force
+        before, after = tangents
+        tx, ty = before.vector[0] + after.vector[0], before.vector[1] + after.vector[1]
+        ux, uy = before.turned[0] + after.turned[0], before.turned[1] + after.turned[1]
+        (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance
+        sx, sy, ss = xx + ax, xy + ay, yy + aa
+        by = [
+            [ux, sx, sy, -ax, -ay],
+            [uy, sy, ss, -ay, -aa],
+            [
+                Fx * ux + Fy * uy,
+                Fx * sx + Fy * sy,
+                Fx * sy + Fy * ss,
+                tx - Fx * ax - Fy * ay,
+                ty - Fx * ay - Fy * aa,
+            ],
+        ]
+        if not pair.pair.offset:
+            rows[2] = np.array(by[2]) @ selectors
+            return
+        turned = np.array(by) @ selectors
+        rows[2] = turned[2]
+        square = tx * tx + ty * ty
+        across = (tx * turned[1] - ty * turned[0]) * (pair.side * pair.pair.offset / square**1.5)
+        rows[0] += tx * across
+        rows[1] += ty * across
+
+    def inside(self, tangent: RodTangent, state: State, dq: Array, own: Array, constant: float) -> Array:
         """Change of the angles inside that belongs to a change of everything else.
 
         Parameters
         ----------
-        system : RodSystem
+        tangent : RodTangent
             At the state.
         state : State
             Where.
@@ -366,12 +426,12 @@ class Rods:
         inputs = np.zeros((len(place.owner), INPUTS))
         inputs[:, :5] = x[_COLUMNS][:, place.owner].T
         inputs[:, 6] = constant
-        for part in system.cut:
+        for part in tangent.cut:
             slots = self.slots(part.pairs)
             z = np.concatenate([x[:, part.element], own[slots], [constant]])
             first = place.first[part.element]
             inputs[first : first + len(part.inputs)] = part.inputs @ z
-        change: Array = (system.condensed.inner @ inputs[:, :, None])[:, :, 0]
+        change: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return change
 
     def slots(self, pairs: tuple[int, ...]) -> list[int]:
@@ -380,14 +440,12 @@ class Rods:
 
     def energy(self, state: State) -> float:
         """Strain energy of the exact elements."""
-        segments = self.evaluate(state)
-        table, (stretch, shear, bend) = collocation(segments.angle.shape[1]), segments.flexibility
-        c, s = np.cos(segments.angle), np.sin(segments.angle)
-        nx, ny = segments.force
-        N, Q = nx * c + ny * s, ny * c - nx * s
-        moment = segments.moment + segments.length * (segments.at.values[0] @ table.once.T)
-        density = bend * moment**2 + stretch * N**2 + shear * Q**2
-        return float((segments.length * density @ table.w).sum()) / 2
+        entry = self.enter(state)
+        at, of, (stretch, shear, bend) = entry.at, entry.of, entry.at.flexibility
+        table = collocation(at.angle.shape[1])
+        moment = entry.moment + at.length * (of.values[0] @ table.once.T)
+        density = bend * moment**2 + stretch * of.N**2 + shear * of.q**2
+        return float((at.length * density @ table.w).sum()) / 2
 
     def undeformed(self, touches: tuple[Touch | None, ...]) -> Profile:
         """Profile of the straight elements."""
@@ -424,11 +482,15 @@ class Rods:
         cuts, order = self.cuts(touches), _profile(state).angle.shape[1]
         if any(_profile(earlier).cuts != cuts for earlier in history):
             return self.recut(history[-1], touches)
-        angle = np.zeros_like(_profile(state).angle)
+        angle = np.zeros((len(layout(len(self.length), cuts).owner), order))
         for weight, earlier in zip(weights, history, strict=True):
-            alike = _profile(earlier).angle.shape[1] == order
-            angle += weight * _profile(earlier if alike else self.resampled(earlier, order)).angle
+            angle += weight * _profile(earlier).angle
         return replace(state, touches=touches, profile=Profile(cuts=cuts, angle=angle))
+
+    def alike(self, history: list[State]) -> list[State]:
+        """States with as many Gauss nodes as the last of them."""
+        order = _profile(history[-1]).angle.shape[1]
+        return [h if _profile(h).angle.shape[1] == order else self.resampled(h, order) for h in history]
 
     def sampled(self, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
         """State whose angles inside are taken from a shape."""
@@ -449,53 +511,59 @@ class Rods:
         Inside, a polynomial of p Gauss nodes has order p, at the ends 2p; so it is computed anew with 2p nodes between the same ends.
         """
         if self._last is None or self._last[0] is not state:
-            finer = self.resampled(state, 2 * _profile(state).angle.shape[1])
-            for _ in range(5):
-                condensed = self.evaluate(finer).condense()
-                profile = _profile(finer)
-                finer = replace(
-                    finer, profile=replace(profile, angle=profile.angle + condensed.inner[:, :, 6])
-                )
-                if np.abs(condensed.residual).max() < 1e-12:
+            entry, finer = self.enter(state), state
+            rough = math.sqrt(self.truncation(entry)) > _SMOOTH
+            if rough:
+                finer = self.resampled(state, 2 * _profile(state).angle.shape[1])
+            for _ in range(5 if rough else 0):
+                entry, profile = self.enter(finer), _profile(finer)
+                arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+                if np.abs(arrival.inside).max() < _SMOOTH:
                     break
-            self._last = state, self._plain_shape(finer)
+                inner = rod.condense(entry.at, entry.of, arrival, entry.moment).inner
+                finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
+            self._last = state, self._plain_shape(finer, entry)
         return self._last[1]
 
-    def finer(self, state: State, system: RodSystem, accuracy: float) -> State | None:
+    def finer(self, state: State, balance: RodBalance, accuracy: float) -> State | None:
         """State with more Gauss nodes, None where the error estimate of `truncation` is small enough."""
-        order = system.segments.angle.shape[1]
-        error = self.truncation(system.segments)
-        if error <= accuracy or order == MOST_NODES or not np.isfinite(error):
+        order, error = _profile(state).angle.shape[1], self.truncation(balance.entry)
+        if error <= accuracy or order == MOST_NODES:
             return None
-        steps = np.ceil(np.log(error / accuracy) / np.log(_FALL))
-        return self.resampled(state, int(min(order + 2 * steps, 2 * order, MOST_NODES)))
+        more = 2 * math.ceil(math.log(error / accuracy, _FALL)) if math.isfinite(error) else order
+        return self.resampled(state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
 
-    def truncation(self, segments: Segments) -> float:
+    def inaccurate(self, balance: RodBalance, accuracy: float) -> bool:
+        """Whether the most Gauss nodes do not suffice."""
+        return balance.arrival.bent.shape[1] == MOST_NODES and self.truncation(balance.entry) > accuracy
+
+    def truncation(self, entry: Entry) -> float:
         """Estimated error of the integration, in positions over the longest beam's length and in angles.
 
         At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
         both are measured by the last two Legendre coefficients of moment and tangent vector, and both integrations divide by p.
         """
-        order = segments.angle.shape[1]
-        tail = np.abs(segments.at.values[:3] @ collocation(order).legendre[-2:].T).max(axis=2)
-        length = np.abs(segments.length[:, 0])
-        turn = tail[0] * length**2 * segments.flexibility.bend[:, 0]
+        at, values = entry.at, entry.of.values
+        order = values.shape[2]
+        tail = np.abs(values @ collocation(order).legendre[-2:].T).max(axis=2)
+        length = np.abs(at.length[:, 0])
+        turn = tail[0] * length**2 * at.flexibility.bend[:, 0]
         largest = np.maximum(turn, tail[1:].max(axis=0) * length / self.model.length).max()
         return float(largest / order) ** 2
 
     def resampled(self, state: State, order: int) -> State:
         """State with another number of Gauss nodes."""
-        return self.sampled(self._plain_shape(state), state, _profile(state).cuts, order)
+        shape = self._plain_shape(state, self.enter(state))
+        return self.sampled(shape, state, _profile(state).cuts, order)
 
     def pieces(self, state: State, element: int, count: int) -> Stations:
         """Lines along an element, `count` for every segment."""
-        shape, segments = self.shape(state), self.evaluate(state)
-        found = []
-        for s in range(segments.place.first[element], segments.place.last[element] + 1):
+        shape, found = self.shape(state), []
+        for s in range(shape.first[element], shape.last[element] + 1):
             sigma = np.linspace(0, 1, count + 1)
             at = shape.within(s, sigma)
             c, sn = np.cos(at.angle), np.sin(at.angle)
-            nx, ny = segments.force[:, s, 0]
+            nx, ny = at.force.T
             forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
             arc = shape.arc[s] + sigma * shape.length[s]
             found.append((arc, at.position, at.angle - self.angle0[element], forces))
@@ -504,30 +572,27 @@ class Rods:
             *(np.concatenate([part[pairs] for part in column]) for column in zip(*found, strict=True))
         )
 
-    def tangent(self, state: State, segment: int, angle: float, moment: float) -> tuple[Array, Array]:
-        """Tangent vector r' of the axis at a section, and its derivative along the arc."""
-        force = self.evaluate(state).force[:, segment, 0]
-        element = layout(len(self.length), _profile(state).cuts).owner[segment]
+    def tangent(self, element: int, at: Station) -> tuple[Array, Array]:
+        """Tangent vector r' of the axis at a single station of an element, and its derivative along the arc."""
         stretch, shear, bend = (float(value[element]) for value in self.flexibility)
-        at = rod.tangent(stretch, shear, (force[0], force[1]), angle)
-        return np.array(at.vector), np.array(at.turned) * bend * moment
+        x, y = at.force[0].tolist()
+        found = rod.tangent(stretch, shear, (x, y), float(at.angle[0]))
+        return np.array(found.vector), np.array(found.turned) * (bend * float(at.moment[0]))
 
-    def _plain_shape(self, state: State) -> RodShape:
-        segments = self.evaluate(state)
-        table, place = collocation(segments.angle.shape[1]), segments.place
-        turning = segments.at.values[0]
-        moment = segments.moment + segments.length * (turning @ table.once.T)
+    def _plain_shape(self, state: State, entry: Entry) -> RodShape:
+        at, of, place = entry.at, entry.of, entry.place
+        table = collocation(at.angle.shape[1])
+        moment = entry.moment + at.length * (of.values[0] @ table.once.T)
         x, y = self.start[:, place.owner] + state.q[self.dofs[:2]][:, place.owner]
-        length = segments.length[:, 0]
+        length = at.length[:, 0]
         arc = np.zeros(len(length))
         for element, _ in _profile(state).cuts:
             for s in range(place.first[element], place.last[element]):
                 arc[s + 1] = arc[s] + length[s]
-                x[s + 1], y[s + 1] = x[s] + segments.vector[0, s], y[s] + segments.vector[1, s]
-        start = np.stack([x, y, segments.start[:, 0], segments.moment[:, 0]])
-        along = segments.at.values[1:3]
-        rates = np.stack([*along, segments.flexibility.bend * moment, turning])
-        return RodShape(place.first, place.last, arc, length, start, rates)
+                x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
+        start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
+        rates = np.stack([*of.values[1:], at.flexibility.bend * moment, of.values[0]])
+        return RodShape(place.first, place.last, arc, length, at.force[:, :, 0], start, rates)
 
 
 def _profile(state: State) -> Profile:

@@ -26,7 +26,9 @@ from tsm.state import State, Touch
 from tsm.status import Status
 
 _MEMORY = 4
-"""States that the predictor extrapolates from: a cubic in the load parameter."""
+"""States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
+_SMOOTH_MEMORY = 8
+"""The same where each beam is one exact element: nothing is passed."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
 _LAST_PART = 1e-2
@@ -80,6 +82,8 @@ class Stepper:
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.step = 1.0
         self.failure = start.status
+        smooth = all(beam.elements == 1 and beam.element == "exact" for beam in model.structure.beams)
+        self.memory = _SMOOTH_MEMORY if smooth else _MEMORY
         self.driven = bool(model.load.any() or model.fixed_values.any())
         self.guard = self._guard()
 
@@ -167,6 +171,8 @@ class Stepper:
         else:
             starts = [replace(self.history[-1], load_parameter=t)]
             if len(self.history) > 1:
+                if self.model.rods:
+                    self.history = self.model.rods.alike(self.history)
                 starts.insert(0, extrapolate(self.model, self.history, t))
         for start in starts:
             equilibrium = self.newton.solve(start)
@@ -345,7 +351,7 @@ class Stepper:
             self._note_passes(equilibrium)
         state = rearm(self.model, equilibrium.state)
         self.accepted = replace(equilibrium, state=state)
-        self.history = [*self.history[1 - _MEMORY :], state]
+        self.history = [*self.history[1 - self.memory :], state]
         self.margins = self._measure(self.accepted)
         self.guard = self._guard()
 

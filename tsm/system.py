@@ -11,6 +11,9 @@ Schur complement is small and dense. The cost is linear in the number of element
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,53 +22,73 @@ from scipy.linalg.lapack import dgbsv, dgesv
 from tsm.elements import ClosedForm, beam, mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
-from tsm.rods import OWN, CutElement, RodSystem
+from tsm.rods import CUT, OWN, CutElement, RodBalance, RodTangent
 from tsm.state import State, Touch
 
 _EPS = float(np.finfo(float).eps)
 
 
-class Linearisation(NamedTuple):
-    """Residual and tangent at a configuration.
+class Bordered(NamedTuple):
+    """Tangent, a band with a border.
 
     Attributes
     ----------
-    nodal : ndarray, shape (dofs,)
-        Forces of beams and contacts on all degrees of freedom; on the prescribed ones, the reactions.
-    residual : ndarray, shape (equations + contact unknowns,)
-        Unbalanced forces, then the residuals of the contacts: position (2), direction of the force.
     band : ndarray, shape (banded, ldab)
         LAPACK band storage, one row per column of the matrix.
     right, below : ndarray, shapes (equations + 1, border), (border, equations + 1)
         Border columns and rows.
     corner : ndarray, shape (border, border)
         Where they meet; the unknowns of open contacts stand alone in it.
+    carried : ndarray, shape (equations + contact unknowns,) or None
+        What the residual inside exact elements adds to the residual once it is eliminated.
+    rods : RodTangent or None
+        The exact elements.
+    """
+
+    band: Array
+    right: Array
+    below: Array
+    corner: Array
+    carried: Array | None
+    rods: RodTangent | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Linearisation:
+    """Residual at a configuration, and its tangent when it is asked for.
+
+    Attributes
+    ----------
+    nodal : ndarray, shape (dofs,)
+        Forces of beams and contacts on all degrees of freedom; on the prescribed ones, the reactions.
+    residual : ndarray, shape (equations + contact unknowns,)
+        Unbalanced forces and what exact elements miss on arrival, then the residuals of the contacts: position (2), direction of the
+        force, and of exact elements the angle.
     forces : dict
         Force on the beam of every closed pair.
-    element_force : ndarray, shape (6, elements)
-        Nodal forces of the elements, contact included.
+    closed_force : ndarray, shape (6, c)
+        Nodal forces of the elements in closed form, contact included.
     noise : float
         Round-off of the residual by contact stiffness, ``4 eps k_c L``.
     crowded : bool
         Whether two nodes touch one element of the paper's, which knows one contact only.
-    carried : ndarray, shape (equations + contact unknowns,)
-        What the residual inside exact elements adds to the residual once it is eliminated.
-    rods : RodSystem or None
+    rods : RodBalance or None
         The exact elements.
     """
 
     nodal: Array
     residual: Array
-    band: Array
-    right: Array
-    below: Array
-    corner: Array
     forces: dict[int, tuple[float, float]]
-    element_force: Array
+    closed_force: Array
     noise: float
     crowded: bool
-    carried: Array | None
-    rods: RodSystem | None
+    rods: RodBalance | None
+    assemble: Callable[[], Bordered] = field(repr=False)
+
+    @cached_property
+    def tangent(self) -> Bordered:
+        """Tangent at the configuration; its band is lost once it is solved with."""
+        return self.assemble()
 
 
 class Assembler:
@@ -95,40 +118,55 @@ class Assembler:
         model = self.model
         border = _Border(model)
         force, tangent = self._closed_form(state, border)
-        values, rods, carried = tangent.ravel(), None, None
         nodal: Array = np.bincount(self.closed_dofs, weights=force.ravel(), minlength=model.dof_count)
+        rods = None
         if model.rods:
-            rods = model.rods.linearise(state)
-            for part in rods.cut:
-                border.cut(part, state)
-            values = np.concatenate([values, rods.tangent.ravel()])
-            weights = (rods.residual.ravel(), rods.carried.ravel())
-            both = [np.bincount(self.exact_dofs, weights=w, minlength=model.dof_count) for w in weights]
-            nodal, carried = nodal + both[0], np.concatenate([both[1][model.free], border.carried])
-            force = self._end_forces(force, rods)
+            rods = model.rods.balance(state)
+            nodal = nodal + self._gather(rods.residual)
+            border.balance(rods, state)
         for dof, reaction in border.pushed:
             nodal[dof : dof + 2] += reaction
         if load is not None:
             nodal = nodal - load
         if len(model.structure.loads):
             nodal = nodal - state.load_parameter * model.load
-        band = np.bincount(self.scatter, weights=values, minlength=self.band_size + 1)[:-1]
-        if model.border_dofs:
-            self._cross(values, border)
         return Linearisation(
             nodal=nodal,
             residual=np.concatenate([nodal[model.free], border.own]),
+            forces=border.forces,
+            closed_force=force,
+            noise=4 * _EPS * border.stiffest * model.length,
+            crowded=border.crowded,
+            rods=rods,
+            assemble=lambda: self._tangent(state, tangent, border, rods),
+        )
+
+    def _tangent(self, state: State, closed: Array, border: _Border, balance: RodBalance | None) -> Bordered:
+        model = self.model
+        values, rods, carried = closed.ravel(), None, None
+        if model.rods and balance:
+            rods = model.rods.linearise(state, balance)
+            for part in rods.cut:
+                border.cut(part)
+            values = np.concatenate([values, rods.tangent.ravel()])
+            carried = np.concatenate([self._gather(rods.carried)[model.free], border.carried])
+        band = np.bincount(self.scatter, weights=values, minlength=self.band_size + 1)[:-1]
+        if model.border_dofs:
+            self._cross(values, border)
+        return Bordered(
             band=band.reshape(model.banded, self.ldab),
             right=border.right,
             below=border.below,
             corner=border.corner,
-            forces=border.forces,
-            element_force=force,
-            noise=4 * _EPS * border.stiffest * model.length,
-            crowded=border.crowded,
             carried=carried,
             rods=rods,
         )
+
+    def _gather(self, values: Array) -> Array:
+        """Sum what the exact elements (9, r) give on all degrees of freedom."""
+        count = self.model.dof_count
+        total: Array = np.bincount(self.exact_dofs, weights=values.ravel(), minlength=count)
+        return total
 
     def _closed_form(self, state: State, border: _Border) -> tuple[Array, Array]:
         """Forces (6, c) and tangents (36, c) of the elements in closed form; their contacts enter the border."""
@@ -148,14 +186,6 @@ class Assembler:
                 tangent[:, place] += block[:6, :6].ravel()
                 border.close(k, pair, touch, gradient, block)
         return force, tangent
-
-    def _end_forces(self, closed: Array, rods: RodSystem) -> Array:
-        """Nodal forces of all elements from those in closed form and the exact ones."""
-        model = self.model
-        force = np.empty((6, len(model.place)))
-        force[:, model.closed] = closed
-        force[:, model.exact] = rods.residual[[0, 1, 2, 6, 7, 8]]
-        return force
 
     def rate(self, state: State) -> Array:
         """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins."""
@@ -177,7 +207,7 @@ class Assembler:
                 _, tangent = beam.response(model.coefficients, state.q[self.nodal_dofs])
                 pulled = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.nodal_dofs]).ravel()
             if model.rods:
-                rods, x = model.rods.linearise(state), q[model.exact_dofs]
+                rods, x = model.rods.linearise(state, model.rods.balance(state)), q[model.exact_dofs]
                 by_rods = np.einsum("ijn,jn->in", rods.tangent.reshape(OWN, OWN, -1), x)
                 pulled = np.concatenate([pulled, by_rods.ravel()])
                 for part in rods.cut:
@@ -253,7 +283,7 @@ class Assembler:
         Parameters
         ----------
         system : Linearisation
-            Its band is overwritten.
+            Its tangent's band is overwritten.
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
 
@@ -264,17 +294,18 @@ class Assembler:
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")
-        residual = system.residual if system.carried is None else system.residual + system.carried
+        tangent = system.tangent
+        residual = system.residual if tangent.carried is None else system.residual + tangent.carried
         given = np.stack([-residual, *more], axis=1)
         rhs[:, :count] = given[:banded]
-        rhs[:, count:] = system.right[:banded]
-        _, _, X, info = dgbsv(self.k, self.k, system.band.T, rhs, overwrite_ab=True, overwrite_b=True)
+        rhs[:, count:] = tangent.right[:banded]
+        _, _, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_ab=True, overwrite_b=True)
         if info != 0:
             return None
         if not border:
             return np.asarray(X)
-        reduced = system.below[:, :banded] @ X
-        _, _, z, info = dgesv(system.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
+        reduced = tangent.below[:, :banded] @ X
+        _, _, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
         if info != 0:
             return None
         return np.concatenate([X[:, :count] - X[:, count:] @ z, z])
@@ -327,26 +358,32 @@ class _Border:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
 
-    def cut(self, part: CutElement, state: State) -> None:
-        """Enter the contacts of an exact element."""
-        model = self.model
-        assert model.rods is not None, "a cut element is exact"
-        own = model.rods.slots(part.pairs)
-        slots, eq = [model.border_dofs + i for i in own], model.equation[model.exact_dofs[:, part.element]]
-        self.right[np.ix_(eq, slots)] = part.tangent[:OWN, OWN:-1]
-        self.below[np.ix_(slots, eq)] = part.tangent[OWN:, :OWN]
-        self.corner[np.ix_(slots, slots)] = part.tangent[OWN:, OWN:-1]
-        self.own[own], self.carried[own] = part.residual[OWN:], part.tangent[OWN:, -1]
-        for k in part.pairs:
-            pair, touch = model.pairs[k], state.touches[k]
+    def balance(self, rods: RodBalance, state: State) -> None:
+        """Enter the residuals and forces of contacts on exact elements."""
+        for k, rows in rods.contacts.items():
+            pair, touch = self.model.pairs[k], state.touches[k]
             assert touch is not None, "a cut is a closed contact"
+            self.own[pair.slots] = rows
             self.forces[k] = touch.force
             if pair.node >= 0:
                 self.pushed.append((3 * pair.node, np.array(touch.force)))
+
+    def cut(self, part: CutElement) -> None:
+        """Enter the contacts of an exact element."""
+        model, tangent = self.model, part.tangent
+        eq = model.equation[model.exact_dofs[:, part.element]]
+        own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
+        for pair, rows in own:
+            slots = self._slots(pair)
+            self.right[eq, slots], self.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
+            self.carried[pair.slots] = tangent[rows, -1]
+            for other, columns in own:
+                self.corner[slots, self._slots(other)] = tangent[rows, columns]
+            if pair.node >= 0:
                 for i in range(2):
-                    equation, slot = model.equation[3 * pair.node + i], self._slots(pair).start + i
-                    self.right[equation, slot] += 1
-                    self.below[slot, equation] -= 1
+                    equation = model.equation[3 * pair.node + i]
+                    self.right[equation, slots.start + i] += 1
+                    self.below[slots.start + i, equation] -= 1
 
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Let two contacts on one element feel each other's dent."""

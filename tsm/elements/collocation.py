@@ -26,6 +26,10 @@ class Collocation(NamedTuple):
         ``once @ once``, less half of what makes it vanish at the far end: see `rod`.
     legendre : ndarray, shape (p, p)
         ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials.
+    linear : ndarray, shape (p, 3)
+        1, 1 and c/2.
+    stations, barycentric : ndarray, shape (p + 1,)
+        0 and the Gauss nodes, with their barycentric weights (Berrut and Trefethen 2004).
     """
 
     c: Array
@@ -34,6 +38,9 @@ class Collocation(NamedTuple):
     ends: Array
     twice: Array
     legendre: Array
+    linear: Array
+    stations: Array
+    barycentric: Array
 
 
 @lru_cache(maxsize=64)
@@ -47,10 +54,18 @@ def collocation(order: int) -> Collocation:
     x, weights = legendre.leggauss(order)
     w = weights / 2
     degrees = np.arange(order)
-    to_legendre = legendre.legvander(x, order - 1).T * w * (2 * degrees + 1)[:, None]
+    P = legendre.legvander(x, order)
+    to_legendre = P[:, :order].T * w * (2 * degrees + 1)[:, None]
     c = (x + 1) / 2
-    once = integrals(c, order) @ to_legendre
+    integrals = np.empty((order, order))
+    integrals[:, 0] = c
+    integrals[:, 1:] = (P[:, 2:] - P[:, :-2]) / (4 * degrees[1:] + 2)
+    once = integrals @ to_legendre
     far = w * (1 - c)
+    stations = np.append(0.0, c)
+    apart = 4 * (stations[:, None] - stations)
+    np.fill_diagonal(apart, 1.0)
+    barycentric = 1 / apart.prod(axis=1)
     return Collocation(
         c=c,
         w=w,
@@ -58,14 +73,19 @@ def collocation(order: int) -> Collocation:
         ends=np.stack([w, far], axis=1),
         twice=once @ once - np.outer(c, far) / 2,
         legendre=to_legendre,
+        linear=np.stack([np.ones(order), np.ones(order), c / 2], axis=1),
+        stations=stations,
+        barycentric=barycentric / np.abs(barycentric).max(),
     )
 
 
-def integrals(x: Array, order: int) -> Array:
-    """Integrals of the first `order` Legendre polynomials on the unit interval, from 0 to x; shape (m, order)."""
-    P = legendre.legvander(2 * np.asarray(x) - 1, order)
-    found = np.empty((len(P), order))
-    found[:, 0] = x
-    for k in range(1, order):
-        found[:, k] = (P[:, k + 1] - P[:, k - 1]) / (4 * k + 2)
+def interpolation(order: int, x: Array) -> Array:
+    """Matrix that takes values at the stations to the points x (m,) of the polynomial through them, shape (m, p + 1)."""
+    table = collocation(order)
+    apart = x[:, None] - table.stations
+    hit = apart == 0
+    found: Array = table.barycentric / np.where(hit, 1.0, apart)
+    found /= found.sum(axis=1, keepdims=True)
+    on = hit.any(axis=1)
+    found[on] = hit[on]
     return found

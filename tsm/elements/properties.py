@@ -61,3 +61,13 @@ def unwind(angle: Any) -> Any:
 def tangent_of(angle: Any) -> Any:
     """Tangent of an angle."""
     return math.tan(angle) if isinstance(angle, float) else np.tan(angle)
+
+
+def cosine(angle: Any) -> Any:
+    """Cosine of an angle."""
+    return math.cos(angle) if isinstance(angle, float) else np.cos(angle)
+
+
+def sine(angle: Any) -> Any:
+    """Sine of an angle."""
+    return math.sin(angle) if isinstance(angle, float) else np.sin(angle)

@@ -1,4 +1,4 @@
-"""The Reissner rod between two loads, by Gauss collocation (../shared section of the README: the exact element).
+"""The Reissner rod between two loads, by Gauss collocation.
 
 Between two loads the internal force n is constant. With phi the angle of the section's normal, ``N, Q = n . d_1, n . d_2`` along
 and across it, and ``g = 1/EA - 1/GA``::
@@ -16,15 +16,23 @@ both angles a boundary value problem, regular under tension but singular at ``-N
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements.collocation import Collocation
-from tsm.elements.properties import Array
+from tsm.elements.collocation import Collocation, collocation
+from tsm.elements.properties import Array, cosine, sine
 
 INPUTS = 7
 """Angle and moment at the start, angle at the end, force x and y, length; the last input is 1: the residual inside."""
+# the 13 entries of `_direct` in the transfer: rows miss, moment, vector
+_PARTS = np.zeros((13, 4, 7))
+_PARTS[0, [0, 0, 1], [0, 2, 1]] = 1, -1, 1
+_PARTS[[1, 2, 3, 4], 0, [1, 3, 4, 5]] = 1
+_PARTS[[5, 6, 10], 1, [3, 4, 5]] = 1
+_PARTS[[7, 8, 11], 2, [3, 4, 5]] = 1
+_PARTS[[8, 9, 12], 3, [3, 4, 5]] = 1
+_DIRECT = _PARTS.reshape(13, -1)
 
 
 class Flexibility(NamedTuple):
@@ -41,22 +49,66 @@ class Flexibility(NamedTuple):
     bend: Array
 
 
-class Field(NamedTuple):
-    """What the angles at the Gauss nodes say of s segments.
+class Segments(NamedTuple):
+    """Rods between two loads each, s of them, and what is known of them.
 
     Attributes
     ----------
-    values : ndarray, shape (8, s, p)
-        f, r' (x, y), d r'/d phi (x, y), d r'/d n (xx, xy, yy); ``d f/d n = -d r'/d phi``.
-    slope : ndarray, shape (s, p)
-        d f/d phi.
-    sums : ndarray, shape (8, s, 2)
-        Integrals of the values over the unit interval: ``int v`` and ``int (1 - x) v``.
+    flexibility : Flexibility
+        Of each.
+    force : ndarray, shape (2, s, 1)
+        Internal force, on the section that looks to the end.
+    length : ndarray, shape (s, 1)
+        Undeformed length.
+    angle : ndarray, shape (s, p)
+        Angles of the sections at the Gauss nodes, from the x axis.
+    """
+
+    flexibility: Flexibility
+    force: Array
+    length: Array
+    angle: Array
+
+
+class Field(NamedTuple):
+    """What the angles say of the rod at the Gauss nodes.
+
+    Attributes
+    ----------
+    values : ndarray, shape (3, s, p)
+        f and r' (x, y).
+    sums : ndarray, shape (3, s, 2)
+        Their integrals over the unit interval: ``int v`` and ``int (1 - x) v``.
+    c, s, N, q, turn, gq : ndarray, shape (s, p)
+        Cosine and sine, ``N``, ``-Q``, ``1 + g N``, ``-g Q``.
     """
 
     values: Array
-    slope: Array
     sums: Array
+    c: Array
+    s: Array
+    N: Array
+    q: Array
+    turn: Array
+    gq: Array
+
+
+class Arrival(NamedTuple):
+    """Residuals of segments.
+
+    Attributes
+    ----------
+    miss : ndarray, shape (s,)
+        Angle on arrival less the angle that is there.
+    inside : ndarray, shape (s, p)
+        Residual of the angles inside [rad].
+    bent : ndarray, shape (s, p)
+        ``twice @ f``.
+    """
+
+    miss: Array
+    inside: Array
+    bent: Array
 
 
 class Condensed(NamedTuple):
@@ -64,124 +116,105 @@ class Condensed(NamedTuple):
 
     Attributes
     ----------
-    miss : ndarray, shape (s,)
-        Angle on arrival less the angle that is there.
-    residual : ndarray, shape (s, p)
-        Of the inner equations [rad].
     transfer : ndarray, shape (s, 4, 7)
         Derivatives of miss, moment at the end, and vector from start to end, by the inputs.
     inner : ndarray, shape (s, p, 7)
         Derivatives of the angles inside by the inputs.
     """
 
-    miss: Array
-    residual: Array
     transfer: Array
     inner: Array
 
 
-def field(table: Collocation, flexibility: Flexibility, force: Array, angle: Array) -> Field:
-    """Evaluate the rod's equations at the Gauss nodes.
-
-    Parameters
-    ----------
-    table : Collocation
-        Of order p.
-    flexibility : Flexibility
-        Of the segments.
-    force : ndarray, shape (2, s, 1)
-        Internal force on the section that looks to the end.
-    angle : ndarray, shape (s, p)
-        Angles of the sections.
-    """
-    c, s = np.cos(angle), np.sin(angle)
-    nx, ny = force
-    stretch, shear, _ = flexibility
+def field(at: Segments) -> Field:
+    """Evaluate the rod's equations at the Gauss nodes."""
+    c, s = np.cos(at.angle), np.sin(at.angle)
+    nx, ny = at.force
+    stretch, shear, _ = at.flexibility
     g = stretch - shear
-    N, Q = nx * c + ny * s, ny * c - nx * s
-    gN, gQ = g * N, g * Q
-    along, across = 1 + stretch * N, shear * Q
-    turn = 1 + gN
-    values = np.empty((8, *angle.shape), dtype=N.dtype)
-    values[0] = -Q * turn
-    values[1] = along * c - across * s
-    values[2] = along * s + across * c
-    values[3] = gQ * c - turn * s
-    values[4] = gQ * s + turn * c
-    gcc = g * c * c
-    values[5] = shear + gcc
-    values[6] = g * c * s
-    values[7] = stretch - gcc
-    return Field(values, N * turn - gQ * Q, values @ table.ends)
+    N, q = nx * c + ny * s, nx * s - ny * c
+    turn, gq = 1 + g * N, g * q
+    values = np.empty((3, *c.shape), dtype=N.dtype)
+    values[0] = q * turn
+    values[1] = c + stretch * nx - gq * s
+    values[2] = s + stretch * ny + gq * c
+    return Field(values, values @ collocation(c.shape[1]).ends, c, s, N, q, turn, gq)
 
 
-def condense(
-    table: Collocation,
-    flexibility: Flexibility,
-    at: Field,
-    ends: tuple[Array, Array, Array],
-    length: Array,
-    angle: Array,
-) -> Condensed:
-    """Eliminate the angles inside.
+def arrival(at: Segments, of: Field, start: Array, moment: Array, end: Array) -> Arrival:
+    """Residuals with given angle and moment at the start and angle at the end, each of shape (s, 1)."""
+    table = collocation(at.angle.shape[1])
+    by_bend = at.length * at.flexibility.bend
+    by_square = by_bend * at.length
+    rise = by_bend * moment
+    bent = of.values[0] @ table.twice.T
+    inside = at.angle - start - table.c * ((rise + end - start) / 2) - by_square * bent
+    miss = start + rise - end + by_square * of.sums[0, :, 1:]
+    return Arrival(miss[:, 0], inside, bent)
 
-    Parameters
-    ----------
-    table, flexibility, angle
-        As for `field`.
-    at : Field
-        Of the same angles.
-    ends : tuple of ndarray, shape (s, 1)
-        Angle and moment at the start, angle at the end.
-    length : ndarray, shape (s, 1)
-        Undeformed length.
-    """
-    start, moment, end = ends
-    p, c, bend = len(table.c), table.c, flexibility.bend
-    by_bend, by_square = length * bend, length * length * bend
-    sums, turned = at.sums, at.values[3:5]
-    rise = (by_bend / 2) * moment
-    force = at.values[0] @ table.twice.T
-    residual = angle - start - c * (rise + (end - start) / 2) - by_square * force
-    matrix = (-by_square * at.slope)[:, None, :] * table.twice
-    matrix.reshape(len(matrix), -1)[:, :: p + 1] += 1
-    right = np.empty((len(matrix), p, 6), dtype=matrix.dtype)
-    right[:, :, 0] = 1
-    right[:, :, 1] = c
-    right[:, :, 2:4] = ((turned @ table.twice.T) * -by_square).transpose(1, 2, 0)
-    right[:, :, 4] = (2 * by_bend) * force
-    right[:, :, 5] = -residual
-    solved = np.linalg.solve(matrix, right)
-    inner = np.empty((len(matrix), p, INPUTS), dtype=matrix.dtype)
-    half = solved[:, :, 1] / 2
-    inner[:, :, 0] = solved[:, :, 0] - half
+
+def condense(at: Segments, of: Field, found: Arrival, moment: Array) -> Condensed:
+    """Eliminate the angles inside."""
+    table, h, bend = collocation(at.angle.shape[1]), at.length, at.flexibility.bend
+    by_bend = h * bend
+    by_square = by_bend * h
+    slope = of.N * of.turn - of.gq * of.q
+    values = np.empty((4, *slope.shape), dtype=slope.dtype)
+    values[0] = -of.gq * of.c - of.turn * of.s
+    values[1] = of.turn * of.c - of.gq * of.s
+    values[2:] = (at.flexibility.stretch - at.flexibility.shear) * of.c * np.stack([of.c, of.s])
+    bent = values[:2] @ table.twice.T * -by_square
+    inner = _eliminate(table, -by_square * slope, bent, 2 * by_bend * found.bent, found.inside)
+    half = inner[:, :, 2]
+    inner[:, :, 0] -= half
     inner[:, :, 1] = by_bend * half
-    inner[:, :, 2] = half
-    inner[:, :, 3:] = solved[:, :, 2:]
     inner[:, :, 5] += (bend * moment) * half
 
-    weights = np.empty((len(matrix), 4, p), dtype=matrix.dtype)
-    weights[:, 0] = table.ends[:, 1] * (by_square * at.slope)
-    weights[:, 1] = table.w * (length * at.slope)
-    weights[:, 2:] = (turned * (length * table.w)).transpose(1, 0, 2)
-    transfer = weights @ inner
-    total, later = sums[..., 0], sums[..., 1]
-    by_bend, by_square, h = by_bend[:, 0], by_square[:, 0], length[:, 0]
-    transfer[:, 0, 0] += 1
-    transfer[:, 0, 1] += by_bend
-    transfer[:, 0, 2] -= 1
-    transfer[:, 0, 3:5] -= (by_square * later[3:5]).T
-    transfer[:, 0, 5] += (bend * moment)[:, 0] + 2 * by_bend * later[0]
-    transfer[:, 1, 1] += 1
-    transfer[:, 1, 3:5] -= (h * total[3:5]).T
-    transfer[:, 1:, 5] += total[:3].T
-    compliance = h * total[5:8]
-    transfer[:, 2, 3] += compliance[0]
-    transfer[:, 2, 4] += compliance[1]
-    transfer[:, 3, 3] += compliance[1]
-    transfer[:, 3, 4] += compliance[2]
-    miss = (start + 2 * rise - end)[:, 0] + by_square * later[0]
-    return Condensed(miss, residual, transfer, inner)
+    weights = np.empty((len(h), 4, slope.shape[1]), dtype=slope.dtype)
+    weights[:, 0] = by_square * slope * table.ends[:, 1]
+    weights[:, 1] = h * slope * table.w
+    weights[:, 2:] = (values[:2] * (h * table.w)).transpose(1, 0, 2)
+    direct = _direct(at, of, (values @ table.ends).transpose(2, 1, 0), moment)
+    return Condensed(weights @ inner + direct, inner)
+
+
+def _eliminate(table: Collocation, slope: Array, turned: Array, longer: Array, inside: Array) -> Array:
+    """Solutions for the angles inside by 1, -, c/2, force x and y, length; and what removes their residual; (s, p, 7)."""
+    count, p = inside.shape
+    matrix = slope[:, None, :] * table.twice
+    matrix.reshape(count, -1)[:, :: p + 1] += 1
+    right = np.empty((count, p, INPUTS), dtype=matrix.dtype)
+    right[:, :, :3] = table.linear
+    right[:, :, 3:5] = turned.transpose(1, 2, 0)
+    right[:, :, 5] = longer
+    right[:, :, 6] = -inside
+    solved: Array = np.linalg.solve(matrix, right)
+    return solved
+
+
+def _direct(at: Segments, of: Field, sums: Array, moment: Array) -> Array:
+    """Part of the transfer that does not pass through the angles inside, shape (s, 4, 7)."""
+    stretch, shear, bend = at.flexibility
+    h = at.length
+    by_bend = h * bend
+    (turned_x, turned_y, xx, xy), later = (h * sums[0]).T[:, :, None], sums[1] * (-h * by_bend)
+    total = of.sums[:, :, 0].T
+    entries = np.concatenate(
+        [
+            np.ones_like(h),
+            by_bend,
+            later[:, :2],
+            bend * moment + 2 * by_bend * of.sums[0, :, 1:],
+            -turned_x,
+            -turned_y,
+            h * shear + xx,
+            xy,
+            h * stretch - xx,
+            total,
+        ],
+        axis=1,
+    )
+    return (entries @ _DIRECT).reshape(-1, 4, INPUTS)
 
 
 class Tangent(NamedTuple):
@@ -197,20 +230,19 @@ class Tangent(NamedTuple):
         Its derivative by the force: xx, xy, yy.
     """
 
-    vector: tuple[float, float]
-    turned: tuple[float, float]
-    compliance: tuple[float, float, float]
+    vector: tuple[Any, Any]
+    turned: tuple[Any, Any]
+    compliance: tuple[Any, Any, Any]
 
 
-def tangent(stretch: float, shear: float, force: tuple[float, float], angle: float) -> Tangent:
+def tangent(stretch: float, shear: float, force: tuple[Any, Any], angle: Any) -> Tangent:
     """Tangent vector of the axis where the section's angle and the internal force are known."""
-    c, s = np.cos(angle), np.sin(angle)
+    c, s = cosine(angle), sine(angle)
     nx, ny = force
     g = stretch - shear
-    N, Q = nx * c + ny * s, ny * c - nx * s
-    along, across, turn = 1 + stretch * N, shear * Q, 1 + g * N
+    turn, gq = 1 + g * (nx * c + ny * s), g * (nx * s - ny * c)
     return Tangent(
-        (along * c - across * s, along * s + across * c),
-        (g * Q * c - turn * s, g * Q * s + turn * c),
+        (c + stretch * nx - gq * s, s + stretch * ny + gq * c),
+        (-gq * c - turn * s, turn * c - gq * s),
         (shear + g * c * c, g * c * s, stretch - g * c * c),
     )
