@@ -176,6 +176,11 @@ class Model:
             node = self.end_node(f"{load.beam}.{load.end}")
             self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
 
+    @cached_property
+    def whole(self) -> bool:
+        """Whether every beam is a single exact element, so that no contact passes from element to element."""
+        return len(self.exact) == len(self.beams) and not len(self.closed)
+
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""
         beam, _, end = name.rpartition(".")

@@ -27,8 +27,8 @@ from tsm.status import Status
 
 _MEMORY = 4
 """States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
-_SMOOTH_MEMORY = 8
-"""The same where each beam is one exact element: nothing is passed."""
+_MEMORY_WHOLE = 8
+"""The same where nothing is passed."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
 _LAST_PART = 1e-2
@@ -82,8 +82,7 @@ class Stepper:
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.step = 1.0
         self.failure = start.status
-        smooth = all(beam.elements == 1 and beam.element == "exact" for beam in model.structure.beams)
-        self.memory = _SMOOTH_MEMORY if smooth else _MEMORY
+        self.memory = _MEMORY_WHOLE if model.whole else _MEMORY
         self.driven = bool(model.load.any() or model.fixed_values.any())
         self.guard = self._guard()
 
