@@ -152,7 +152,7 @@ class _Path:
         solved = assembler.solve(system, -assembler.rate(state))
         if solved is None:
             return None
-        x = solved[:, 1]
+        x = solved.x[:, 1]
         size = float(np.sqrt(x @ (self.weight * x)))
         ahead = 1.0 if last is None else float(x @ (self.weight * last.x))
         sign = 1.0 if ahead >= 0 else -1.0
@@ -202,7 +202,7 @@ class _Path:
             if solved is None:
                 self.failure = Status.SINGULAR_TANGENT
                 return None, iteration
-            back, rate = solved.T
+            back, rate = solved.x.T
             across = self.weight * along.x
             load = -float(across @ back) / float(across @ rate)
             state = self._moved(state, system, back + load * rate, load, residual=True)

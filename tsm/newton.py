@@ -44,6 +44,8 @@ class Equilibrium:
         Scaled norm before the first and after every iteration.
     system : Linearisation
         Residual and tangent at the configuration.
+    orientation : tuple of int
+        Signs of the determinants of the first and the last tangent that was solved with, 0 without iterations.
     """
 
     state: State
@@ -51,6 +53,7 @@ class Equilibrium:
     iterations: int
     residuals: tuple[float, ...]
     system: Linearisation
+    orientation: tuple[int, int] = (0, 0)
 
 
 class _Taken(NamedTuple):
@@ -113,6 +116,7 @@ class Newton:
         state = start
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
+        orientation = (0, 0)
         taken: _Taken | None = None
         for iteration in range(self.max_iterations + 1):
             system = self.assembler.linearise(state, load)
@@ -137,10 +141,13 @@ class Newton:
                     iterations=iteration,
                     residuals=tuple(residuals),
                     system=system,
+                    orientation=orientation,
                 )
+            orientation = (orientation[0] or step.orientation, step.orientation)
+            dx = step.x[:, 0]
             if self.model.rods:
-                taken = _Taken(state, system, step[:, 0], residual, 1.0)
-            state = self.update(state, step[:, 0], system, residual=True)
+                taken = _Taken(state, system, dx, residual, 1.0)
+            state = self.update(state, dx, system, residual=True)
         raise AssertionError("the last iteration returns")
 
     def _status(

@@ -17,7 +17,7 @@ from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
-from tsm.guard import PathGuard
+from tsm.guard import SHORT, PathGuard
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.predictor import extrapolate
@@ -83,6 +83,8 @@ class Stepper:
         self.step = 1.0
         self.failure = start.status
         self.memory = _MEMORY_WHOLE if model.whole else _MEMORY
+        self.orientation = 0
+        self.mixed = all(pair.slot >= 0 for pair in model.pairs)
         self.driven = bool(model.load.any() or model.fixed_values.any())
         self.guard = self._guard()
 
@@ -180,9 +182,25 @@ class Stepper:
                 if self.guard and not self.guard.keeps(equilibrium.state):
                     self.failure = Status.ITERATION_LIMIT
                     return None
-                return equilibrium
+                if not self._strays(equilibrium):
+                    return equilibrium
+                self.failure = Status.ITERATION_LIMIT
+                continue
             self.failure = equilibrium.status
         return None
+
+    def _strays(self, found: Equilibrium) -> bool:
+        """Whether a long step ended beyond a singular tangent: on another branch, which the path does not lead to.
+
+        Along a path that pins drive, the determinant of the tangent keeps its sign up to a fold, where the path ends. A short step may
+        pass a bifurcation.
+        """
+        first, last = found.orientation
+        if self.driven or not self.mixed or (self.orientation or first) == last:
+            return False
+        model = self.model
+        moved = (found.state.q - self.accepted.state.q)[model.free] * self.newton.per_limit
+        return bool(np.abs(moved).max(initial=0.0) > SHORT)
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -211,7 +229,7 @@ class Stepper:
             and {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
             and other.value <= _COINCIDENT
         ]
-        return self._switch(at, [margin, *together])
+        return self._switch(at, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
 
     def _switch(self, at: Equilibrium, changes: list[Margin]) -> Status:
         """Accept the events' configuration, then open and close its contacts."""
@@ -285,6 +303,7 @@ class Stepper:
             self._note_release(energy(at.state) - energy(state))
         self.history = []
         self._accept(equilibrium)
+        self.orientation = 0
         return Status.CONVERGED
 
     def _unload(self, state: State, lost: Array) -> Equilibrium | None:
@@ -350,6 +369,7 @@ class Stepper:
             self._note_passes(equilibrium)
         state = rearm(self.model, equilibrium.state)
         self.accepted = replace(equilibrium, state=state)
+        self.orientation = equilibrium.orientation[1] or self.orientation
         self.history = [*self.history[1 - self.memory :], state]
         self.margins = self._measure(self.accepted)
         self.guard = self._guard()

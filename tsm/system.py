@@ -91,6 +91,27 @@ class Linearisation:
         return self.assemble()
 
 
+class Solved(NamedTuple):
+    """Solutions of the linear system.
+
+    Attributes
+    ----------
+    x : ndarray, shape (equations + contact unknowns, n)
+        One column for the residual, one for every right-hand side besides.
+    orientation : int
+        Sign of the tangent's determinant.
+    """
+
+    x: Array
+    orientation: int
+
+
+def _orientation(diagonal: Array, pivots: Array) -> int:
+    """Sign of a determinant from its LU factors."""
+    odd = int((diagonal < 0).sum()) + int((pivots != np.arange(len(pivots))).sum())
+    return -1 if odd % 2 else 1
+
+
 class Assembler:
     """Scatter maps of a model, made once."""
 
@@ -277,8 +298,8 @@ class Assembler:
         corner[: model.border_dofs] = right[own]
         corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, own]
 
-    def solve(self, system: Linearisation, *more: Array) -> Array | None:
-        """Solutions of the linear system, None if the tangent is singular.
+    def solve(self, system: Linearisation, *more: Array) -> Solved | None:
+        """Solve the linear system, None if the tangent is singular.
 
         Parameters
         ----------
@@ -286,10 +307,6 @@ class Assembler:
             Its tangent's band is overwritten.
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
-
-        Returns
-        -------
-        ndarray, shape (equations + contact unknowns, 1 + len(more))
         """
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
@@ -299,16 +316,18 @@ class Assembler:
         given = np.stack([-residual, *more], axis=1)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
-        _, _, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_ab=True, overwrite_b=True)
+        lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_ab=True, overwrite_b=True)
         if info != 0:
             return None
+        orientation = _orientation(lu[2 * self.k], pivots)
         if not border:
-            return np.asarray(X)
+            return Solved(X, orientation)
         reduced = tangent.below[:, :banded] @ X
-        _, _, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
+        lu, pivots, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
         if info != 0:
             return None
-        return np.concatenate([X[:, :count] - X[:, count:] @ z, z])
+        x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
+        return Solved(x, orientation * _orientation(lu.diagonal(), pivots))
 
 
 class _Border:

@@ -169,7 +169,7 @@ def test_unbalanced():
 
     def leaking(*arguments):
         found = solve(*arguments)
-        return replace(found, system=found.system._replace(nodal=1.001 * found.system.nodal))
+        return replace(found, system=replace(found.system, nodal=1.001 * found.system.nodal))
 
     stepper.newton.solve = leaking
     assert list(stepper.march(TENTHS))[-1].status is Status.UNBALANCED
