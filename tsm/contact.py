@@ -9,6 +9,7 @@ of a kink, where none does, and on the concave side, where two do, it is the nea
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -49,18 +50,25 @@ def arc_position(model: Model, target: BeamModel, element: int, xi: float) -> fl
     return float((element - target.first + xi) * model.element[element].l0)
 
 
-def owner_at(model: Model, target: BeamModel, arc: float) -> tuple[int, float]:
-    """Element and position in it of an arc position; the end elements own what lies beyond."""
-    along = arc / model.element[target.first].l0
-    local = min(max(math.floor(along), 0), target.beam.elements - 1) if math.isfinite(along) else 0
-    return target.first + local, along - local
-
-
 def slide(target: BeamModel, element: int, xi: float) -> tuple[int, float]:
     """Hand a position that left its element over to the neighbour."""
     steps = math.floor(xi) if math.isfinite(xi) and not 0.0 <= xi <= 1.0 else 0
     owner = min(max(element + steps, target.first), target.last)
     return owner, xi - (owner - element)
+
+
+def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
+    """State with moved contacts; those that left their element belong to the neighbour."""
+    owned: list[Touch | None] = []
+    for pair, touch in zip(model.pairs, touches, strict=True):
+        if touch is None:
+            owned.append(None)
+            continue
+        element, xi = slide(pair.target, touch.element, touch.xi)
+        owned.append(touch if element == touch.element else replace(touch, element=element, xi=xi))
+    if model.rods is None:
+        return replace(state, touches=tuple(owned))
+    return model.rods.recut(replace(state, touches=touches), tuple(owned))
 
 
 def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:

@@ -7,6 +7,8 @@ through its contact needs no guard: its force and position are unknowns that the
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tsm.elements import beam
@@ -43,7 +45,10 @@ class PathGuard:
         if self.rates is not None:
             q[model.free] = self.rates[: model.equations]
         self.q_rate = q
-        at = self._internal_force(state.q + 1e-60j * q)
+        own = np.zeros(model.contact_unknowns)
+        if self.rates is not None:
+            own = self.rates[model.equations :]
+        at = self._internal_force(state, 1e-60j * q, 1e-60j * own)
         self.force, self.force_rate = at.real, at.imag / 1e-60
         self.force_scale = FORCE * (model.force_scale + np.abs(self.force).max())
 
@@ -75,14 +80,30 @@ class PathGuard:
         model = self.newton.model
         step = found.load_parameter - self.state.load_parameter
         miss = (found.q - self.state.q - step * self.q_rate)[model.free] * self.newton.per_limit
-        force = self._internal_force(found.q) - self.force - step * self.force_rate
+        force = self._internal_force(found) - self.force - step * self.force_rate
         return bool(np.abs(miss).max(initial=0.0) <= SHORT / 2 and np.abs(force).max() <= self.force_scale)
 
-    def _internal_force(self, q: Array) -> Array:
-        """Axial forces along chords, and both components of the exact elements' forces."""
+    def _internal_force(self, state: State, dq: Any = 0.0, own: Array | None = None) -> Array:
+        """Axial forces along chords, and mean forces (x, y) of the exact elements, which no passing contact makes jump.
+
+        Parameters
+        ----------
+        state : State
+            Where.
+        dq, own : ndarray, optional
+            Added to displacements and contact unknowns.
+        """
         model = self.newton.model
-        force: Array = q[model.exact_dofs[3:5]].ravel()
-        if model.coefficients:
-            axial = beam.axial_force(model.coefficients, q[model.dofs[:, model.closed]])
-            force = np.concatenate([axial, force])
-        return force
+        q = state.q + dq
+        own = np.zeros(model.contact_unknowns) if own is None else own
+        force: Array = q[model.exact_dofs[3:5]]
+        for pair, touch in zip(model.pairs, state.touches, strict=True):
+            if touch is not None and pair.cuts:
+                x, y, arc, _ = own[pair.slots]
+                behind = 1 - touch.xi - arc / model.element[touch.element].l0
+                force[0, model.place[touch.element]] -= behind * (touch.force[0] + x)
+                force[1, model.place[touch.element]] -= behind * (touch.force[1] + y)
+        if model.coefficients is None:
+            return force.ravel()
+        axial = beam.axial_force(model.coefficients, q[model.dofs[:, model.closed]])
+        return np.concatenate([axial, force.ravel()])

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.contact import chord_owner, slide
+from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
-from tsm.model import Model, PairModel
+from tsm.model import Model
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
@@ -248,7 +248,7 @@ class Newton:
             self._moved(k, moved, touch, own) if touch is not None else None
             for k, touch in enumerate(state.touches)
         )
-        return self._handed_over(moved, touches)
+        return handed_over(model, moved, touches)
 
     def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
         pair = self.model.pairs[k]
@@ -261,20 +261,6 @@ class Newton:
             force=(touch.force[0] + dFx, touch.force[1] + dFy),
             angle=touch.angle + sum(turned),
         )
-
-    def _handed_over(self, state: State, touches: tuple[Touch | None, ...]) -> State:
-        """State with moved contacts; those that left their element belong to the neighbour."""
-        own = tuple(
-            touch if touch is None else self._owned(pair, touch)
-            for pair, touch in zip(self.model.pairs, touches, strict=True)
-        )
-        if self.model.rods is None:
-            return replace(state, touches=own)
-        return self.model.rods.recut(replace(state, touches=touches), own)
-
-    def _owned(self, pair: PairModel, touch: Touch) -> Touch:
-        element, xi = slide(pair.target, touch.element, touch.xi)
-        return touch if element == touch.element else replace(touch, element=element, xi=xi)
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:

@@ -4,42 +4,46 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
-import numpy as np
-
-from tsm.contact import arc_position, owner_at
+from tsm.contact import arc_position, handed_over
 from tsm.contact_set import owned
-from tsm.model import Model
+from tsm.model import Model, PairModel
 from tsm.state import State, Touch
 
 
 def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
+    if model.rods:
+        history = model.rods.alike(history)
     at = [state.load_parameter for state in history]
     weights = [
         math.prod((t - other) / (own - other) for k, other in enumerate(at) if k != n)
         for n, own in enumerate(at)
     ]
-    q = sum((w * state.q for w, state in zip(weights, history, strict=True)), np.zeros(model.dof_count))
     last = history[-1]
+    moved = replace(last, load_parameter=t, q=_sum(weights, [state.q for state in history]))
+    if last.profile:
+        angle = _sum(weights, [state.profile.angle for state in history if state.profile])
+        moved = replace(moved, profile=replace(last.profile, angle=angle))
     touches: list[Touch | None] = []
     for k, pair in enumerate(model.pairs):
         trail = [state.touches[k] for state in history]
         known = [touch for touch in trail if touch is not None]
-        if len(known) < len(trail):
-            touches.append(None)
-            continue
-        arc = sum(
-            w * arc_position(model, pair.target, touch.element, touch.xi)
-            for w, touch in zip(weights, known, strict=True)
-        )
-        element, xi = owner_at(model, pair.target, arc)
-        force = tuple(
-            sum(w * touch.force[c] for w, touch in zip(weights, known, strict=True)) for c in range(2)
-        )
-        angle = sum(w * touch.angle for w, touch in zip(weights, known, strict=True))
-        touches.append(Touch(element=element, xi=xi, force=(force[0], force[1]), angle=angle))
-    moved = replace(last, load_parameter=t, q=q)
-    if model.rods is None:
-        return owned(model, replace(moved, touches=tuple(touches)))
-    return owned(model, model.rods.extrapolated(history, weights, moved, tuple(touches)))
+        touches.append(_touch(model, pair, weights, known) if len(known) == len(trail) else None)
+    return owned(model, handed_over(model, moved, tuple(touches)))
+
+
+def _touch(model: Model, pair: PairModel, weights: list[float], trail: list[Touch]) -> Touch:
+    """Extrapolated contact, on the element that owned it last."""
+    last = trail[-1]
+    arc = _sum(weights, [arc_position(model, pair.target, touch.element, touch.xi) for touch in trail])
+    xi = arc / model.element[last.element].l0 - (last.element - pair.target.first)
+    x, y = (_sum(weights, [touch.force[c] for touch in trail]) for c in range(2))
+    return Touch(
+        element=last.element, xi=xi, force=(x, y), angle=_sum(weights, [touch.angle for touch in trail])
+    )
+
+
+def _sum(weights: list[float], values: list[Any]) -> Any:
+    return sum(weight * value for weight, value in zip(weights, values, strict=True))

@@ -466,31 +466,35 @@ class Rods:
         cuts = self.cuts(touches)
         if cuts == _profile(state).cuts:
             return replace(state, touches=touches)
-        shape, given = self.shape(state), list(touches)
+        shape, given, q = self.shape(state), list(touches), state.q.copy()
         for element, pairs in cuts:
             for k in pairs:
-                touch = touches[k]
-                if state.touches[k] is None and touch is not None:
+                old, touch = state.touches[k], _touched(touches[k])
+                if old is None:
                     angle = shape.at(element, np.array([touch.xi * self.length[element]])).angle[0]
                     given[k] = replace(touch, angle=float(angle))
-        return self.sampled(shape, replace(state, touches=tuple(given)), cuts, _profile(state).angle.shape[1])
+                else:
+                    self._shift(q, old.element, touch)
+        cut = replace(state, q=q, touches=tuple(given))
+        return self.sampled(shape, cut, cuts, _profile(state).angle.shape[1])
 
-    def extrapolated(
-        self, history: list[State], weights: list[float], state: State, touches: tuple[Touch | None, ...]
-    ) -> State:
-        """State with other touches whose angles inside are a weighted sum of earlier ones, where all are cut alike."""
-        cuts, order = self.cuts(touches), _profile(state).angle.shape[1]
-        if any(_profile(earlier).cuts != cuts for earlier in history):
-            return self.recut(history[-1], touches)
-        angle = np.zeros((len(layout(len(self.length), cuts).owner), order))
-        for weight, earlier in zip(weights, history, strict=True):
-            angle += weight * _profile(earlier).angle
-        return replace(state, touches=touches, profile=Profile(cuts=cuts, angle=angle))
+    def _shift(self, q: Array, before: int, touch: Touch) -> None:
+        """Add the force of a contact that passed to another element to the starts that now lie before it, or take it away."""
+        first, last = sorted((before, touch.element))
+        sign = 1 if touch.element > before else -1
+        for element in range(first + 1, last + 1):
+            q[self.dofs[3:5, self.model.place[element]]] += sign * np.array(touch.force)
 
     def alike(self, history: list[State]) -> list[State]:
-        """States with as many Gauss nodes as the last of them."""
-        order = _profile(history[-1]).angle.shape[1]
-        return [h if _profile(h).angle.shape[1] == order else self.resampled(h, order) for h in history]
+        """The latest states that are cut alike, with as many Gauss nodes as the last."""
+        cuts, order = _profile(history[-1]).cuts, _profile(history[-1]).angle.shape[1]
+        found: list[State] = []
+        for state in reversed(history):
+            if _profile(state).cuts != cuts:
+                break
+            same = _profile(state).angle.shape[1] == order
+            found.insert(0, state if same else self.resampled(state, order))
+        return found
 
     def sampled(self, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
         """State whose angles inside are taken from a shape."""
@@ -601,6 +605,9 @@ def _profile(state: State) -> Profile:
 
 
 def _touch(state: State, k: int) -> Touch:
-    touch = state.touches[k]
+    return _touched(state.touches[k])
+
+
+def _touched(touch: Touch | None) -> Touch:
     assert touch is not None, "a cut is a closed contact"
     return touch

@@ -172,8 +172,6 @@ class Stepper:
         else:
             starts = [replace(self.history[-1], load_parameter=t)]
             if len(self.history) > 1:
-                if self.model.rods:
-                    self.history = self.model.rods.alike(self.history)
                 starts.insert(0, extrapolate(self.model, self.history, t))
         for start in starts:
             equilibrium = self.newton.solve(start)
@@ -370,7 +368,8 @@ class Stepper:
         state = rearm(self.model, equilibrium.state)
         self.accepted = replace(equilibrium, state=state)
         self.orientation = equilibrium.orientation[1] or self.orientation
-        self.history = [*self.history[1 - self.memory :], state]
+        earlier = [old for old in self.history if old.load_parameter < state.load_parameter]
+        self.history = [*earlier[1 - self.memory :], state]
         self.margins = self._measure(self.accepted)
         self.guard = self._guard()
 

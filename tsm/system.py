@@ -87,7 +87,7 @@ class Linearisation:
 
     @cached_property
     def tangent(self) -> Bordered:
-        """Tangent at the configuration; its band is lost once it is solved with."""
+        """Tangent at the configuration."""
         return self.assemble()
 
 
@@ -304,7 +304,7 @@ class Assembler:
         Parameters
         ----------
         system : Linearisation
-            Its tangent's band is overwritten.
+            Residual and tangent.
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
         """
@@ -316,9 +316,9 @@ class Assembler:
         given = np.stack([-residual, *more], axis=1)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
-        lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_ab=True, overwrite_b=True)
+        lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
         if info != 0:
-            return None
+            return self._solve_whole(tangent, given) if border else None
         orientation = _orientation(lu[2 * self.k], pivots)
         if not border:
             return Solved(X, orientation)
@@ -328,6 +328,36 @@ class Assembler:
             return None
         x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
         return Solved(x, orientation * _orientation(lu.diagonal(), pivots))
+
+    def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
+        """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
+        from scipy.sparse import block_array, coo_array
+        from scipy.sparse.linalg import splu
+
+        banded = self.model.banded
+        columns, entries = np.nonzero(tangent.band)
+        rows = columns + entries - 2 * self.k
+        band = coo_array((tangent.band[columns, entries], (rows, columns)), shape=(banded, banded))
+        right, below = coo_array(tangent.right[:banded]), coo_array(tangent.below[:, :banded])
+        try:
+            lu = splu(block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc"))
+        except RuntimeError:
+            return None
+        odd = (int((lu.U.diagonal() < 0).sum()) + _swaps(lu.perm_r) + _swaps(lu.perm_c)) % 2
+        return Solved(lu.solve(given), -1 if odd else 1)
+
+
+def _swaps(permutation: Array) -> int:
+    """Number of swaps that make up a permutation."""
+    seen, cycles = np.zeros(len(permutation), dtype=bool), 0
+    for start in range(len(permutation)):
+        if not seen[start]:
+            cycles += 1
+            at = start
+            while not seen[at]:
+                seen[at] = True
+                at = permutation[at]
+    return len(permutation) - cycles
 
 
 class _Border:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tsm
-from tsm.contact import Projection, nearest_chord, owner_at, project, slide
+from tsm.contact import Projection, nearest_chord, project, slide
 from tsm.model import Model
 
 SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
@@ -177,9 +177,6 @@ def test_two_pins_on_one_beam():
 def test_owner_of_a_position():
     model = Model(cantilever(((0.8, 0.0), (0.8, 0.1))))
     beam = model.beams["b"]
-    assert owner_at(model, beam, 0.25) == (2, pytest.approx(0.5))
-    assert owner_at(model, beam, 1.05) == (9, pytest.approx(1.5))
-    assert owner_at(model, beam, -0.05) == (0, pytest.approx(-0.5))
     assert slide(beam, 4, 1.25) == (5, pytest.approx(0.25))
     assert slide(beam, 4, -2.25) == (1, pytest.approx(0.75))
     assert slide(beam, 4, 1.0) == (4, 1.0)
