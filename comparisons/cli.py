@@ -54,6 +54,12 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument("--model", required=True, choices=OPTIONS)
     solve.add_argument("--elements", type=_count, metavar="N", help="tsm: elements of every beam")
     solve.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
+    solve.add_argument(
+        "--tolerance",
+        type=_part,
+        metavar="X",
+        help="tsm: error allowed to the integration inside exact elements (1e-9)",
+    )
     solve.add_argument("--mesh", type=_mesh, metavar="NXxNY", help="solid: elements along and across")
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")
@@ -99,6 +105,16 @@ def _count(text: str) -> int:
         raise argparse.ArgumentTypeError(f"{text}: {error}") from None
 
 
+def _part(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError(f"{text}: must lie between 0 and 1")
+    return value
+
+
 def _mesh(text: str) -> tuple[int, int]:
     along, separator, across = text.partition("x")
     if not separator:
@@ -120,9 +136,10 @@ def _solve(given: argparse.Namespace) -> int:
     from comparisons.models import solve
     from comparisons.statement import as_json, summary
 
-    response = solve(
-        scene, given.model, Options(elements=given.elements, element=given.element, mesh=given.mesh)
+    options = Options(
+        elements=given.elements, element=given.element, tolerance=given.tolerance, mesh=given.mesh
     )
+    response = solve(scene, given.model, options)
     if given.json == "-":
         sys.stdout.write(as_json(response))
     elif file is not None:

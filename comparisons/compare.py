@@ -32,7 +32,7 @@ class Run:
 
 
 def _tsm(element: str, elements: int) -> Run:
-    label = f"TSM {element}, {elements} elements"
+    label = f"TSM {element}, {elements} element{'s' if elements > 1 else ''}"
     return Run(label=label, model="tsm", options=Options(element=element, elements=elements))
 
 
@@ -43,7 +43,7 @@ MIXED = _tsm("mixed", 20)
 SOLID = Run(label="solid", model="solid", options=Options())
 ROD = Run(label="exact rod", model="rod", options=Options())
 ELASTICA = Run(label="elastica", model="elastica", options=Options())
-RUNS = (*PAPER, _tsm("mixed", 10), MIXED, SOLID, ELASTICA, ROD)
+RUNS = (*PAPER, _tsm("mixed", 10), MIXED, _tsm("exact", 1), SOLID, ELASTICA, ROD)
 
 
 @dataclass(frozen=True, kw_only=True)

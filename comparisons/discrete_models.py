@@ -6,19 +6,30 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.options import Options
+from comparisons.options import ModelError, Options
 from comparisons.response import Array, ContactEvent, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene, SupportSpec
 from comparisons.translate import to_solid, to_structure
 
 
 def solve_tsm(scene: Scene, options: Options) -> Response:
-    """Solve `scene` by the tangent stiffness method."""
+    """Solve `scene` by the tangent stiffness method.
+
+    Raises
+    ------
+    ModelError
+        If a tolerance is given and the elements are not exact.
+    """
     import tsm
 
     structure = to_structure(scene, elements=options.elements, element=options.element)
+    settings = tsm.Settings()
+    if options.tolerance is not None:
+        if options.element != "exact":
+            raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
+        settings = tsm.Settings(accuracy=options.tolerance)
     try:
-        result = tsm.solve(structure, np.array(scene.times))
+        result = tsm.solve(structure, np.array(scene.times), settings)
     except tsm.SolveError as error:
         result = error.result
 

@@ -17,17 +17,20 @@ class Options:
         TSM elements of every beam.
     element : str, optional
         Type of the TSM elements.
+    tolerance : float, optional
+        Bound on the error of the integration inside exact TSM elements.
     mesh : (int, int), optional
         Elements of the solid along and across.
     """
 
     elements: int | None = None
     element: str | None = None
+    tolerance: float | None = None
     mesh: tuple[int, int] | None = None
 
 
 OPTIONS: dict[str, tuple[str, ...]] = {
-    "tsm": ("elements", "element"),
+    "tsm": ("elements", "element", "tolerance"),
     "solid": ("mesh",),
     "rod": (),
     "elastica": (),

@@ -32,10 +32,10 @@ class Settings:
     max_chatter: int = 6
 
     def __post_init__(self) -> None:
-        for field in ("tolerance", "accuracy", "smallest_step"):
+        for field, least in (("tolerance", 0.0), ("accuracy", 1e-14), ("smallest_step", 0.0)):
             value = getattr(self, field)
-            if not (math.isfinite(value) and 0 < value < 1):
-                raise ValueError(f"Settings.{field} = {value!r}: must lie between 0 and 1")
+            if not (math.isfinite(value) and least < value < 1):
+                raise ValueError(f"Settings.{field} = {value!r}: must lie between {least:g} and 1")
         for field in ("max_iterations", "max_chatter"):
             value = getattr(self, field)
             if value < 1:

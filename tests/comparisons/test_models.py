@@ -12,6 +12,7 @@ from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 KS = load_scene("ks-cantilever")
 SHORT = replace(KS, load_parameters=8)
 PAIR = "pin->cantilever"
+EXACT = Options(element="exact")
 
 
 def coarse(model: str) -> Options:
@@ -64,9 +65,11 @@ def test_response_moves_with_the_scene(model: str, mirrored: bool, from_end: boo
     assert there.tips["cantilever"] == pytest.approx(tips, abs=1e-7)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_axis_line_and_grid_agree_with_tip_and_contact(model: str) -> None:
-    response = solve(SHORT, model, coarse(model))
+@pytest.mark.parametrize(
+    ("model", "options"), [*((model, coarse(model)) for model in MODELS), ("tsm", EXACT)]
+)
+def test_axis_line_and_grid_agree_with_tip_and_contact(model: str, options: Options) -> None:
+    response = solve(SHORT, model, options)
     for k in (0, 7):
         arc, line = response.axis_line("cantilever", k)
         assert arc[0] == 0.0
@@ -93,8 +96,9 @@ def test_rod_and_elastica_give_the_values_of_theory() -> None:
     assert elastica.supports["cantilever"].moment[-1] == pytest.approx(-np.pi * 2.8e-4, rel=1e-12)
 
 
-def test_tsm_section_forces_balance_the_clamp() -> None:
-    response = solve(SHORT, "tsm", Options(elements=10))
+@pytest.mark.parametrize("options", [Options(elements=10), EXACT])
+def test_tsm_section_forces_balance_the_clamp(options: Options) -> None:
+    response = solve(SHORT, "tsm", options)
     data, support = response.grid(7).point_data, response.supports["cantilever"]
     assert data["M"][0] == pytest.approx(-support.moment[7], rel=1e-6)
     assert np.hypot(data["N"][0], data["V"][0]) == pytest.approx(np.hypot(*support.force[7]), rel=1e-6)
@@ -111,6 +115,16 @@ def test_slip_off_leaves_a_straight_beam(model: str) -> None:
     assert list(contact.force[-3:]) == pytest.approx([0.0, 0.0, 0.0])
     assert np.all(np.isnan(contact.arc_position[-3:]))
     assert response.tips["cantilever"][-1] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
+def test_exact_section_forces_jump_by_the_contact_force() -> None:
+    response = solve(SHORT, "tsm", EXACT)
+    data = response.grid(7).point_data
+    contact = response.contacts[PAIR]
+    before = np.flatnonzero(data["arc"] < contact.arc_position[7] - 1e-12)[-1]
+    assert np.hypot(data["N"][before], data["V"][before]) == pytest.approx(contact.force[7], rel=1e-9)
+    assert np.abs(data["M"][before + 1 :]).max() <= 1e-9 * np.abs(data["M"]).max()
+    assert np.abs(data["V"][before + 3 :]).max() <= 1e-9 * contact.force[7]
 
 
 def test_solid_names_why_it_stopped() -> None:
