@@ -515,19 +515,25 @@ class Rods:
         Inside, a polynomial of p Gauss nodes has order p, at the ends 2p; so it is computed anew with 2p nodes between the same ends.
         """
         if self._last is None or self._last[0] is not state:
-            entry, finer = self.enter(state), state
-            rough = math.sqrt(self.truncation(entry)) > _SMOOTH
-            if rough:
-                finer = self.resampled(state, 2 * _profile(state).angle.shape[1])
-            for _ in range(5 if rough else 0):
-                entry, profile = self.enter(finer), _profile(finer)
-                arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
-                if np.abs(arrival.inside).max() < _SMOOTH:
-                    break
-                inner = rod.condense(entry.at, entry.of, arrival, entry.moment).inner
-                finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
-            self._last = state, self._plain_shape(finer, entry)
+            entry = self.enter(state)
+            if math.sqrt(self.truncation(entry)) > _SMOOTH:
+                entry = self._finer_inside(state)
+            self._last = state, self._plain_shape(state, entry)
         return self._last[1]
+
+    def _finer_inside(self, state: State) -> Entry:
+        """Segments between the same ends, with twice the Gauss nodes."""
+        finer = self.resampled(state, 2 * _profile(state).angle.shape[1])
+        entry = self.enter(finer)
+        for _ in range(5):
+            arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+            if np.abs(arrival.inside).max() < _SMOOTH:
+                break
+            inner = rod.condense(entry.at, entry.of, arrival, entry.moment).inner
+            profile = _profile(finer)
+            finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
+            entry = self.enter(finer)
+        return entry
 
     def finer(self, state: State, balance: RodBalance, accuracy: float) -> State | None:
         """State with more Gauss nodes, None where the error estimate of `truncation` is small enough."""

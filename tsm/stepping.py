@@ -121,7 +121,13 @@ class Stepper:
 
     def _verdict(self) -> Status:
         """Why no step goes on from here, as precisely as it can be told."""
-        told = {Status.NOT_FINITE, Status.SINGULAR_TANGENT, Status.TWO_CONTACTS, Status.PING_PONG}
+        told = {
+            Status.NOT_FINITE,
+            Status.SINGULAR_TANGENT,
+            Status.INACCURATE,
+            Status.TWO_CONTACTS,
+            Status.PING_PONG,
+        }
         if self.failure in told or self.settings.smallest_step > 0.5:
             return self.failure
         speed = PathGuard(self.newton, self.accepted.state).speed
