@@ -13,7 +13,7 @@ from tsm.model import Model
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
-from tsm.system import Assembler, Linearisation
+from tsm.system import Assembler, Linearisation, Solved
 
 _ROUND_OFF = 4 * float(np.finfo(float).eps)
 _SHARP = 1e-3
@@ -116,7 +116,7 @@ class Newton:
         state = start
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        orientation = (0, 0)
+        solved: list[Solved] = []
         taken: _Taken | None = None
         for iteration in range(self.max_iterations + 1):
             system = self.assembler.linearise(state, load)
@@ -141,9 +141,9 @@ class Newton:
                     iterations=iteration,
                     residuals=tuple(residuals),
                     system=system,
-                    orientation=orientation,
+                    orientation=(solved[0].orientation, solved[1].orientation) if solved else (0, 0),
                 )
-            orientation = (orientation[0] or step.orientation, step.orientation)
+            solved = [solved[0] if solved else step, step]
             dx = step.x[:, 0]
             if self.model.rods:
                 taken = _Taken(state, system, dx, residual, 1.0)

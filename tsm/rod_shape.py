@@ -87,15 +87,22 @@ class RodShape:
     def at(self, element: int, arc: Array) -> Station:
         """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
         first, last = int(self.first[element]), int(self.last[element])
-        segment = first + np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
-        length = self.length[segment]
-        sigma = np.divide(arc - self.arc[segment], length, out=np.zeros(len(arc)), where=length != 0)
-        return self.within(segment, sigma)
+        within = np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        if (within == within[0]).all():
+            segment = first + int(within[0])
+            length = self.length[segment]
+            sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
+            return self.within(segment, sigma)
+        parts = [self.at(element, arc[within == n]) for n in range(last - first + 1) if n in within]
+        found = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
+        for n, part in zip(np.unique(within), parts, strict=True):
+            for whole, value in zip(found, part, strict=True):
+                whole[within == n] = value
+        return found
 
-    def within(self, segment: Array | int, sigma: Array) -> Station:
-        """Stations at parts sigma (m,) of segments: one, or one for each."""
-        segment = np.broadcast_to(segment, sigma.shape)
-        x, y, angle, moment = np.einsum(
-            "mp,imp->im", interpolation(self.order, sigma), self.values[:, segment]
-        )
-        return Station(np.stack([x, y], axis=1), angle, moment, self.force[:, segment].T)
+    def within(self, segment: int, sigma: Array) -> Station:
+        """Stations at parts sigma (m,) of a segment."""
+        x, y, angle, moment = self.values[:, segment] @ interpolation(self.order, sigma).T
+        force = np.empty((len(sigma), 2))
+        force[:] = self.force[:, segment]
+        return Station(np.array([x, y]).T, angle, moment, force)

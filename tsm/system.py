@@ -53,7 +53,7 @@ class Bordered(NamedTuple):
     rods: RodTangent | None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False)
 class Linearisation:
     """Residual at a configuration, and its tangent when it is asked for.
 
@@ -98,18 +98,21 @@ class Solved(NamedTuple):
     ----------
     x : ndarray, shape (equations + contact unknowns, n)
         One column for the residual, one for every right-hand side besides.
-    orientation : int
-        Sign of the tangent's determinant.
+    factors : tuple of (ndarray, ndarray)
+        Diagonals of the triangular factors with their row exchanges.
     """
 
     x: Array
-    orientation: int
+    factors: tuple[tuple[Array, Array], ...]
 
-
-def _orientation(diagonal: Array, pivots: Array) -> int:
-    """Sign of a determinant from its LU factors."""
-    odd = int((diagonal < 0).sum()) + int((pivots != np.arange(len(pivots))).sum())
-    return -1 if odd % 2 else 1
+    @property
+    def orientation(self) -> int:
+        """Sign of the tangent's determinant."""
+        odd = sum(
+            int(np.count_nonzero(diagonal < 0) + np.count_nonzero(pivots != np.arange(len(pivots))))
+            for diagonal, pivots in self.factors
+        )
+        return -1 if odd % 2 else 1
 
 
 class Assembler:
@@ -192,9 +195,10 @@ class Assembler:
     def _closed_form(self, state: State, border: _Border) -> tuple[Array, Array]:
         """Forces (6, c) and tangents (36, c) of the elements in closed form; their contacts enter the border."""
         model = self.model
-        force, tangent = np.empty((6, 0)), np.empty((36, 0))
         if model.coefficients:
             force, tangent = beam.response(model.coefficients, state.q[self.nodal_dofs])
+        else:
+            force, tangent = np.empty((6, 0)), np.empty((36, 0))
         for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
             if touch is None:
                 border.leave_open(pair)
@@ -319,15 +323,15 @@ class Assembler:
         lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
         if info != 0:
             return self._solve_whole(tangent, given) if border else None
-        orientation = _orientation(lu[2 * self.k], pivots)
+        factors = (lu[2 * self.k], pivots)
         if not border:
-            return Solved(X, orientation)
+            return Solved(X, (factors,))
         reduced = tangent.below[:, :banded] @ X
         lu, pivots, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
         if info != 0:
             return None
         x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
-        return Solved(x, orientation * _orientation(lu.diagonal(), pivots))
+        return Solved(x, (factors, (lu.diagonal(), pivots)))
 
     def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
         """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
@@ -343,21 +347,18 @@ class Assembler:
             lu = splu(block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc"))
         except RuntimeError:
             return None
-        odd = (int((lu.U.diagonal() < 0).sum()) + _swaps(lu.perm_r) + _swaps(lu.perm_c)) % 2
-        return Solved(lu.solve(given), -1 if odd else 1)
+        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
+        return Solved(lu.solve(given), ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
 
 
-def _swaps(permutation: Array) -> int:
-    """Number of swaps that make up a permutation."""
-    seen, cycles = np.zeros(len(permutation), dtype=bool), 0
-    for start in range(len(permutation)):
-        if not seen[start]:
-            cycles += 1
-            at = start
-            while not seen[at]:
-                seen[at] = True
-                at = permutation[at]
-    return len(permutation) - cycles
+def _exchanges(order: Array) -> Array:
+    """Row exchanges, as LAPACK states them, that bring 0, 1, ... into an order."""
+    at, exchanges = np.arange(len(order)), np.arange(len(order))
+    for row, value in enumerate(order):
+        other = row + int(np.flatnonzero(at[row:] == value)[0])
+        exchanges[row] = other
+        at[[row, other]] = at[[other, row]]
+    return exchanges
 
 
 class _Border:

@@ -26,8 +26,6 @@ class Collocation(NamedTuple):
         ``once @ once``, less half of what makes it vanish at the far end: see `rod`.
     legendre : ndarray, shape (p, p)
         ``legendre @ f``: coefficients of the polynomial over the Legendre polynomials.
-    linear : ndarray, shape (p, 3)
-        1, 1 and c/2.
     stations, barycentric : ndarray, shape (p + 1,)
         0 and the Gauss nodes, with their barycentric weights (Berrut and Trefethen 2004).
     """
@@ -38,7 +36,6 @@ class Collocation(NamedTuple):
     ends: Array
     twice: Array
     legendre: Array
-    linear: Array
     stations: Array
     barycentric: Array
 
@@ -73,7 +70,6 @@ def collocation(order: int) -> Collocation:
         ends=np.stack([w, far], axis=1),
         twice=once @ once - np.outer(c, far) / 2,
         legendre=to_legendre,
-        linear=np.stack([np.ones(order), np.ones(order), c / 2], axis=1),
         stations=stations,
         barycentric=barycentric / np.abs(barycentric).max(),
     )
@@ -83,9 +79,10 @@ def interpolation(order: int, x: Array) -> Array:
     """Matrix that takes values at the stations to the points x (m,) of the polynomial through them, shape (m, p + 1)."""
     table = collocation(order)
     apart = x[:, None] - table.stations
-    hit = apart == 0
-    found: Array = table.barycentric / np.where(hit, 1.0, apart)
+    if not apart.all():
+        hit = apart == 0
+        apart[hit.any(axis=1)] = np.inf
+        apart[hit] = 1.0
+    found: Array = table.barycentric / apart
     found /= found.sum(axis=1, keepdims=True)
-    on = hit.any(axis=1)
-    found[on] = hit[on]
     return found

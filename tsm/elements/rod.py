@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements.collocation import Collocation, collocation
+from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array, cosine, sine
 
 INPUTS = 7
@@ -159,62 +159,63 @@ def condense(at: Segments, of: Field, found: Arrival, moment: Array) -> Condense
     by_bend = h * bend
     by_square = by_bend * h
     slope = of.N * of.turn - of.gq * of.q
+    gc = (at.flexibility.stretch - at.flexibility.shear) * of.c
+    # derivatives of r' by the angle (x, y) and, less what is constant, by the force (xx, xy)
     values = np.empty((4, *slope.shape), dtype=slope.dtype)
-    values[0] = -of.gq * of.c - of.turn * of.s
-    values[1] = of.turn * of.c - of.gq * of.s
-    values[2:] = (at.flexibility.stretch - at.flexibility.shear) * of.c * np.stack([of.c, of.s])
-    bent = values[:2] @ table.twice.T * -by_square
-    inner = _eliminate(table, -by_square * slope, bent, 2 * by_bend * found.bent, found.inside)
-    half = inner[:, :, 2]
-    inner[:, :, 0] -= half
-    inner[:, :, 1] = by_bend * half
-    inner[:, :, 5] += (bend * moment) * half
+    np.subtract(-of.gq * of.c, of.turn * of.s, out=values[0])
+    np.subtract(of.turn * of.c, of.gq * of.s, out=values[1])
+    np.multiply(gc, of.c, out=values[2])
+    np.multiply(gc, of.s, out=values[3])
+    inner = _eliminate(at, found, slope, values[:2], moment)
 
     weights = np.empty((len(h), 4, slope.shape[1]), dtype=slope.dtype)
-    weights[:, 0] = by_square * slope * table.ends[:, 1]
-    weights[:, 1] = h * slope * table.w
-    weights[:, 2:] = (values[:2] * (h * table.w)).transpose(1, 0, 2)
-    direct = _direct(at, of, (values @ table.ends).transpose(2, 1, 0), moment)
-    return Condensed(weights @ inner + direct, inner)
+    scaled = h * table.w
+    np.multiply(by_square * slope, table.ends[:, 1], out=weights[:, 0])
+    np.multiply(slope, scaled, out=weights[:, 1])
+    np.multiply(values[0], scaled, out=weights[:, 2])
+    np.multiply(values[1], scaled, out=weights[:, 3])
+    return Condensed(weights @ inner + _direct(at, of, values @ table.ends, moment), inner)
 
 
-def _eliminate(table: Collocation, slope: Array, turned: Array, longer: Array, inside: Array) -> Array:
-    """Solutions for the angles inside by 1, -, c/2, force x and y, length; and what removes their residual; (s, p, 7)."""
-    count, p = inside.shape
-    matrix = slope[:, None, :] * table.twice
+def _eliminate(at: Segments, found: Arrival, slope: Array, turned: Array, moment: Array) -> Array:
+    """Derivatives of the angles inside by the inputs, shape (s, p, 7)."""
+    table, h, bend = collocation(at.angle.shape[1]), at.length, at.flexibility.bend
+    count, p = at.angle.shape
+    by_bend = h * bend
+    by_square = by_bend * h
+    matrix = (-by_square * slope)[:, None, :] * table.twice
     matrix.reshape(count, -1)[:, :: p + 1] += 1
+    bent = turned @ table.twice.T * -by_square
+    half = table.c / 2
     right = np.empty((count, p, INPUTS), dtype=matrix.dtype)
-    right[:, :, :3] = table.linear
-    right[:, :, 3:5] = turned.transpose(1, 2, 0)
-    right[:, :, 5] = longer
-    right[:, :, 6] = -inside
+    right[:, :, 0] = 1 - half
+    right[:, :, 1] = by_bend * half
+    right[:, :, 2] = half
+    right[:, :, 3] = bent[0]
+    right[:, :, 4] = bent[1]
+    right[:, :, 5] = 2 * by_bend * found.bent + (bend * moment) * half
+    right[:, :, 6] = -found.inside
     solved: Array = np.linalg.solve(matrix, right)
     return solved
 
 
 def _direct(at: Segments, of: Field, sums: Array, moment: Array) -> Array:
     """Part of the transfer that does not pass through the angles inside, shape (s, 4, 7)."""
-    stretch, shear, bend = at.flexibility
-    h = at.length
+    stretch, shear, bend = (value[:, 0] for value in at.flexibility)
+    h = at.length[:, 0]
     by_bend = h * bend
-    (turned_x, turned_y, xx, xy), later = (h * sums[0]).T[:, :, None], sums[1] * (-h * by_bend)
-    total = of.sums[:, :, 0].T
-    entries = np.concatenate(
-        [
-            np.ones_like(h),
-            by_bend,
-            later[:, :2],
-            bend * moment + 2 * by_bend * of.sums[0, :, 1:],
-            -turned_x,
-            -turned_y,
-            h * shear + xx,
-            xy,
-            h * stretch - xx,
-            total,
-        ],
-        axis=1,
-    )
-    return (entries @ _DIRECT).reshape(-1, 4, INPUTS)
+    total, later = sums[:, :, 0] * h, sums[:2, :, 1] * (-h * by_bend)
+    entries = np.empty((13, len(h)), dtype=sums.dtype)
+    entries[0] = 1
+    entries[1] = by_bend
+    entries[2:4] = later
+    entries[4] = bend * moment[:, 0] + 2 * by_bend * of.sums[0, :, 1]
+    np.negative(total[:2], out=entries[5:7])
+    entries[7] = h * shear + total[2]
+    entries[8] = total[3]
+    entries[9] = h * stretch - total[2]
+    entries[10:] = of.sums[:, :, 0]
+    return (entries.T @ _DIRECT).reshape(-1, 4, INPUTS)
 
 
 class Tangent(NamedTuple):
