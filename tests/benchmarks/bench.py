@@ -42,8 +42,10 @@ class Gate:
         return f"{'met    ' if self.met else 'NOT MET'}  {self.name}: {self.value:.3g} (bar {relation} {self.bar:g})"
 
 
-def seconds(*actions: Callable[[], Any], repeats: int = 7) -> list[float]:
-    """Median seconds of each action, taken in turn so that a slow moment of the machine meets all of them."""
+def seconds(
+    *actions: Callable[[], Any], repeats: int = 7, of: Callable[[list[float]], float] = statistics.median
+) -> list[float]:
+    """Median or other seconds of each action, taken in turn so that a slow moment of the machine meets all of them."""
     for action in actions:
         action()
     taken: list[list[float]] = [[] for _ in actions]
@@ -52,7 +54,7 @@ def seconds(*actions: Callable[[], Any], repeats: int = 7) -> list[float]:
             begin = time.perf_counter()
             action()
             row.append(time.perf_counter() - begin)
-    return [statistics.median(row) for row in taken]
+    return [of(row) for row in taken]
 
 
 def beams_against_solid(gates: list[Gate], times: dict[str, float]) -> None:
@@ -103,21 +105,22 @@ def scenes_and_elements(gates: list[Gate], times: dict[str, float]) -> None:
     gates.append(Gate("mixed over timoshenko, seconds per iteration", mixed / paper, 1.3, False))
 
 
+def iterations(elements: int, **options: Any) -> Callable[[], None]:
+    """Action that does 20 iterations of KS at the load parameter 0.1."""
+    model = Model(to_structure(load_scene("ks-cantilever"), elements=elements, **options))
+    state = tsm.solve(model.structure, np.array([0.1])).equilibria[-1].state
+    assembler = Assembler(model)
+
+    def iterate() -> None:
+        for _ in range(20):
+            assembler.solve(assembler.linearise(state))
+
+    return iterate
+
+
 def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
     """Exponent of the cost of one iteration over the elements, largest chord from 200 to 2000."""
-    scene = load_scene("ks-cantilever")
-    actions = []
-    for elements in (200, 2000):
-        model = Model(to_structure(scene, elements=elements))
-        result = tsm.solve(model.structure, np.array([0.1]))
-        assembler, state = Assembler(model), result.equilibria[-1].state
-
-        def iterate(assembler: Assembler = assembler, state: Any = state) -> None:
-            for _ in range(20):
-                assembler.solve(assembler.linearise(state))
-
-        actions.append(iterate)
-    few, many = seconds(*actions)
+    few, many = seconds(*(iterations(elements) for elements in (200, 2000)))
     times |= {"20 iterations, 200 elements": few, "20 iterations, 2000 elements": many}
     gates.append(
         Gate(
@@ -127,6 +130,58 @@ def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
             False,
         )
     )
+
+
+def exact_element(gates: list[Gate], times: dict[str, float]) -> None:
+    """The exact element against `mixed`; the shortest of 15 repeats, which varies less than their median.
+
+    End states are timed eight in a row: a short action meets fewer slow moments than the long one that it is compared with.
+    """
+    from integrators import errors
+
+    ks, both = load_scene("ks-cantilever"), load_scene("double-beam")
+    t, depths = np.arange(1, 51) / 50, np.arange(1, both.load_parameters + 1) / both.load_parameters
+    exact, loose = to_structure(ks, elements=1, element="exact"), tsm.Settings(accuracy=1e-6)
+    assert max(errors(tsm.solve(exact, t))) <= 1e-8
+    assert max(errors(tsm.solve(exact, t, loose))) <= 1e-6
+    elements = next(
+        n for n in range(2, 100, 2) if max(errors(tsm.solve(to_structure(ks, elements=n), t))) <= 1e-6
+    )
+    ten, fine = to_structure(ks, elements=10), to_structure(ks, elements=elements)
+    path, end, path_loose, mixed, mixed_fine = seconds(
+        lambda: tsm.solve(exact, t),
+        lambda: [tsm.solve(exact, np.array([1.0])) for _ in range(8)],
+        lambda: tsm.solve(exact, t, loose),
+        lambda: tsm.solve(ten, t),
+        lambda: tsm.solve(fine, t),
+        repeats=15,
+        of=min,
+    )
+    times |= {
+        "tsm exact 1, 50 load parameters": path,
+        "tsm exact 1, end state alone, 8 times": end,
+        "tsm exact 1, accuracy 1e-6": path_loose,
+        "tsm mixed 10, 50 load parameters (shortest)": mixed,
+        f"tsm mixed {elements}, error 1e-6": mixed_fine,
+    }
+    gates.append(Gate("exact 1 over mixed 10, seconds", path / mixed, 2.5, False))
+    gates.append(Gate("exact 1, 50 load parameters over end state, seconds", 8 * path / end, 8, True))
+    gates.append(
+        Gate(f"mixed {elements} over exact 1 at error 1e-6, seconds", mixed_fine / path_loose, 1, True)
+    )
+
+    few, many = seconds(*(iterations(n, element="exact") for n in (100, 1000)), repeats=9, of=min)
+    times |= {"20 iterations, exact 100": few, "20 iterations, exact 1000": many}
+    exponent = float(np.log10(many / few))
+    gates.append(
+        Gate("exponent of the cost per iteration, exact, 100 to 1000 elements", exponent, 1.1, False)
+    )
+
+    one, two = to_structure(both, elements=1, element="exact"), to_structure(both, elements=10)
+    double, closed = seconds(
+        lambda: tsm.solve(one, depths), lambda: tsm.solve(two, depths), repeats=5, of=min
+    )
+    times |= {"tsm exact 1 + 1, double beam": double, "tsm mixed 10 + 10, double beam (shortest)": closed}
 
 
 def assembly(gates: list[Gate], times: dict[str, float]) -> None:
@@ -176,7 +231,14 @@ def main() -> None:
     out = parser.parse_args().out
     gates: list[Gate] = []
     times: dict[str, float] = {}
-    for part in (beams_against_solid, scenes_and_elements, linear_cost, assembly, import_time):
+    for part in (
+        beams_against_solid,
+        scenes_and_elements,
+        linear_cost,
+        exact_element,
+        assembly,
+        import_time,
+    ):
         part(gates, times)
     for gate in gates:
         print(gate)
