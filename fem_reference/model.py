@@ -8,7 +8,7 @@ from scipy.sparse import csc_matrix
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.assembly import Pattern, deformation_gradient, element_tangents, internal_force, pattern
 from fem_reference.contact import Curve, Projection, contact_curve, gap_derivatives, project
-from fem_reference.material import MATERIALS, Law, plane_stress_constants
+from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, discretise
 from fem_reference.problem import SolidProblem, Strip
 
@@ -23,8 +23,8 @@ class Model:
         What is modelled.
     mesh
         Its discretisation.
-    law, constants
-        Material law and its plane-stress constants ``(lam, mu)`` [Pa].
+    law
+        Material law.
     stiffness
         Pattern of the stiffness over the unclamped degrees of freedom, in order along the strip.
     curve
@@ -36,7 +36,6 @@ class Model:
     problem: SolidProblem
     mesh: Discretisation
     law: Law
-    constants: tuple[float, float]
     stiffness: Pattern
     curve: Curve
     clamped: int
@@ -82,12 +81,12 @@ class Model:
     def internal_force(self, u: Array) -> Array:
         """Internal forces of the solid, ``(n, 2)``."""
         F = deformation_gradient(self.mesh, u)
-        return internal_force(self.mesh, self.law.stress(F, *self.constants))
+        return internal_force(self.mesh, self.law.stress(F))
 
     def solid_stiffness(self, u: Array) -> csc_matrix:
         """Tangent stiffness of the solid over the unclamped degrees of freedom."""
         F = deformation_gradient(self.mesh, u)
-        return self.stiffness.matrix(element_tangents(self.mesh, self.law.tangent(F, *self.constants)))
+        return self.stiffness.matrix(element_tangents(self.mesh, self.law.tangent(F)))
 
     def gap_derivatives(self, at: Projection) -> tuple[Array, Array]:
         """Factors of the gap's derivatives, see `fem_reference.contact.gap_derivatives`."""
@@ -95,7 +94,7 @@ class Model:
 
     def strain_energy(self, u: Array) -> float:
         """Strain energy of the solid [J]."""
-        W = self.law.energy(deformation_gradient(self.mesh, u), *self.constants)
+        W = self.law.energy(deformation_gradient(self.mesh, u))
         return float((W * self.mesh.weights).sum())
 
 
@@ -109,8 +108,7 @@ def build(problem: SolidProblem) -> Model:
     return Model(
         problem=problem,
         mesh=mesh,
-        law=MATERIALS[strip.material],
-        constants=plane_stress_constants(strip.youngs_modulus, strip.poissons_ratio),
+        law=elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane),
         stiffness=pattern(mesh, along[~np.isin(along, held)]),
         curve=contact_curve(mesh, problem.contact),
         clamped=clamped,

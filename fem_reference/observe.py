@@ -35,7 +35,7 @@ def nodal_stress(result: Result, k: int) -> Floats:
     model = result.model
     mesh, Q = model.mesh, model.problem.strip.frame
     F = deformation_gradient(mesh, result.states[k].u, mesh.nodal_gradients)
-    P = model.law.stress(F, *model.constants)
+    P = model.law.stress(F)
     local = np.einsum("ik...,jk...->ij...", P, F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
     sigma = np.einsum("ai,ij...,bj->ab...", Q, local, Q)
     components = np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)

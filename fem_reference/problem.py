@@ -6,7 +6,7 @@ from math import hypot, isfinite
 import numpy as np
 
 from fem_reference.arrays import Array, Floats
-from fem_reference.material import MATERIALS
+from fem_reference.material import MATERIALS, PLANES
 
 Point = tuple[float, float]
 
@@ -37,7 +37,7 @@ class Strip:
     height, width
         Dimensions of the section in the plane and out of it [m].
     youngs_modulus, poissons_ratio
-        Elastic constants [Pa, -]; plane stress.
+        Elastic constants [Pa, -].
     clamped
         The clamped end, ``("start",)`` or ``("end",)``.
     clamp
@@ -47,6 +47,8 @@ class Strip:
         Numbers of biquadratic elements along the axis (at least 2) and over the height.
     material
         A key of `fem_reference.material.MATERIALS`.
+    plane
+        ``"stress"``: free to contract out of the plane; ``"strain"``: not.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class Strip:
     clamp: str = "rod"
     mesh: tuple[int, int] = (50, 2)
     material: str = "st-venant-kirchhoff"
+    plane: str = "stress"
 
     def __post_init__(self) -> None:
         owner = f"Strip({self.name!r})"
@@ -93,6 +96,7 @@ class Strip:
             self.material,
             f"must be one of {', '.join(MATERIALS)}",
         )
+        _require(self.plane in PLANES, owner, "plane", self.plane, f"must be one of {', '.join(PLANES)}")
 
     @property
     def length(self) -> float:

@@ -49,7 +49,7 @@ class BeamSpec:
         Elements of the solid along and across.
     solid_clamp : {"rod", "full"}
         Clamp of the solid: section mean only, or both displacements of the whole edge.
-    material : {"st-venant-kirchhoff", "biot-linear"}
+    material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
         Law of the solid.
 
     Raises
@@ -73,7 +73,9 @@ class BeamSpec:
     elements: Count = 20
     mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
     solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
-    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear")] = "st-venant-kirchhoff"
+    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean")] = (
+        "st-venant-kirchhoff"
+    )
 
     def __post_init__(self) -> None:
         apply_rules(self)

@@ -23,6 +23,7 @@ NAN = float("nan")
         ("mesh", (4, 0)),
         ("mesh", (4.5, 1)),
         ("material", "rubber"),
+        ("plane", "stretch"),
     ],
 )
 def test_strip_refuses_and_names_the_field(strip, field, value):
