@@ -15,47 +15,48 @@ class Pattern:
 
     Parameters
     ----------
-    unknowns
-        Degrees of freedom kept, in the order of elimination, ``(m,)``.
     scatter
-        Sparse matrix from all element entries, raveled ``(e, 18, 18)``, to the stored entries of the stiffness.
+        Sparse matrix from all element entries, raveled ``(e, 2 k, 2 k)``, to the stored entries of the stiffness.
     indices, indptr
         Row indices and column pointers of the compressed columns.
     """
 
-    unknowns: Ints
     scatter: csr_matrix
     indices: Ints
     indptr: Ints
 
     def matrix(self, elements: Array) -> csc_matrix:
-        """Assemble element matrices ``(e, 18, 18)`` into the stiffness ``(m, m)``."""
-        m = self.unknowns.size
+        """Assemble element matrices ``(e, 2 k, 2 k)`` into the stiffness ``(m, m)``."""
+        m = self.indptr.size - 1
         return csc_matrix((self.scatter @ elements.ravel(), self.indices, self.indptr), shape=(m, m))
 
 
-def pattern(mesh: Discretisation, unknowns: Ints) -> Pattern:
-    """Build the pattern of the stiffness restricted to ``unknowns``, once per model."""
-    position = np.full(2 * len(mesh.nodes), -1)
-    position[unknowns] = np.arange(unknowns.size)
-    local = position[element_dofs(mesh)]
+def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
+    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, once per model.
+
+    A row of the expansion has at most one entry: a displacement is an unknown, its opposite, or held.
+    """
+    size = expansion.shape[1]
+    entries = expansion.tocoo()
+    position, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
+    position[entries.row], factor[entries.row] = entries.col, entries.data
+    dofs = element_dofs(mesh)
+    local, sign = position[dofs], factor[dofs]
     shape = (*local.shape, local.shape[1])
     row = np.broadcast_to(local[:, :, None], shape).ravel()
     column = np.broadcast_to(local[:, None, :], shape).ravel()
     kept = np.flatnonzero((row >= 0) & (column >= 0))
-    keys, slot = np.unique(column[kept] * unknowns.size + row[kept], return_inverse=True)
-    scatter = csr_matrix((np.ones(kept.size), (slot, kept)), shape=(keys.size, row.size))
-    counts = np.bincount(keys // unknowns.size, minlength=unknowns.size)
+    keys, slot = np.unique(column[kept] * size + row[kept], return_inverse=True)
+    signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
     return Pattern(
-        unknowns=unknowns,
-        scatter=scatter,
-        indices=(keys % unknowns.size).astype(np.int32),
-        indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+        scatter=csr_matrix((signs, (slot, kept)), shape=(keys.size, row.size)),
+        indices=(keys % size).astype(np.int32),
+        indptr=np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(np.int32),
     )
 
 
 def element_dofs(mesh: Discretisation) -> Ints:
-    """Degrees of freedom ``(e, 18)`` of the elements, local order ``2 a + i``."""
+    """Degrees of freedom ``(e, 2 k)`` of the elements, local order ``2 a + i``."""
     return (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
 
 
@@ -81,7 +82,7 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
 
 
 def element_tangents(mesh: Discretisation, A: Array) -> Array:
-    """Element stiffnesses ``(e, 18, 18)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``."""
+    """Element stiffnesses ``(e, 2 k, 2 k)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``."""
     elements, rows, shapes = mesh.gradients.shape
     points = rows // 2
     G = mesh.gradients.reshape(elements, 2, points, shapes)

@@ -130,7 +130,7 @@ def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
 
 
 def assembly(gates: list[Gate], times: dict[str, float]) -> None:
-    from fem_reference.model import build
+    from fem_reference.body import build_body
 
     path = Path(__file__).parents[1] / "fem_reference" / "bilinear_reference.py"
     spec = importlib.util.spec_from_file_location("bilinear_reference", path)
@@ -139,19 +139,19 @@ def assembly(gates: list[Gate], times: dict[str, float]) -> None:
     forms = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(forms)
     solid = to_solid(load_scene("ks-cantilever"), mesh=(50, 2))
-    model = build(solid)
-    mesh = model.mesh
+    body = build_body(solid.strips[0])
+    mesh, strip = body.mesh, body.strip
     u = 1e-3 * np.random.default_rng(0).standard_normal(mesh.nodes.shape)
-    E, nu = solid.strip.youngs_modulus, solid.strip.poissons_ratio
+    E, nu = strip.youngs_modulus, strip.poissons_ratio
     lam, mu = E * nu / (1 - nu**2), E / (2 * (1 + nu))
     basis = forms.vector_basis(mesh.nodes, mesh.cells)
 
     def batched() -> None:
-        model.internal_force(u)
-        model.solid_stiffness(u)
+        body.internal_force(u)
+        body.tangent(u)
 
     def bilinear() -> None:
-        forms.tangent_and_residual(basis, u.ravel(), lam, mu, solid.strip.width)
+        forms.tangent_and_residual(basis, u.ravel(), lam, mu, strip.width)
 
     ours, theirs = seconds(batched, bilinear)
     times |= {"tangent + residual 50x2, batched": ours, "tangent + residual 50x2, BilinearForm": theirs}
