@@ -1,7 +1,9 @@
 """The curve that a contact acts on, and the closest point on it.
 
-The curve is the cubic spline through section or face positions ``X_k`` over their undeformed axial coordinates,
-``r(zeta) = sum_k B_k(zeta) X_k``: twice continuously differentiable, unlike the elements' edges.
+The curve is an average along the cubic spline through section or face positions ``X_k`` over their undeformed axial
+coordinates, ``r(zeta) = sum_q w_q sum_k B_k(zeta + d_q) X_k``: twice continuously differentiable, unlike the elements' edges.
+Without the average the contact's own dent, and the kink of the axis by shear, turn the normal by up to
+``F / (G A_e)`` according to where in an element the contact sits.
 """
 
 from dataclasses import dataclass
@@ -14,13 +16,14 @@ from scipy.sparse import csr_matrix
 from fem_reference.arrays import Array, Floats
 from fem_reference.mesh import Discretisation
 from fem_reference.problem import Contact
+from fem_reference.strip import Strip
 
 _PROJECTION_STEPS = 40
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curve:
-    """A twice continuously differentiable curve through points carried by nodes.
+    """A twice continuously differentiable curve along points carried by nodes.
 
     Parameters
     ----------
@@ -30,18 +33,31 @@ class Curve:
         Slopes of the cardinal splines at the stations, ``(m, m)``: ``dr/dzeta = slopes @ X`` there [1/m].
     rows
         Weights of the nodes in the points, ``(m, n)``.
+    offsets, kernel
+        Distances ``(q,)`` [m] and weights ``(q,)`` of the points that are averaged.
     """
 
     stations: Floats
     slopes: Floats
     rows: csr_matrix
+    offsets: Floats
+    kernel: Floats
 
     def basis(self, zeta: Any) -> Array:  # a float, or complex for a complex step
-        """Values and first two derivatives of the cardinal splines at ``zeta``, ``(3, m)``."""
+        """Values and first two derivatives of the averaged cardinal splines at ``zeta``, ``(3, m)``."""
+        averaged: Array = np.tensordot(self.kernel, self.splines(zeta + self.offsets), axes=(0, 1))
+        return averaged
+
+    def splines(self, zeta: Array) -> Array:
+        """Values and first two derivatives of the cardinal splines at the points ``zeta`` ``(q,)``, ``(3, q, m)``.
+
+        Beyond the ends they go on along their tangents.
+        """
         s = self.stations
-        k = min(max(int(np.searchsorted(s, np.real(zeta))) - 1, 0), s.size - 2)
+        inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
+        k = np.clip(np.searchsorted(s, inner.real) - 1, 0, s.size - 2)
         h = s[k + 1] - s[k]
-        z = (zeta - s[k]) / h
+        z = (inner - s[k]) / h
         # Hermite polynomials: rows value, first, second derivative; columns X_k, X_k+1, slope k, slope k+1.
         hermite = np.array(
             [
@@ -50,12 +66,17 @@ class Curve:
                 [(12 * z - 6) / h**2, (6 - 12 * z) / h**2, (6 * z - 4) / h, (6 * z - 2) / h],
             ]
         )
-        B = hermite[:, 2:] @ self.slopes[k : k + 2]
-        B[:, k : k + 2] += hermite[:, :2]
+        beyond = zeta - inner
+        hermite[0] += beyond * hermite[1]
+        hermite[2] *= beyond == 0
+        B = hermite[:, 2, :, None] * self.slopes[k] + hermite[:, 3, :, None] * self.slopes[k + 1]
+        points = np.arange(k.size)
+        B[:, points, k] += hermite[:, 0]
+        B[:, points, k + 1] += hermite[:, 1]
         return B
 
 
-def contact_curve(mesh: Discretisation, contact: Contact) -> Curve:
+def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve:
     """Build the curve a contact acts on: section means ("axis") or the nodes of the touched face ("face")."""
     stations, rows = mesh.stations, mesh.sections
     if contact.surface == "face":
@@ -65,7 +86,26 @@ def contact_curve(mesh: Discretisation, contact: Contact) -> Curve:
             (np.ones(face.size), (np.arange(face.size), face)), shape=(face.size, len(mesh.nodes))
         )
     slopes = CubicSpline(stations, np.eye(stations.size), bc_type="not-a-knot")(stations, 1)
-    return Curve(stations=stations, slopes=slopes, rows=rows)
+    offsets, kernel = averaging(contact_spread(strip, contact), float(np.diff(stations).min()))
+    return Curve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+
+
+def contact_spread(strip: Strip, contact: Contact) -> float:
+    """Half of the length that a contact is spread over [m]: as given, or 1.5 heights, at most a tenth of the length."""
+    return min(1.5 * strip.height, strip.length / 10) if contact.spread is None else contact.spread
+
+
+def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
+    """Points and weights of an average over ``[-spread, spread]`` that leaves cubic curves as they are.
+
+    Gauss points, at least two to a ``spacing`` of the curve's points, of the kernel ``15 (3 - 10 x^2 + 7 x^4) / 32``
+    (Gasser, Mueller, Mammitzsch, J. R. Statist. Soc. B 47 (1985), 238-252, table 1).
+    """
+    if spread == 0:
+        return np.zeros(1), np.ones(1)
+    x, w = np.polynomial.legendre.leggauss(max(12, int(np.ceil(4 * spread / spacing))))
+    kernel = w * (3 - 10 * x**2 + 7 * x**4)
+    return spread * x, kernel / kernel.sum()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -39,6 +39,7 @@ def read_mesh(strip: Strip) -> Discretisation:
     try:
         points, quads, lines = _contents(Path(strip.mesh_file))
         _check_elements(points, quads)
+        quads = _along(points, quads)
         basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
         edges = {name: _edge(basis, name, lines) for name in EDGES}
         _check_place(strip, basis.doflocs.T, edges)
@@ -122,6 +123,14 @@ def _check_elements(points: Floats, quads: Ints) -> None:
     parts, _ = connected_components(shares.T @ shares)
     if parts > 1:
         raise MeshError(f"falls into {parts} parts that share no node")
+
+
+def _along(points: Floats, quads: Ints) -> Ints:
+    """Begin every element with the side that runs furthest along the strip."""
+    x = points[quads, 0]
+    first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
+    turned: Ints = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
+    return turned
 
 
 def _edge(basis: Any, name: str, lines: dict[str, Ints]) -> Ints:

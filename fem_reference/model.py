@@ -106,7 +106,7 @@ def _pair(
 ) -> Pair:
     numbers = {strip.name: number for number, strip in enumerate(problem.strips)}
     touched = numbers[contact.strip]
-    curve = contact_curve(bodies[touched].mesh, contact)
+    curve = contact_curve(bodies[touched].strip, bodies[touched].mesh, contact)
     node: Carrier | None = None
     strips: tuple[int, ...] = (touched,)
     if problem.pin(contact.node) is None:

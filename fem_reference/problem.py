@@ -70,6 +70,9 @@ class Contact:
     penetration
         Largest penetration left by augmented Lagrangian steps, relative to the strip's length; None leaves what the
         penalty leaves.
+    spread
+        Half of the length of the strip over which its position is averaged and the contact force spread [m], zero for a
+        sharp contact; None for one and a half heights, at most a tenth of the length.
     keep
         Whether the contact, once closed, must not slip off an end of the strip: that ends the solution by name.
         Otherwise the strip springs back to what the other contacts hold.
@@ -86,6 +89,7 @@ class Contact:
     surface: str = "axis"
     penalty: float | None = None
     penetration: float | None = None
+    spread: float | None = None
     keep: bool = True
 
     def __post_init__(self) -> None:
@@ -94,6 +98,9 @@ class Contact:
         require_choice(owner, "surface", self.surface, ("axis", "face"))
         if self.penalty is not None:
             require_positive(owner, "penalty", self.penalty)
+        if self.spread is not None:
+            fits = isfinite(self.spread) and self.spread >= 0
+            require(fits, owner, "spread", self.spread, "must be finite and not negative")
         if self.penetration is not None:
             fits = 1e-13 <= self.penetration <= 1
             require(fits, owner, "penetration", self.penetration, "must lie between 1e-13 and 1")

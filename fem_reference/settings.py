@@ -15,7 +15,8 @@ class Settings:
     max_iterations
         Newton iterations with one set of closed contacts.
     largest_growth, smallest_damping
-        A correction that the next one exceeds by this factor is halved, down to this part of it.
+        A correction that the next one exceeds by this factor is halved, down to this part of it. Bending that overshoots
+        into stretch makes a good correction's successor grow too: a factor near one costs more than it saves.
     max_contact_changes
         Changes of the set of closed contacts in one attempt.
     max_augmentations
@@ -37,7 +38,7 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 12
-    largest_growth: float = 2.0
+    largest_growth: float = 5.0
     smallest_damping: float = 1 / 64
     max_contact_changes: int = 6
     max_augmentations: int = 12

@@ -14,7 +14,7 @@ from fem_reference.settings import Settings
 from fem_reference.state import State, clamp_reactions, push
 from fem_reference.status import Status
 
-VTK_TYPES = {"Q1": "quad", "Q2": "quad9"}
+VTK_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
 def solve(

@@ -9,7 +9,7 @@ from fem_reference.arrays import Array, Floats
 from fem_reference.checks import Point, require, require_choice, require_point, require_positive
 from fem_reference.material import MATERIALS, PLANES
 
-ELEMENTS = ("Q1", "Q2")
+ELEMENTS = ("Q1", "Q2", "Q2-full")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,8 @@ class Strip:
     mesh
         Numbers of elements along the axis (at least 2) and over the height.
     element
-        ``"Q2"``, biquadratic, or ``"Q1"``, bilinear (which locks in bending where it is longer than high).
+        ``"Q2"``, biquadratic with two Gauss points along the strip and three across; ``"Q2-full"``, three each way;
+        ``"Q1"``, bilinear (which locks in bending where it is longer than high).
     grading
         Length of the last element along the axis over that of the first.
     mesh_file

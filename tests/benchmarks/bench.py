@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -139,7 +139,7 @@ def assembly(gates: list[Gate], times: dict[str, float]) -> None:
     forms = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(forms)
     solid = to_solid(load_scene("ks-cantilever"), mesh=(50, 2))
-    body = build_body(solid.strips[0])
+    body = build_body(replace(solid.strips[0], element="Q2-full"))
     mesh, strip = body.mesh, body.strip
     u = 1e-3 * np.random.default_rng(0).standard_normal(mesh.nodes.shape)
     E, nu = strip.youngs_modulus, strip.poissons_ratio

@@ -21,7 +21,7 @@ ROUND_TRIP = {"rtol": 1e-12, "atol": 1e-12}
 
 @pytest.fixture(scope="module", params=["tsm", "solid", "rod"])
 def response(request: pytest.FixtureRequest) -> Response:
-    options = {"tsm": Options(elements=4), "solid": Options(mesh=(8, 2))}
+    options = {"tsm": Options(elements=4), "solid": Options(mesh=(12, 2))}
     return solve(SCENE, request.param, options.get(request.param))
 
 
@@ -52,7 +52,7 @@ def test_fields_of_each_model(response: Response) -> None:
 
 
 def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
-    solid = solve(SCENE, "solid", Options(mesh=(8, 2)))
+    solid = solve(SCENE, "solid", Options(mesh=(12, 2)))
     write_vtu(tmp_path / "solid.vtu", solid.grid(0))
     view = pyvista.read(tmp_path / "solid.vtu")
     assert set(view.celltypes) == {pyvista.CellType.BIQUADRATIC_QUAD}

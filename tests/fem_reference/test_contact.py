@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import Curve
+from fem_reference.curve import Curve, averaging
 from fem_reference.model import build
 
 STEP = 1e-30
@@ -79,16 +79,35 @@ def test_curve_derivatives_by_complex_steps(model):
         np.testing.assert_allclose(B[2], step[1], atol=1e-10)
 
 
-def test_curve_converges_with_fourth_order():
+@pytest.mark.parametrize("spread", [0.0, 1e-4])
+def test_curve_converges_with_fourth_order(spread):
     """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
 
     def error(n):
         s = np.linspace(0, 1, n + 1)
         slopes = CubicSpline(s, np.eye(n + 1))(s, 1)
-        curve = Curve(stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"))
+        offsets, kernel = averaging(spread, 1 / n)
+        curve = Curve(
+            stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"), offsets=offsets, kernel=kernel
+        )
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
 
     assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
+
+
+def test_average_leaves_cubics_and_reaches_no_further():
+    offsets, kernel = averaging(0.3, 0.01)
+    for power, moment in ((0, 1.0), (1, 0.0), (2, 0.0), (3, 0.0)):
+        assert kernel @ offsets**power == pytest.approx(moment, abs=1e-14)
+    assert np.abs(offsets).max() < 0.3
+    assert [part.tolist() for part in averaging(0.0, 0.01)] == [[0.0], [1.0]]
+
+
+def test_contact_is_spread_over_a_stated_length(problem):
+    """By default 1.5 heights to either side, at most a tenth of the length; never beyond what is asked for."""
+    for height, spread, expected in ((0.02, None, 0.03), (0.2, None, 0.1), (0.02, 0.05, 0.05)):
+        curve = build(problem(height=height, contact={"spread": spread})).pairs[0].curve
+        assert expected * 0.95 < np.abs(curve.offsets).max() < expected
 
 
 @pytest.mark.parametrize("zeta", PLACES)

@@ -133,10 +133,13 @@ def test_cycling_has_its_name(place):
     assert (attempt.status, attempt.pair) == (Status.CYCLING, 0)
 
 
-def test_a_correction_that_grows_is_halved(place):
-    """A pin half a length away in one step: without the test of the next correction there is no equilibrium."""
-    model = place(0.7, 0.45)
-    free = Settings(largest_growth=1e9, max_iterations=40)
-    damped = Settings(max_iterations=40)
-    statuses = [found(model, at_rest(model), settings).status for settings in (free, damped)]
-    assert statuses[1] is Status.CONVERGED
+def test_a_correction_that_grows_is_halved_and_still_arrives(place):
+    """A pin far away in one step, with full corrections and with the next one not allowed to double."""
+    model = place(0.7, 0.3)
+    full, damped = (
+        found(model, at_rest(model), Settings(max_iterations=40, largest_growth=growth))
+        for growth in (1e9, 2.0)
+    )
+    assert full.status is damped.status is Status.CONVERGED
+    assert damped.iterations > full.iterations
+    assert damped.state.touches[0].force == pytest.approx(full.state.touches[0].force, rel=1e-8)

@@ -47,7 +47,14 @@ def test_pin_runs_at_constant_speed():
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("side", "up"), ("surface", "top"), ("penalty", 0.0), ("penalty", float("inf")), ("penetration", 0.0)],
+    [
+        ("side", "up"),
+        ("surface", "top"),
+        ("penalty", 0.0),
+        ("penalty", float("inf")),
+        ("penetration", 0.0),
+        ("spread", -1.0),
+    ],
 )
 def test_contact_refuses_and_names_the_field(problem, field, value):
     with pytest.raises(ValueError, match=rf"Contact\('pin->cantilever'\)\.{field} = .*: must"):
