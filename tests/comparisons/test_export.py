@@ -57,7 +57,7 @@ def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
     view = pyvista.read(tmp_path / "solid.vtu")
     assert set(view.celltypes) == {pyvista.CellType.BIQUADRATIC_QUAD}
     # VTK integrates its own biquadratic cells: a wrong order of points gives another area
-    assert view.compute_cell_sizes()["Area"] == pytest.approx(np.full(16, 0.02 / 16), rel=1e-12)
+    assert view.compute_cell_sizes()["Area"] == pytest.approx(np.full(24, 0.02 / 24), rel=1e-12)
 
 
 def test_pin_force_balances_the_clamp_and_points_away_from_the_pin(response: Response) -> None:
