@@ -1,6 +1,6 @@
 """Internal force and tangent stiffness of the solid, by batched matrix products."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
@@ -76,17 +76,43 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     elements = len(mesh.cells)
     weighted = (P * mesh.weights).transpose(2, 1, 3, 0).reshape(elements, -1, 2)
     forces = mesh.gradients.transpose(0, 2, 1) @ weighted
-    total = np.zeros((len(mesh.nodes), 2), dtype=forces.dtype)
-    np.add.at(total, mesh.cells, forces)
+    total: Array = mesh.gather @ forces.reshape(-1, 2)
     return total
 
 
-def element_tangents(mesh: Discretisation, A: Array) -> Array:
-    """Element stiffnesses ``(e, 2 k, 2 k)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``."""
+def element_tangents(mesh: Discretisation, A: Array, out: Array | None = None) -> Array:
+    """Element stiffnesses ``(e, 2 k, 2 k)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``.
+
+    A's major symmetry leaves three of the four blocks of components to compute. ``out`` is filled if given.
+    """
     elements, rows, shapes = mesh.gradients.shape
-    points = rows // 2
-    G = mesh.gradients.reshape(elements, 2, points, shapes)
-    weighted = (A * mesh.weights).transpose(4, 1, 5, 0, 3, 2)  # e, j, q, i, l, k
-    inner = sum(G[:, None, n, :, None, :, None] * weighted[:, :, :, :, n, None, :] for n in range(2))
-    tangents = mesh.gradients.transpose(0, 2, 1) @ np.reshape(inner, (elements, rows, 4 * shapes))
-    return tangents.reshape(elements, 2 * shapes, 2 * shapes)
+    G = mesh.gradients.reshape(elements, 2, rows // 2, shapes)
+    weighted = (A * mesh.weights)[..., None]
+    inner = np.empty((elements, 2, rows // 2, 3, shapes), dtype=A.dtype)
+    for block, (i, k) in enumerate(((0, 0), (0, 1), (1, 1))):
+        for j in range(2):
+            np.multiply(weighted[i, j, k, 0], G[:, 0], out=inner[:, j, :, block])
+            inner[:, j, :, block] += weighted[i, j, k, 1] * G[:, 1]
+    blocks = mesh.gradients.transpose(0, 2, 1) @ inner.reshape(elements, rows, 3 * shapes)
+    blocks = blocks.reshape(elements, shapes, 3, shapes)
+    size = (elements, 2 * shapes, 2 * shapes)
+    filled = np.empty(size, dtype=A.dtype) if out is None else out
+    tangents = filled.reshape(elements, shapes, 2, shapes, 2)
+    tangents[:, :, 0, :, 0], tangents[:, :, 1, :, 1] = blocks[:, :, 0], blocks[:, :, 2]
+    tangents[:, :, 0, :, 1], tangents[:, :, 1, :, 0] = blocks[:, :, 1], blocks[:, :, 1].swapaxes(1, 2)
+    return filled
+
+
+def batches(mesh: Discretisation) -> tuple[Discretisation, ...]:
+    """Split the elements so that what is computed for a batch of them stays in the processor's cache."""
+    count = -(-len(mesh.cells) // _BATCH)
+    return tuple(
+        replace(mesh, cells=cells, gradients=gradients, weights=weights)
+        for cells, gradients, weights in zip(
+            *(np.array_split(field, count) for field in (mesh.cells, mesh.gradients, mesh.weights)),
+            strict=True,
+        )
+    )
+
+
+_BATCH = 256

@@ -40,6 +40,8 @@ class Discretisation:
         Quadrature weights ``(e, q)``, width included [m^3].
     nodal_gradients
         As ``gradients``, at the nodes of each element instead of the quadrature points.
+    gather
+        Sums at the nodes of what elements state about theirs, ``(n, e k)``.
     edges
         Nodes of the four edges by name (`EDGES`): the ends upwards, the faces from start to end.
     stations
@@ -55,6 +57,7 @@ class Discretisation:
     gradients: Floats
     weights: Floats
     nodal_gradients: Floats
+    gather: csr_matrix
     edges: dict[str, Ints]
     stations: Floats
     sections: csr_matrix
@@ -100,15 +103,16 @@ def from_basis(
     """Collect the arrays of a scikit-fem basis."""
     from skfem import Basis
 
-    element = basis.elem
+    element, cells = basis.elem, basis.element_dofs.T.astype(np.int64)
     shapes = len(element.doflocs)
     at_nodes = Basis(basis.mesh, element, quadrature=(element.doflocs.T, np.ones(shapes)))
     return Discretisation(
         nodes=basis.doflocs.T.copy(),
-        cells=basis.element_dofs.T.astype(np.int64),
+        cells=cells,
         gradients=_gradients(basis.basis),
         weights=strip.width * basis.dx,
         nodal_gradients=_gradients(at_nodes.basis),
+        gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
         edges=edges,
         stations=stations,
         sections=sections,

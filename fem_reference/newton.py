@@ -141,7 +141,7 @@ def _solve(model: Model, u: Floats, right: Floats) -> Floats:
     parts, start = [], 0
     for body, part in model.each():
         size = body.expansion.shape[1]
-        own = splu(body.tangent(u[part]), permc_spec="NATURAL")
+        own = splu(body.tangent(u[part]), permc_spec=body.ordering)
         parts.append(own.solve(right[start : start + size]))
         start += size
     return np.concatenate(parts)
