@@ -22,7 +22,11 @@ def plot_budget(budget: Budget, *paths: Path) -> None:
     fig.axes[0].set_ylabel("(TSM - solid) / exact rod [%]")
     fig.suptitle(f"{budget.scene}: what the difference is made of")
     fig.legend(
-        *fig.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small"
+        *fig.axes[0].get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=4,
+        fontsize="small",
+        markerscale=0.4,
     )
     save(fig, *paths)
 
