@@ -4,6 +4,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import fem_reference as fr
 from fem_reference.active_set import equilibrium
 from fem_reference.material import Law
 from fem_reference.model import build
@@ -44,6 +45,50 @@ def test_correction_solves_the_full_saddle_point_system(place):
         np.append(T @ expected[:-1], expected[-1]),
         rtol=0,
         atol=1e-9 * np.abs(expected).max(),
+    )
+
+
+def test_correction_of_two_strips_solves_the_full_system(strip):
+    """A pin on the upper strip, whose end is pressed on the lower one: both contacts closed, bodies coupled by one alone."""
+    upper = strip(name="upper", start=(0.0, 0.0), end=(1.0, 0.0), mesh=(6, 1), height=0.05)
+    lower = strip(name="lower", start=(0.1, -0.1), end=(1.2, -0.12), mesh=(5, 1), height=0.05)
+    contacts = (
+        fr.Contact(node="pin", strip="upper", side="left", surface="face"),
+        fr.Contact(node="upper.end", strip="lower", side="left", surface="face"),
+    )
+    pin = fr.Pin(name="pin", path=((0.7, 0.04), (0.7, -0.2)), radius=0.01)
+    model = build(fr.SolidProblem(strips=(upper, lower), pins=(pin,), contacts=contacts))
+    result = fr.solve(model.problem, np.array([0.4, 0.6]))
+    at = state(
+        model,
+        result.states[-1].u,
+        0.62,
+        tuple(replace(condition, force=1.1 * condition.force) for condition in result.states[-1].conditions),
+    )
+    assert len(at.closed) == 2
+    T = model.expansion
+    R = T.T @ residual(model, at).ravel()
+    K = np.zeros((model.unknowns, model.unknowns))
+    start = 0
+    for body, part in model.each():
+        size = body.expansion.shape[1]
+        K[start : start + size, start : start + size] = body.tangent(at.u[part]).toarray()
+        start += size
+    slopes = []
+    for touch in at.closed:
+        U = T.T @ touch.slopes
+        K -= touch.force * U @ touch.curvature @ U.T
+        slopes.append(U[:, 0])
+    G, C = np.stack(slopes, 1), np.diag([1 / touch.pair.penalty for touch in at.closed])
+    full = np.block([[K, -G], [G.T, C]])
+    expected = np.linalg.solve(full, -np.append(R, [touch.mismatch for touch in at.closed]))
+    step = correction(model, at, R)
+    np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
+    np.testing.assert_allclose(
+        np.append(step.u, step.forces),
+        np.append(T @ expected[:-2], expected[-2:]),
+        rtol=0,
+        atol=1e-8 * np.abs(expected).max(),
     )
 
 
@@ -107,6 +152,24 @@ def test_singular_tangent_has_its_name(place):
     model = place(0.9, 0.1)
     empty = replace(model, bodies=(replace(model.bodies[0], law=zero),))
     assert found(empty, at_rest(empty)).status is Status.SINGULAR
+
+
+def test_reactions_that_do_not_balance_have_their_name(place):
+    """A law that is linear in the displacement gradient: a turned element has moments."""
+    model = place(0.7, 0.2)
+    A = model.bodies[0].law.tangent(np.eye(2)[:, :, None])
+
+    def linear(F):
+        H = F - np.eye(2).reshape(2, 2, *(1,) * (F.ndim - 2))
+        return np.einsum("ijkl,kl...->ij...", A[..., 0], H)
+
+    law = Law(
+        energy=lambda F: (linear(F) * F).sum(axis=(0, 1)) / 2,
+        stress=linear,
+        tangent=lambda F: A.reshape(2, 2, 2, 2, *(1,) * (F.ndim - 2)) + np.zeros((2, 2, *F.shape)),
+    )
+    false = replace(model, bodies=(replace(model.bodies[0], law=law),))
+    assert found(false, at_rest(false)).status is Status.UNBALANCED
 
 
 def test_pin_round_the_tip_is_lost(place):
