@@ -111,7 +111,7 @@ def solve_solid(scene: Scene, options: Options) -> Response:
     contacts = {
         contact.name: replace(
             response.contacts[contact.name],
-            compliance=1.0 / problem.penalty(contact),
+            compliance=1.0 / problem.penalty(contact) if contact.penetration is None else 0.0,
             slip_off=result.contacts[contact.name].slip_off,
             vector=result.contacts[contact.name].vector,
         )

@@ -36,7 +36,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
         raise ModelError("the solid model has a pin that moves, the scene has none")
     return SolidProblem(
         strips=tuple(_strip(beam, _clamp(scene, beam), mesh) for beam in scene.beams),
-        pins=tuple(Pin(name=pin.name, path=pin.points) for pin in scene.pins),
+        pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
             Contact(
                 node=contact.node,
@@ -44,6 +44,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
                 side=contact.side,
                 surface=contact.surface,
                 penalty=contact.penalty,
+                penetration=contact.penetration,
                 keep=contact.keep,
             )
             for contact in scene.contacts
@@ -112,6 +113,7 @@ def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip
         poissons_ratio=nu,
         clamped=(clamped,),
         clamp=beam.solid_clamp,
+        element=beam.solid_element,
         mesh=mesh or beam.mesh,
         material=beam.material,
     )

@@ -141,3 +141,14 @@ def test_structure_takes_over_supports_loads_and_keep() -> None:
 @pytest.mark.parametrize("element", tsm.ELEMENTS)
 def test_every_element_of_tsm_can_be_chosen_by_name(element: str) -> None:
     assert to_structure(KS, element=element).beams[0].element == element
+
+
+def test_round_pin_is_an_offset_for_rods_and_a_radius_for_the_solid() -> None:
+    pin = replace(FACE.pins[0], start=(1.0, -0.015), radius=0.005)
+    contact = replace(FACE.contacts[0], penetration=1e-10)
+    scene = replace(FACE, pins=(pin,), contacts=(contact,))
+    assert to_structure(scene).contacts[0].offset == pytest.approx(0.015)
+    assert to_rod(scene).offset == pytest.approx(0.015)
+    problem = to_solid(with_beam(scene, solid_element="Q2-full"))
+    assert (problem.pins[0].radius, problem.contacts[0].penetration) == (0.005, 1e-10)
+    assert problem.strips[0].element == "Q2-full"
