@@ -51,6 +51,9 @@ class BeamSpec:
         Clamp of the solid: free to contract, or both displacements of the whole edge held.
     solid_element : {"Q1", "Q2", "Q2-full"}
         Elements of the solid.
+    solid_mesh_file : str, optional
+        A mesh of the solid's own in place of `mesh`, in the beam's frame, with named edges: see
+        `fem_reference.mesh_file.read_mesh`.
     material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
         Law of the solid.
 
@@ -75,6 +78,7 @@ class BeamSpec:
     elements: Count = 20
     mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
     solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
+    solid_mesh_file: Annotated[str, rules.text] | None = None
     solid_element: Annotated[str, rules.choice("Q1", "Q2", "Q2-full")] = "Q2"
     material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean")] = (
         "st-venant-kirchhoff"

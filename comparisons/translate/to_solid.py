@@ -114,6 +114,7 @@ def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip
         clamped=(clamped,),
         clamp=beam.solid_clamp,
         element=beam.solid_element,
+        mesh_file=beam.solid_mesh_file if mesh is None else None,
         mesh=mesh or beam.mesh,
         material=beam.material,
     )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.models import solve
 from comparisons.options import ModelError
 from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 from comparisons.translate import to_rod, to_solid, to_structure
@@ -152,3 +153,16 @@ def test_round_pin_is_an_offset_for_rods_and_a_radius_for_the_solid() -> None:
     problem = to_solid(with_beam(scene, solid_element="Q2-full"))
     assert (problem.pins[0].radius, problem.contacts[0].penetration) == (0.005, 1e-10)
     assert problem.strips[0].element == "Q2-full"
+
+
+def test_mesh_file_is_the_scenes_unless_a_mesh_is_asked_for() -> None:
+    scene = with_beam(KS, solid_mesh_file="mine.msh")
+    assert to_solid(scene).strips[0].mesh_file == "mine.msh"
+    assert to_solid(scene, mesh=(20, 2)).strips[0].mesh_file is None
+
+
+def test_mesh_file_that_is_not_there_costs_one_line() -> None:
+    with pytest.raises(
+        ModelError, match=r"solid: Strip\('cantilever'\)\.mesh_file = 'nothing.msh': cannot be read"
+    ):
+        solve(with_beam(KS, solid_mesh_file="nothing.msh"), "solid")
