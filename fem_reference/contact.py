@@ -36,7 +36,7 @@ class Carrier:
     Parameters
     ----------
     reference
-        Undeformed positions in the global frame, ``(m, 2)`` [m].
+        Undeformed positions relative to the model's origin, in the global frame's directions, ``(m, 2)`` [m].
     rows
         Weights of all nodes of the model, ``(m, n)``.
     frame
@@ -74,6 +74,8 @@ class Pair:
         Contact stiffness eps [N/m].
     strips
         Numbers of the strips that take part: the touched one, and that of the touching end.
+    origin
+        The model's origin, which positions are relative to, ``(2,)`` [m]: no digits are lost far from that of the scene.
     """
 
     contact: Contact
@@ -82,6 +84,7 @@ class Pair:
     node: Pin | Carrier
     penalty: float
     strips: tuple[int, ...]
+    origin: Floats
 
     @property
     def name(self) -> str:
@@ -94,9 +97,11 @@ class Pair:
         return self.node.radius if isinstance(self.node, Pin) else 0.0
 
     def position(self, u: Array, t: float) -> Array:
-        """Position ``(2,)`` of the node at the load parameter ``t``."""
-        point: Array = self.node.position(t) if isinstance(self.node, Pin) else self.node.points(u)[0]
-        return point
+        """Position ``(2,)`` of the node at the load parameter ``t``, relative to the origin."""
+        if isinstance(self.node, Pin):
+            return self.node.position(t) - self.origin
+        end: Array = self.node.points(u)[0]
+        return end
 
     def project(self, u: Array, t: float) -> Projection:
         """Project the node on the curve deformed by ``u`` ``(n, 2)``."""

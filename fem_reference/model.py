@@ -105,7 +105,7 @@ def _pair(
     problem: SolidProblem, contact: Contact, bodies: tuple[Body, ...], parts: tuple[slice, ...]
 ) -> Pair:
     numbers = {strip.name: number for number, strip in enumerate(problem.strips)}
-    touched = numbers[contact.strip]
+    touched, origin = numbers[contact.strip], np.array(problem.strips[0].start)
     curve = contact_curve(bodies[touched].strip, bodies[touched].mesh, contact)
     node: Carrier | None = None
     strips: tuple[int, ...] = (touched,)
@@ -114,7 +114,11 @@ def _pair(
         strips = (touched, numbers[name])
         body = bodies[numbers[name]]
         node = _carrier(
-            body, parts[numbers[name]], parts[-1].stop, body.mesh.sections[[0 if end == "start" else -1]]
+            body,
+            parts[numbers[name]],
+            parts[-1].stop,
+            body.mesh.sections[[0 if end == "start" else -1]],
+            origin,
         )
     pin = problem.pin(contact.node)
     actor = pin if node is None else node
@@ -122,16 +126,17 @@ def _pair(
     return Pair(
         contact=contact,
         curve=curve,
-        carrier=_carrier(bodies[touched], parts[touched], parts[-1].stop, curve.rows),
+        carrier=_carrier(bodies[touched], parts[touched], parts[-1].stop, curve.rows, origin),
         node=actor,
         penalty=problem.penalty(contact),
         strips=strips,
+        origin=origin,
     )
 
 
-def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix) -> Carrier:
+def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix, origin: Floats) -> Carrier:
     """Points of a body as points of the model."""
-    reference: Floats = body.strip.to_global(rows @ body.mesh.nodes)
+    reference: Floats = (rows @ body.mesh.nodes) @ body.strip.frame.T + (np.array(body.strip.start) - origin)
     placed = rows.tocoo()
     wide = csr_matrix((placed.data, (placed.row, placed.col + part.start)), shape=(rows.shape[0], nodes))
     return Carrier(reference=reference, rows=wide, frame=body.strip.frame)

@@ -161,16 +161,17 @@ def clamp_reactions(model: Model, at: State) -> list[tuple[Floats, float]]:
 
 
 def imbalance(model: Model, at: State) -> float:
-    """Largest component of the clamps' reactions plus the pins' forces, moments about the first clamp over L [N]."""
-    origin = model.bodies[0].strip.to_global(model.bodies[0].clamped_point)
+    """Largest component of the clamps' reactions plus the pins' forces, moments about the first strip's start over L [N]."""
+    strips = model.problem.strips
     total, moment = np.zeros(2), 0.0
     for (force, own), body in zip(clamp_reactions(model, at), model.bodies, strict=True):
+        place = np.array(body.strip.start) - strips[0].start
         total += force
-        moment += own + _cross(body.strip.to_global(body.clamped_point) - origin, force)
+        moment += own + _cross(place + body.strip.frame @ body.clamped_point, force)
     for touch in at.closed:
         if len(touch.pair.strips) == 1:
             total += push(touch)
-            moment += _cross(touch.pair.position(at.u, at.t) - origin, push(touch))
+            moment += _cross(touch.pair.position(at.u, at.t), push(touch))
     return float(np.abs([*total, moment / model.length]).max())
 
 

@@ -147,6 +147,16 @@ def test_pose_does_not_matter(problem, ks_face):
         )
 
 
+def test_place_does_not_matter(problem, ks_axis):
+    """A thousand lengths from the origin; the pin's own position is rounded there, to 1e-13."""
+    far = 1000.0
+    strip = {"start": (far, -far), "end": (far + 1, -far)}
+    result = fr.solve(problem(path=((far + 1, -far), (far, 2 / np.pi - far)), **strip), loads(10))
+    moved, original = result.contacts[PAIR], ks_axis.contacts[PAIR]
+    np.testing.assert_allclose(moved.force, original.force[4::5], rtol=1e-8)
+    np.testing.assert_allclose(moved.arc_position, original.arc_position[4::5], rtol=1e-8)
+
+
 def test_units_do_not_matter(problem, ks_axis):
     """Steel and a strip of a kilometre: the same ``F L^2 / EI`` and ``s / L``."""
     size = 1000.0
