@@ -9,7 +9,7 @@ from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
-from comparisons.translate.to_solid import rectangle
+from comparisons.translate.to_solid import rectangle, to_solid
 
 AXIS = load_scene("double-beam")
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
@@ -68,3 +68,24 @@ def test_contact_forces_between_the_strips_are_internal(both: tuple[Response, Re
     assert vectors[0] is not None
     assert vectors[1] is not None
     np.testing.assert_allclose(reactions, -vectors[0] - vectors[1], atol=2e-6)
+
+
+def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one() -> None:
+    """Where pin, upper tip and lower axis meet in one point the lower strip takes the tip's force over from the tip.
+
+    The tip stays clenched, its force falls to zero, and only then, at .5386 instead of .5371, does the pin leave the upper
+    strip. The penalty does not matter; on faces, which keep pin and lower strip half a height apart, there is no such stage.
+    """
+    import fem_reference
+
+    depths = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.53, 0.536, 0.5375, 0.538, 0.5385, 0.54])
+    for penalty in (5e6, 1e9):
+        contacts = tuple(replace(contact, penalty=penalty) for contact in AXIS.contacts)
+        result = fem_reference.solve(to_solid(replace(AXIS, contacts=contacts)), depths / 0.76)
+        upper, tip, lower = (result.contacts[pair].force for pair in (UPPER, TIP, LOWER))
+        clenched = slice(7, 10)
+        assert np.all(np.diff(tip[clenched]) < 0)
+        assert np.all(np.diff(lower[clenched]) > 0)
+        assert min(force[clenched].min() for force in (upper, tip, lower)) > 0
+        assert upper[-1] == tip[-1] == 0
+        assert 0.5385 < 0.76 * result.contacts[UPPER].slip_off < 0.539
