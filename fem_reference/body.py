@@ -130,20 +130,22 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Displacements ``(2 n, m)`` that the clamp leaves free.
 
-    An edge without a node at its middle, as two bilinear elements' halves share it, has the rod's clamp on the mean of the
-    two nodes beside the middle: their transverse displacements are opposite.
+    Where the edge has no node at its middle, the rod's clamp holds what the two nodes beside it interpolate there: with
+    three bilinear elements over the height, their transverse displacements are opposite.
     """
     n, edge = len(mesh.nodes), mesh.edges[strip.clamped[0]]
+    y = mesh.nodes[edge, 1] - mesh.nodes[edge[[0, -1]], 1].mean()
     factor = np.ones(2 * n)
     master = np.arange(2 * n)
     factor[2 * edge] = 0
     if strip.clamp == "full":
         factor[2 * edge + 1] = 0
-    elif edge.size % 2:
-        factor[2 * edge[edge.size // 2] + 1] = 0
+    elif np.abs(y).min() < 1e-9 * strip.height:
+        factor[2 * edge[np.argmin(np.abs(y))] + 1] = 0
     else:
-        below, above = 2 * edge[edge.size // 2 - 1] + 1, 2 * edge[edge.size // 2] + 1
-        master[above], factor[above] = below, -1
+        k = int(np.searchsorted(y, 0.0))
+        below, above = 2 * edge[k - 1] + 1, 2 * edge[k] + 1
+        master[above], factor[above] = below, y[k] / y[k - 1]
     order = np.lexsort(
         (np.round(mesh.nodes[:, 1] / strip.height, 9), np.round(mesh.nodes[:, 0] / strip.height, 9))
     )

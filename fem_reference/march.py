@@ -54,7 +54,7 @@ class _Track:
         return self.states[-1]
 
     def predict(self, model: Model, t: float, order: int) -> State:
-        """State at ``t`` by Lagrange's polynomial through the last ``order + 1`` states with the same contacts."""
+        """State at ``t`` by Lagrange's polynomial through the last ``order + 1`` states, contacts as in the last."""
         states = self.states[-order - 1 :]
         times = [at.t for at in states]
         weights = [float(np.prod([(t - tj) / (ti - tj) for tj in times if tj != ti])) for ti in times]

@@ -59,6 +59,7 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None
     assert "solid" not in {row.label for row in found.rows}
     assert any("solid: left out, solid: the solid model needs" in line for line in lines)
     assert any(line.startswith("side-by-side.png: left out") for line in lines)
+    assert any(line.startswith("budget.json: left out") for line in lines)
     assert not (tmp_path / "solid").exists()
     assert (tmp_path / "tsm" / "tsm.pvd").is_file()
 

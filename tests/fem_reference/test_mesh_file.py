@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
+from fem_reference.body import build_body
 from fem_reference.mesh import discretise
 from fem_reference.sampling import sample
 
@@ -162,3 +163,21 @@ def test_samples_are_exact_for_the_elements_own_fields(strip, element):
     )
     with pytest.raises(ValueError, match="outside"):
         sample(d, np.array([[2.0, 0.0]]))
+
+
+def test_clamp_without_a_node_at_the_middle_holds_what_its_neighbours_interpolate(strip, tmp_path):
+    """A rigid rotation about the middle moves both neighbours by what the clamp leaves them: nothing across."""
+    points, quads, lines = parts(ny=3, height=0.3, tilt=0.0)
+    points[:, 1] = 0.15 * np.sinh(3 * (points[:, 1] / 0.15 - 0.1)) / np.sinh(3)
+    body = build_body(
+        strip(mesh_file=write(tmp_path / "a.msh", points, quads, lines), element="Q1", height=0.3)
+    )
+    edge = body.clamped_edge
+    y = body.mesh.nodes[edge, 1]
+    middle = y[[0, -1]].mean()
+    assert np.abs(y - middle).min() > 1e-3
+    stretched = np.stack([0 * body.mesh.nodes[:, 0], body.mesh.nodes[:, 1] - middle], 1)
+    for field, held in ((stretched, False), (stretched * 0 + [0.0, 1.0], True)):
+        q = np.linalg.lstsq(body.expansion.toarray(), field.ravel(), rcond=None)[0]
+        error = np.abs(body.expansion @ q - field.ravel()).max()
+        assert (error > 0.1) if held else (error < 1e-13)
