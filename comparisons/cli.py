@@ -12,6 +12,7 @@ from comparisons.options import OPTIONS, ModelError, Options
 from comparisons.scene import Scene, SceneError, built_in_scenes, load_scene
 from comparisons.scene.rules import RuleError, whole_number
 from comparisons.studies.figures import FIGURES
+from comparisons.studies.questions import QUESTIONS
 
 if TYPE_CHECKING:
     from comparisons.response import Response
@@ -91,6 +92,16 @@ def _parser() -> argparse.ArgumentParser:
         "--quick", action="store_true", help="coarse settings, about half a minute for all"
     )
     reproduce.set_defaults(run=_reproduce)
+
+    asked = "; ".join(f"{name}: {what}" for name, what in QUESTIONS.items())
+    study = commands.add_parser(
+        "study", help="measure how far the solid can be trusted", description=asked, epilog=EPILOG
+    )
+    study.add_argument("question", metavar="QUESTION", choices=tuple(QUESTIONS), help=", ".join(QUESTIONS))
+    study.add_argument(
+        "--out", type=Path, default=Path("out/study"), metavar="DIR", help="folder of the table (out/study)"
+    )
+    study.set_defaults(run=_study)
     return parser
 
 
@@ -173,6 +184,17 @@ def _reproduce(given: argparse.Namespace) -> int:
     for reason in done.stopped:
         print(f"crossval: {reason}", file=sys.stderr)
     return STOPPED if done.stopped else DONE
+
+
+def _study(given: argparse.Namespace) -> int:
+    writable_folder(given.out)
+    from comparisons.studies.output import write_rows
+    from comparisons.studies.solid_accuracy import STUDIES, tabulated
+
+    rows = STUDIES[given.question](_report)
+    print(tabulated(rows))
+    print("file:", write_rows(given.out / f"{given.question}.csv", rows))
+    return DONE
 
 
 def _report(line: str) -> None:

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from comparisons.budget import Budget, error_budget
+from comparisons.budget_plot import plot_budget, write_budget
 from comparisons.export import write_series
 from comparisons.files import writable_folder, write_text
 from comparisons.metrics import errors
@@ -93,8 +95,10 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
         )
         for label, response in responses.items()
     ]
+    report("measuring the error budget")
+    budget = _budget(scene, rows, report)
     report("writing files")
-    return Comparison(rows=rows, files=_write_all(scene, rows, folder, report))
+    return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
 
 
 def _solve_all(scene: Scene, report: Report) -> dict[str, Response]:
@@ -115,12 +119,31 @@ def _solve_all(scene: Scene, report: Report) -> dict[str, Response]:
     return responses
 
 
-def _write_all(scene: Scene, rows: list[Row], folder: Path, report: Report) -> list[Path]:
+def _budget(scene: Scene, rows: list[Row], report: Report) -> Budget | None:
+    """Return the error budget; None, with the reason, where the solid or the rod is not in contact throughout."""
+    solid = next((row.response for row in rows if row.label == SOLID.label), None)
+    if solid is None or not solid.completed:
+        report("budget.json: left out, it takes the solid")
+        return None
+    try:
+        return error_budget(scene)
+    except ModelError as error:
+        report(f"budget.json: left out, {error}")
+        return None
+
+
+def _write_all(
+    scene: Scene, rows: list[Row], budget: Budget | None, folder: Path, report: Report
+) -> list[Path]:
     responses = {row.label: row.response for row in rows}
     names = [run.label for run in (SOLID, *PAPER, ROD)]
     shapes = [folder / "shapes.png", folder / "shapes.svg"]
     plot_shapes(scene, {name: responses[name] for name in names if name in responses}, *shapes)
     files = [*shapes, *_write_picture(scene, responses, folder, report)]
+    if budget is not None:
+        files += [folder / name for name in ("budget.png", "budget.svg", "budget.json")]
+        plot_budget(budget, *files[-3:-1])
+        write_budget(budget, files[-1])
     for run in (MIXED, SOLID):
         if run.label in responses:
             write_series(writable_folder(folder / run.model), responses[run.label], scene)

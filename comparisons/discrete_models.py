@@ -97,7 +97,7 @@ def _rows(rows: list[Any], width: int) -> Array:
 
 
 def solve_solid(scene: Scene, options: Options) -> Response:
-    """Solve `scene` with solid elements and penalty contact."""
+    """Solve `scene` with solid elements in contact."""
     import fem_reference
 
     problem = to_solid(scene, mesh=options.mesh)
@@ -106,8 +106,8 @@ def solve_solid(scene: Scene, options: Options) -> Response:
     except fem_reference.SolveError as error:
         result = error.result
 
-    def axis_line(_: str, k: int) -> tuple[Array, Array]:
-        return fem_reference.axis_stations(result), fem_reference.axis_line(result, k)
+    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+        return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
 
     def grid(k: int) -> Grid:
         displacement = result.displacement[k]
@@ -116,9 +116,19 @@ def solve_solid(scene: Scene, options: Options) -> Response:
             "deformed": result.mesh_points + displacement,
             "cauchy_stress": fem_reference.nodal_stress(result, k),
         }
-        return Grid(points=result.mesh_points, cells={"quad9": result.mesh_cells}, point_data=data)
+        return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
 
-    return _response("solid", scene, result, axis_line, grid, compliance=1.0 / problem.contact.penalty)
+    response = _response("solid", scene, result, axis_line, grid)
+    contacts = {
+        contact.name: replace(
+            response.contacts[contact.name],
+            compliance=1.0 / problem.penalty(contact) if contact.penetration is None else 0.0,
+            slip_off=result.contacts[contact.name].slip_off,
+            vector=result.contacts[contact.name].vector,
+        )
+        for contact in problem.contacts
+    }
+    return replace(response, contacts=contacts)
 
 
 def _response(
@@ -127,8 +137,6 @@ def _response(
     result: Any,
     axis_line: Callable[[str, int], tuple[Array, Array]],
     grid: Callable[[int], Grid],
-    *,
-    compliance: float = 0.0,
 ) -> Response:
     """Take over what both solvers' results have in common."""
     contacts = {
@@ -136,7 +144,6 @@ def _response(
             force=history.force,
             arc_position=history.arc_position,
             gap=history.gap,
-            compliance=compliance,
         )
         for pair, history in result.contacts.items()
     }

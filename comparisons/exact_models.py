@@ -73,7 +73,9 @@ def solve_elastica(scene: Scene, _: Options) -> Response:
     if local.contact is None:
         raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
     if local.offset:
-        raise ModelError('the elastica has contact on its axis only, the scene has surface = "face"')
+        raise ModelError(
+            "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
+        )
     beam = local.beam
     began = perf_counter()
     path: list[ElasticaState] = []

@@ -1,19 +1,24 @@
-"""2D solid elements with penalty contact: the finite-element reference for beam contact."""
+"""2D solid elements with unilateral contact: the finite-element reference for beam contact."""
 
-from fem_reference.material import MATERIALS
+from fem_reference.material import MATERIALS, PLANES
 from fem_reference.observe import axis_line, axis_stations, energy, nodal_stress
-from fem_reference.problem import Contact, Pin, SolidProblem, Strip, default_penalty
+from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
+from fem_reference.sections import SectionForces, face_strains, section_forces
 from fem_reference.settings import Settings
 from fem_reference.solve import solve
 from fem_reference.status import Status
+from fem_reference.strip import ELEMENTS, Strip
 
 __all__ = [
+    "ELEMENTS",
     "MATERIALS",
+    "PLANES",
     "Contact",
     "ContactHistory",
     "Pin",
     "Result",
+    "SectionForces",
     "Settings",
     "SolidProblem",
     "SolveError",
@@ -24,6 +29,8 @@ __all__ = [
     "axis_stations",
     "default_penalty",
     "energy",
+    "face_strains",
     "nodal_stress",
+    "section_forces",
     "solve",
 ]

@@ -1,6 +1,6 @@
 """Internal force and tangent stiffness of the solid, by batched matrix products."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
@@ -15,47 +15,48 @@ class Pattern:
 
     Parameters
     ----------
-    unknowns
-        Degrees of freedom kept, in the order of elimination, ``(m,)``.
     scatter
-        Sparse matrix from all element entries, raveled ``(e, 18, 18)``, to the stored entries of the stiffness.
+        Sparse matrix from all element entries, raveled ``(e, 2 k, 2 k)``, to the stored entries of the stiffness.
     indices, indptr
         Row indices and column pointers of the compressed columns.
     """
 
-    unknowns: Ints
     scatter: csr_matrix
     indices: Ints
     indptr: Ints
 
     def matrix(self, elements: Array) -> csc_matrix:
-        """Assemble element matrices ``(e, 18, 18)`` into the stiffness ``(m, m)``."""
-        m = self.unknowns.size
+        """Assemble element matrices ``(e, 2 k, 2 k)`` into the stiffness ``(m, m)``."""
+        m = self.indptr.size - 1
         return csc_matrix((self.scatter @ elements.ravel(), self.indices, self.indptr), shape=(m, m))
 
 
-def pattern(mesh: Discretisation, unknowns: Ints) -> Pattern:
-    """Build the pattern of the stiffness restricted to ``unknowns``, once per model."""
-    position = np.full(2 * len(mesh.nodes), -1)
-    position[unknowns] = np.arange(unknowns.size)
-    local = position[element_dofs(mesh)]
+def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
+    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, once per model.
+
+    A row of the expansion has at most one entry: a displacement is an unknown, its opposite, or held.
+    """
+    size = expansion.shape[1]
+    entries = expansion.tocoo()
+    position, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
+    position[entries.row], factor[entries.row] = entries.col, entries.data
+    dofs = element_dofs(mesh)
+    local, sign = position[dofs], factor[dofs]
     shape = (*local.shape, local.shape[1])
     row = np.broadcast_to(local[:, :, None], shape).ravel()
     column = np.broadcast_to(local[:, None, :], shape).ravel()
     kept = np.flatnonzero((row >= 0) & (column >= 0))
-    keys, slot = np.unique(column[kept] * unknowns.size + row[kept], return_inverse=True)
-    scatter = csr_matrix((np.ones(kept.size), (slot, kept)), shape=(keys.size, row.size))
-    counts = np.bincount(keys // unknowns.size, minlength=unknowns.size)
+    keys, slot = np.unique(column[kept] * size + row[kept], return_inverse=True)
+    signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
     return Pattern(
-        unknowns=unknowns,
-        scatter=scatter,
-        indices=(keys % unknowns.size).astype(np.int32),
-        indptr=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+        scatter=csr_matrix((signs, (slot, kept)), shape=(keys.size, row.size)),
+        indices=(keys % size).astype(np.int32),
+        indptr=np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(np.int32),
     )
 
 
 def element_dofs(mesh: Discretisation) -> Ints:
-    """Degrees of freedom ``(e, 18)`` of the elements, local order ``2 a + i``."""
+    """Degrees of freedom ``(e, 2 k)`` of the elements, local order ``2 a + i``."""
     return (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
 
 
@@ -75,17 +76,43 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
     elements = len(mesh.cells)
     weighted = (P * mesh.weights).transpose(2, 1, 3, 0).reshape(elements, -1, 2)
     forces = mesh.gradients.transpose(0, 2, 1) @ weighted
-    total = np.zeros((len(mesh.nodes), 2), dtype=forces.dtype)
-    np.add.at(total, mesh.cells, forces)
+    total: Array = mesh.gather @ forces.reshape(-1, 2)
     return total
 
 
-def element_tangents(mesh: Discretisation, A: Array) -> Array:
-    """Element stiffnesses ``(e, 18, 18)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``."""
+def element_tangents(mesh: Discretisation, A: Array, out: Array | None = None) -> Array:
+    """Element stiffnesses ``(e, 2 k, 2 k)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``.
+
+    A's major symmetry leaves three of the four blocks of components to compute. ``out`` is filled if given.
+    """
     elements, rows, shapes = mesh.gradients.shape
-    points = rows // 2
-    G = mesh.gradients.reshape(elements, 2, points, shapes)
-    weighted = (A * mesh.weights).transpose(4, 1, 5, 0, 3, 2)  # e, j, q, i, l, k
-    inner = sum(G[:, None, n, :, None, :, None] * weighted[:, :, :, :, n, None, :] for n in range(2))
-    tangents = mesh.gradients.transpose(0, 2, 1) @ np.reshape(inner, (elements, rows, 4 * shapes))
-    return tangents.reshape(elements, 2 * shapes, 2 * shapes)
+    G = mesh.gradients.reshape(elements, 2, rows // 2, shapes)
+    weighted = (A * mesh.weights)[..., None]
+    inner = np.empty((elements, 2, rows // 2, 3, shapes), dtype=A.dtype)
+    for block, (i, k) in enumerate(((0, 0), (0, 1), (1, 1))):
+        for j in range(2):
+            np.multiply(weighted[i, j, k, 0], G[:, 0], out=inner[:, j, :, block])
+            inner[:, j, :, block] += weighted[i, j, k, 1] * G[:, 1]
+    blocks = mesh.gradients.transpose(0, 2, 1) @ inner.reshape(elements, rows, 3 * shapes)
+    blocks = blocks.reshape(elements, shapes, 3, shapes)
+    size = (elements, 2 * shapes, 2 * shapes)
+    filled = np.empty(size, dtype=A.dtype) if out is None else out
+    tangents = filled.reshape(elements, shapes, 2, shapes, 2)
+    tangents[:, :, 0, :, 0], tangents[:, :, 1, :, 1] = blocks[:, :, 0], blocks[:, :, 2]
+    tangents[:, :, 0, :, 1], tangents[:, :, 1, :, 0] = blocks[:, :, 1], blocks[:, :, 1].swapaxes(1, 2)
+    return filled
+
+
+def batches(mesh: Discretisation) -> tuple[Discretisation, ...]:
+    """Split the elements so that what is computed for a batch of them stays in the processor's cache."""
+    count = -(-len(mesh.cells) // _BATCH)
+    return tuple(
+        replace(mesh, cells=cells, gradients=gradients, weights=weights)
+        for cells, gradients, weights in zip(
+            *(np.array_split(field, count) for field in (mesh.cells, mesh.gradients, mesh.weights)),
+            strict=True,
+        )
+    )
+
+
+_BATCH = 256

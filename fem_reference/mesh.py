@@ -1,37 +1,55 @@
-"""The strip's mesh of biquadratic quadrilaterals, in the strip's own frame.
+"""The strip's mesh of quadrilaterals, in the strip's own frame.
 
-This is the one module that reads scikit-fem's arrays.
+This and `fem_reference.mesh_file` are the modules that read scikit-fem's arrays.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from fem_reference.arrays import Floats, Ints
-from fem_reference.problem import Strip
+from fem_reference.strip import Strip
 
-# Anticlockwise corners, then midsides, then the centre: scikit-fem's order and VTK's biquadratic quad.
-NODES_PER_CELL = 9
+GAUSS = {"Q1": (2, 2), "Q2": (2, 3), "Q2-full": (3, 3)}
+"""Gauss points of each element along the strip and across.
+
+An arc of the angle a over an element's length, drawn by parabolas, has a membrane strain of about a^2 / 24 times
+Legendre's second polynomial; two points along the strip do not see it, three lock by it. Three points across leave the
+rule without modes of no energy.
+"""
+EDGES = ("start", "end", "right", "left")
+"""The ends, and the faces on either side of the direction from start to end."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretisation:
-    """Biquadratic elements of a strip in its own frame (x along the axis from 0 to L, y from -h/2 to h/2).
+    """Elements of a strip in its own frame (x along the axis from 0 to L, y to its left).
 
     Parameters
     ----------
     nodes
         Reference positions ``(n, 2)`` [m].
     cells
-        Nodes of each element ``(e, 9)``: four corners anticlockwise, four midsides, centre.
+        Nodes of each element ``(e, k)``: four corners anticlockwise from the lower left one and, but for Q1, four midsides
+        and the centre.
     gradients
-        Shape-function gradients ``(e, 2 q, 9)``, direction-major in the middle axis [1/m].
+        Shape-function gradients ``(e, 2 q, k)``, direction-major in the middle axis [1/m].
     weights
         Quadrature weights ``(e, q)``, width included [m^3].
     nodal_gradients
-        As ``gradients``, at the nine nodes of each element instead of the quadrature points.
-    columns
-        Nodes ``(2 nx + 1, 2 ny + 1)``: sections along the axis, from the right face to the left one.
+        As ``gradients``, at the nodes of each element instead of the quadrature points.
+    gather
+        Sums at the nodes of what elements state about theirs, ``(n, e k)``.
+    edges
+        Nodes of the four edges by name (`EDGES`): the ends upwards, the faces from start to end.
+    stations
+        Axial coordinates of the sections, increasing, ``(m,)`` [m].
+    sections
+        Section means as weights of the nodes, ``(m, n)``; rows sum to one.
+    basis
+        scikit-fem's scalar basis, for `fem_reference.sampling`.
     """
 
     nodes: Floats
@@ -39,51 +57,88 @@ class Discretisation:
     gradients: Floats
     weights: Floats
     nodal_gradients: Floats
-    columns: Ints
-
-    @property
-    def stations(self) -> Floats:
-        """Axial coordinates of the sections, ``(2 nx + 1,)`` [m]."""
-        x: Floats = self.nodes[self.columns[:, 0], 0]
-        return x
-
-    @property
-    def section_weights(self) -> Floats:
-        """Simpson weights of the section mean, ``(2 ny + 1,)``; they sum to one."""
-        y = self.nodes[self.columns[0], 1]
-        weights = np.zeros(y.size)
-        for j in range(0, y.size - 2, 2):
-            weights[j : j + 3] += (y[j + 2] - y[j]) * np.array([1.0, 4.0, 1.0]) / 6
-        weights /= y[-1] - y[0]
-        return weights
+    gather: csr_matrix
+    edges: dict[str, Ints]
+    stations: Floats
+    sections: csr_matrix
+    basis: Any
 
 
 def discretise(strip: Strip) -> Discretisation:
-    """Mesh a strip with ``strip.mesh`` biquadratic elements, 3 x 3 Gauss points each."""
-    from skfem import Basis, ElementQuad2, MeshQuad
+    """Mesh a strip: equal rows over the height and elements along it in a geometric series, or the user's own mesh."""
+    if strip.mesh_file is not None:
+        from fem_reference.mesh_file import read_mesh
+
+        return read_mesh(strip)
+    from skfem import MeshQuad
 
     nx, ny = strip.mesh
-    x = np.linspace(0.0, strip.length, nx + 1)
+    x = strip.length * _fractions(nx, strip.grading)
     y = strip.height / 2 * np.linspace(-1.0, 1.0, ny + 1)
     tensor = MeshQuad.init_tensor(x, y)
-    mesh = MeshQuad(tensor.p, tensor.t[[0, 3, 2, 1]])
-    element = ElementQuad2()
-    basis = Basis(mesh, element, intorder=5)
-    at_nodes = Basis(mesh, element, quadrature=(element.doflocs.T, np.ones(NODES_PER_CELL)))
-    nodes = basis.doflocs.T.copy()
-    order = np.lexsort((np.round(nodes[:, 1] / strip.height, 9), np.round(nodes[:, 0] / strip.length, 9)))
+    basis = scalar_basis(MeshQuad(tensor.p, tensor.t[[0, 3, 2, 1]]), strip.element)
+    nodes = basis.doflocs.T
+    order = np.lexsort((np.round(nodes[:, 1] / strip.height, 9), np.round(nodes[:, 0] / x[1], 9)))
+    columns = order.reshape(-1, (1 if strip.element == "Q1" else 2) * ny + 1)
+    m, r = columns.shape
+    weights = np.tile(_section_weights(strip.element, r), m)
+    sections = csr_matrix((weights, (np.repeat(np.arange(m), r), columns.ravel())), shape=(m, len(nodes)))
+    edges = {"start": columns[0], "end": columns[-1], "right": columns[:, 0], "left": columns[:, -1]}
+    return from_basis(strip, basis, edges, nodes[columns[:, 0], 0], sections)
+
+
+def scalar_basis(mesh: Any, element: str) -> Any:
+    """scikit-fem's basis of an element on straight-sided quadrilaterals, with its Gauss points (`GAUSS`)."""
+    from skfem import Basis, ElementQuad1, ElementQuad2
+
+    (x, wx), (y, wy) = (np.polynomial.legendre.leggauss(n) for n in GAUSS[element])
+    points = np.stack([np.repeat((1 + x) / 2, y.size), np.tile((1 + y) / 2, x.size)])
+    shapes = ElementQuad1() if element == "Q1" else ElementQuad2()
+    return Basis(mesh, shapes, quadrature=(points, np.outer(wx, wy).ravel() / 4))
+
+
+def from_basis(
+    strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats, sections: csr_matrix
+) -> Discretisation:
+    """Collect the arrays of a scikit-fem basis."""
+    from skfem import Basis
+
+    element, cells = basis.elem, basis.element_dofs.T.astype(np.int64)
+    shapes = len(element.doflocs)
+    at_nodes = Basis(basis.mesh, element, quadrature=(element.doflocs.T, np.ones(shapes)))
     return Discretisation(
-        nodes=nodes,
-        cells=basis.element_dofs.T.astype(np.int64),
+        nodes=basis.doflocs.T.copy(),
+        cells=cells,
         gradients=_gradients(basis.basis),
         weights=strip.width * basis.dx,
         nodal_gradients=_gradients(at_nodes.basis),
-        columns=order.reshape(2 * nx + 1, 2 * ny + 1),
+        gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
+        edges=edges,
+        stations=stations,
+        sections=sections,
+        basis=basis,
     )
 
 
-def _gradients(basis: list[tuple[object, ...]]) -> Floats:
-    """Gradients ``(e, 2 q, 9)`` from scikit-fem's ``(2, e, q)`` per shape function."""
-    stacked = np.stack([field[0].grad for field in basis])  # type: ignore[attr-defined]  # scikit-fem has no types
+def _fractions(n: int, grading: float) -> Floats:
+    """Return ``n + 1`` points of [0, 1] whose distances form a geometric series from 1 to ``grading``."""
+    lengths = grading ** (np.arange(n) / (n - 1))
+    points = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
+    points[-1] = 1.0
+    return points if grading != 1.0 else np.linspace(0.0, 1.0, n + 1)
+
+
+def _section_weights(element: str, nodes: int) -> Floats:
+    """Weights of the mean over a section of equal rows, ``(nodes,)``: the trapezoidal rule for Q1, Simpson's for the others."""
+    pattern, step = ((1.0, 1.0), 1) if element == "Q1" else ((1.0, 4.0, 1.0), 2)
+    weights = np.zeros(nodes)
+    for j in range(0, nodes - step, step):
+        weights[j : j + step + 1] += pattern
+    return np.asarray(weights / weights.sum())
+
+
+def _gradients(basis: Any) -> Floats:
+    """Gradients ``(e, 2 q, k)`` from scikit-fem's ``(2, e, q)`` per shape function."""
+    stacked = np.stack([field[0].grad for field in basis])
     shapes, axes, elements, points = stacked.shape
     return np.ascontiguousarray(stacked.transpose(2, 1, 3, 0)).reshape(elements, axes * points, shapes)

@@ -1,16 +1,16 @@
-"""The discrete model: solid, clamp, contact curve and pin path, in the strip's frame."""
+"""The discrete model: bodies side by side in one vector of nodes, and the pairs that couple them."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import block_diag, csr_matrix
 
-from fem_reference.arrays import Array, Floats, Ints
-from fem_reference.assembly import Pattern, deformation_gradient, element_tangents, internal_force, pattern
-from fem_reference.contact import Curve, Projection, contact_curve, gap_derivatives, project
-from fem_reference.material import MATERIALS, Law, plane_stress_constants
-from fem_reference.mesh import Discretisation, discretise
-from fem_reference.problem import SolidProblem, Strip
+from fem_reference.arrays import Array, Floats
+from fem_reference.body import Body, build_body
+from fem_reference.contact import Carrier, Pair
+from fem_reference.curve import contact_curve
+from fem_reference.problem import Contact, SolidProblem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -21,105 +21,122 @@ class Model:
     ----------
     problem
         What is modelled.
-    mesh
-        Its discretisation.
-    law, constants
-        Material law and its plane-stress constants ``(lam, mu)`` [Pa].
-    stiffness
-        Pattern of the stiffness over the unclamped degrees of freedom, in order along the strip.
-    curve
-        The contact curve.
-    clamped, free_end
-        Indices of the clamped and the free end's section in ``mesh.columns``.
+    bodies
+        Its strips.
+    parts
+        Nodes of each body in the model's arrays of nodes.
+    pairs
+        Its contacts.
+    expansion
+        Displacements from unknowns, ``(2 n, m)``.
     """
 
     problem: SolidProblem
-    mesh: Discretisation
-    law: Law
-    constants: tuple[float, float]
-    stiffness: Pattern
-    curve: Curve
-    clamped: int
-    free_end: int
+    bodies: tuple[Body, ...]
+    parts: tuple[slice, ...]
+    pairs: tuple[Pair, ...]
+    expansion: csr_matrix
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes n."""
+        return int(self.parts[-1].stop)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknown displacements m."""
+        return int(self.expansion.shape[1])
 
     @property
     def force_scale(self) -> float:
-        """``E I / L^2`` [N]: a force that bends the strip, whatever the load."""
-        return self.problem.strip.bending_stiffness / self.problem.strip.length**2
+        """Largest ``E I / L^2`` [N]: a force that bends the strips, whatever the load."""
+        return max(body.force_scale for body in self.bodies)
+
+    @property
+    def length(self) -> float:
+        """Length of the longest strip [m]."""
+        return max(strip.length for strip in self.problem.strips)
 
     @property
     def round_off(self) -> float:
-        """Round-off of a nodal force [N]: 4 machine epsilons times E b L times the elements' aspect ratio.
-
-        Displacements of order L are differenced over an element's short side; the stress E eps L / short acts on
-        b times its long side. Up to twice that was measured on strips from L/h = 50 to 2000.
-        """
-        strip = self.problem.strip
-        sides = strip.length / strip.mesh[0], strip.height / strip.mesh[1]
-        aspect = max(sides) / min(sides)
-        return 4 * float(np.finfo(float).eps) * strip.youngs_modulus * strip.width * strip.length * aspect
+        """Round-off of a nodal force [N]."""
+        return max(body.round_off for body in self.bodies)
 
     @property
     def length_round_off(self) -> float:
-        """Round-off of a position [m]."""
-        return 8 * float(np.finfo(float).eps) * self.problem.strip.length
+        """Round-off of a position [m]: 8 machine epsilons times the scene's reach from the origin."""
+        points = [point for strip in self.problem.strips for point in (strip.start, strip.end)]
+        reach = max(np.hypot(*point) for point in points)
+        return 8 * float(np.finfo(float).eps) * max(float(reach), self.length)
 
-    @property
-    def clamped_point(self) -> Floats:
-        """Middle of the clamped edge, ``(2,)`` [m]."""
-        edge = self.mesh.columns[self.clamped]
-        middle: Floats = self.mesh.nodes[edge[edge.size // 2]]
-        return middle
-
-    def pin_position(self, t: float) -> Floats:
-        """Pin position ``(2,)`` in the strip's frame."""
-        return self.problem.strip.to_local(self.problem.pin.position(t))
-
-    def project(self, u: Array, pin: Floats) -> Projection:
-        """Project the pin on the contact curve deformed by ``u`` ``(n, 2)``."""
-        return project(self.curve, self.mesh.nodes + u, pin, self.problem.contact.sign)
+    def body(self, strip: str) -> tuple[Body, slice]:
+        """Return the body of a strip and its nodes."""
+        number = [item.name for item in self.problem.strips].index(strip)
+        return self.bodies[number], self.parts[number]
 
     def internal_force(self, u: Array) -> Array:
-        """Internal forces of the solid, ``(n, 2)``."""
-        F = deformation_gradient(self.mesh, u)
-        return internal_force(self.mesh, self.law.stress(F, *self.constants))
-
-    def solid_stiffness(self, u: Array) -> csc_matrix:
-        """Tangent stiffness of the solid over the unclamped degrees of freedom."""
-        F = deformation_gradient(self.mesh, u)
-        return self.stiffness.matrix(element_tangents(self.mesh, self.law.tangent(F, *self.constants)))
-
-    def gap_derivatives(self, at: Projection) -> tuple[Array, Array]:
-        """Factors of the gap's derivatives, see `fem_reference.contact.gap_derivatives`."""
-        return gap_derivatives(self.curve, at, len(self.mesh.nodes), self.problem.contact.sign)
+        """Internal forces of the bodies, ``(n, 2)``, each in its own frame."""
+        return np.concatenate([body.internal_force(u[part]) for body, part in self.each()])
 
     def strain_energy(self, u: Array) -> float:
-        """Strain energy of the solid [J]."""
-        W = self.law.energy(deformation_gradient(self.mesh, u), *self.constants)
-        return float((W * self.mesh.weights).sum())
+        """Strain energy of the bodies [J]."""
+        return sum(body.strain_energy(u[part]) for body, part in self.each())
+
+    def each(self) -> list[tuple[Body, slice]]:
+        """Every body with its nodes."""
+        return list(zip(self.bodies, self.parts, strict=True))
 
 
 def build(problem: SolidProblem) -> Model:
     """Discretise a problem."""
-    strip = problem.strip
-    mesh = discretise(strip)
-    clamped, free_end = (0, -1) if strip.clamped == ("start",) else (-1, 0)
-    held = clamped_dofs(strip, mesh.columns[clamped])
-    along = (2 * mesh.columns.ravel()[:, None] + np.arange(2)).ravel()
+    bodies = tuple(build_body(strip) for strip in problem.strips)
+    ends = np.cumsum([0, *(len(body.mesh.nodes) for body in bodies)])
+    parts = tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
     return Model(
         problem=problem,
-        mesh=mesh,
-        law=MATERIALS[strip.material],
-        constants=plane_stress_constants(strip.youngs_modulus, strip.poissons_ratio),
-        stiffness=pattern(mesh, along[~np.isin(along, held)]),
-        curve=contact_curve(mesh, problem.contact),
-        clamped=clamped,
-        free_end=free_end,
+        bodies=bodies,
+        parts=parts,
+        pairs=tuple(_pair(problem, contact, bodies, parts) for contact in problem.contacts),
+        expansion=block_diag([body.expansion for body in bodies], format="csr"),
     )
 
 
-def clamped_dofs(strip: Strip, edge: Ints) -> Ints:
-    """Degrees of freedom that the clamp holds on the nodes ``edge`` of the clamped section."""
-    if strip.clamp == "full":
-        return (2 * edge[:, None] + np.arange(2)).ravel()
-    return np.append(2 * edge, 2 * edge[edge.size // 2] + 1)
+def _pair(
+    problem: SolidProblem, contact: Contact, bodies: tuple[Body, ...], parts: tuple[slice, ...]
+) -> Pair:
+    numbers = {strip.name: number for number, strip in enumerate(problem.strips)}
+    touched, origin = numbers[contact.strip], np.array(problem.strips[0].start)
+    curve = contact_curve(bodies[touched].strip, bodies[touched].mesh, contact)
+    node: Carrier | None = None
+    strips: tuple[int, ...] = (touched,)
+    if problem.pin(contact.node) is None:
+        name, end = contact.node.split(".")
+        strips = (touched, numbers[name])
+        body = bodies[numbers[name]]
+        node = _carrier(
+            body,
+            parts[numbers[name]],
+            parts[-1].stop,
+            body.mesh.sections[[0 if end == "start" else -1]],
+            origin,
+        )
+    pin = problem.pin(contact.node)
+    actor = pin if node is None else node
+    assert actor is not None, "a contact's node is a pin or an end"
+    return Pair(
+        contact=contact,
+        curve=curve,
+        carrier=_carrier(bodies[touched], parts[touched], parts[-1].stop, curve.rows, origin),
+        node=actor,
+        penalty=problem.penalty(contact),
+        strips=strips,
+        origin=origin,
+    )
+
+
+def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix, origin: Floats) -> Carrier:
+    """Points of a body as points of the model."""
+    reference: Floats = (rows @ body.mesh.nodes) @ body.strip.frame.T + (np.array(body.strip.start) - origin)
+    placed = rows.tocoo()
+    wide = csr_matrix((placed.data, (placed.row, placed.col + part.start)), shape=(rows.shape[0], nodes))
+    return Carrier(reference=reference, rows=wide, frame=body.strip.frame)

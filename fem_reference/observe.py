@@ -4,26 +4,27 @@ import numpy as np
 
 from fem_reference.arrays import Floats
 from fem_reference.assembly import deformation_gradient
+from fem_reference.body import Body
 from fem_reference.model import Model
 from fem_reference.result import Result
 from fem_reference.state import State
 
 
-def section_means(model: Model, at: State) -> Floats:
-    """Section-mean positions ``(m, 2)`` in the strip's frame [m]."""
-    x = model.mesh.nodes + at.u
-    return np.asarray(model.mesh.section_weights @ x[model.mesh.columns])
+def section_means(model: Model, at: State, strip: str) -> Floats:
+    """Section-mean positions ``(m, 2)`` of a strip in the global frame [m]."""
+    body, part = model.body(strip)
+    means: Floats = body.mesh.sections @ (body.mesh.nodes + at.u[part])
+    return body.strip.to_global(means)
 
 
-def axis_line(result: Result, k: int) -> Floats:
+def axis_line(result: Result, strip: str, k: int) -> Floats:
     """Deformed axis at the accepted load parameter ``k``: section means ``(m, 2)``, from start to end [m]."""
-    model = result.model
-    return np.asarray(model.problem.strip.to_global(section_means(model, result.states[k])))
+    return section_means(result.model, result.states[k], strip)
 
 
-def axis_stations(result: Result) -> Floats:
+def axis_stations(result: Result, strip: str) -> Floats:
     """Undeformed axial coordinates ``(m,)`` of the points of `axis_line` [m]."""
-    return result.model.mesh.stations
+    return result.model.body(strip)[0].mesh.stations
 
 
 def nodal_stress(result: Result, k: int) -> Floats:
@@ -32,10 +33,14 @@ def nodal_stress(result: Result, k: int) -> Floats:
     ``sigma = P F^T / det F``, evaluated at each element's nodes and averaged over the elements that meet there: force
     per current length in the plane and reference thickness.
     """
-    model = result.model
-    mesh, Q = model.mesh, model.problem.strip.frame
-    F = deformation_gradient(mesh, result.states[k].u, mesh.nodal_gradients)
-    P = model.law.stress(F, *model.constants)
+    u = result.states[k].u
+    return np.concatenate([_nodal_stress(body, u[part]) for body, part in result.model.each()])
+
+
+def _nodal_stress(body: Body, u: Floats) -> Floats:
+    mesh, Q = body.mesh, body.strip.frame
+    F = deformation_gradient(mesh, u, mesh.nodal_gradients)
+    P = body.law.stress(F)
     local = np.einsum("ik...,jk...->ij...", P, F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
     sigma = np.einsum("ai,ij...,bj->ab...", Q, local, Q)
     components = np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)
@@ -45,7 +50,7 @@ def nodal_stress(result: Result, k: int) -> Floats:
 
 
 def energy(result: Result, k: int) -> tuple[float, float]:
-    """Strain energy and contact energy ``lam^2 / (2 eps)`` at the accepted load parameter ``k`` [J]."""
-    at, model = result.states[k], result.model
-    spring = at.force**2 / (2 * model.problem.contact.penalty)
-    return model.strain_energy(at.u), spring
+    """Strain energy and contact energy, ``eps g^2 / 2`` of every penalty, at the accepted load parameter ``k`` [J]."""
+    at = result.states[k]
+    springs = sum(touch.pair.penalty * touch.gap**2 / 2 for touch in at.closed)
+    return result.model.strain_energy(at.u), springs

@@ -1,156 +1,50 @@
-"""What is to be solved: a clamped strip, a pin on a path, and their contact."""
+"""What is to be solved: clamped strips, pins on paths, and their contacts."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import isfinite
 
 import numpy as np
 
-from fem_reference.arrays import Array, Floats
-from fem_reference.material import MATERIALS
-
-Point = tuple[float, float]
-
-
-def _require(condition: bool, owner: str, field: str, value: object, rule: str) -> None:
-    if not condition:
-        raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
-
-
-def _require_positive(owner: str, field: str, value: float) -> None:
-    _require(isfinite(value) and value > 0, owner, field, value, "must be positive and finite")
-
-
-def _require_point(owner: str, field: str, value: Point) -> None:
-    _require(len(value) == 2 and all(map(isfinite, value)), owner, field, value, "must be two finite numbers")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Strip:
-    """A straight strip of rectangular section, clamped at one end.
-
-    Parameters
-    ----------
-    name
-        How results refer to it.
-    start, end
-        Ends of the axis [m]; its direction is from start to end.
-    height, width
-        Dimensions of the section in the plane and out of it [m].
-    youngs_modulus, poissons_ratio
-        Elastic constants [Pa, -]; plane stress.
-    clamped
-        The clamped end, ``("start",)`` or ``("end",)``.
-    clamp
-        ``"rod"``: no axial displacement on the edge, no transverse one at its middle (the clamp of a rod; Poisson's
-        contraction stays free). ``"full"``: both displacements vanish on the edge.
-    mesh
-        Numbers of biquadratic elements along the axis (at least 2) and over the height.
-    material
-        A key of `fem_reference.material.MATERIALS`.
-
-    Raises
-    ------
-    ValueError
-        If a value breaks its rule.
-    """
-
-    name: str
-    start: Point
-    end: Point
-    height: float
-    width: float
-    youngs_modulus: float
-    poissons_ratio: float
-    clamped: tuple[str, ...] = ("start",)
-    clamp: str = "rod"
-    mesh: tuple[int, int] = (50, 2)
-    material: str = "st-venant-kirchhoff"
-
-    def __post_init__(self) -> None:
-        owner = f"Strip({self.name!r})"
-        _require_point(owner, "start", self.start)
-        _require_point(owner, "end", self.end)
-        _require(self.length > 0, owner, "end", self.end, "must differ from start")
-        for field in ("height", "width", "youngs_modulus"):
-            _require_positive(owner, field, getattr(self, field))
-        nu = self.poissons_ratio
-        _require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
-        clamps = (("start",), ("end",))
-        _require(self.clamped in clamps, owner, "clamped", self.clamped, 'must be ("start",) or ("end",)')
-        _require(self.clamp in ("rod", "full"), owner, "clamp", self.clamp, 'must be "rod" or "full"')
-        whole = all(isinstance(n, int) for n in self.mesh) and len(self.mesh) == 2
-        _require(
-            whole and self.mesh[0] >= 2 and self.mesh[1] >= 1,
-            owner,
-            "mesh",
-            self.mesh,
-            "must be two whole numbers, >= 2 and >= 1",
-        )
-        _require(
-            self.material in MATERIALS,
-            owner,
-            "material",
-            self.material,
-            f"must be one of {', '.join(MATERIALS)}",
-        )
-
-    @property
-    def length(self) -> float:
-        """Length of the axis [m]."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
-
-    @property
-    def bending_stiffness(self) -> float:
-        """``E b h^3 / 12`` [N m^2]."""
-        return self.youngs_modulus * self.width * self.height**3 / 12
-
-    @property
-    def frame(self) -> Floats:
-        """Rotation ``Q (2, 2)`` from the strip's frame (x along the axis, origin at start) to the global one."""
-        c = (self.end[0] - self.start[0]) / self.length
-        s = (self.end[1] - self.start[1]) / self.length
-        return np.array([[c, -s], [s, c]])
-
-    def to_local(self, points: Array) -> Array:
-        """Points ``(..., 2)`` from the global frame to the strip's."""
-        local: Array = (points - np.array(self.start)) @ self.frame
-        return local
-
-    def to_global(self, points: Array) -> Array:
-        """Points ``(..., 2)`` from the strip's frame to the global one."""
-        placed: Array = points @ self.frame.T + np.array(self.start)
-        return placed
+from fem_reference.arrays import Floats
+from fem_reference.checks import Point, require, require_choice, require_point, require_positive
+from fem_reference.strip import Strip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """A sharp rigid pin led along a polyline at constant speed.
+    """A rigid circular pin led along a polyline at constant speed.
 
     Parameters
     ----------
     name
         How contacts refer to it.
     path
-        At least two points [m]. The load parameter t in [0, 1] is the fraction of the path's length.
+        At least two positions of its centre [m]. The load parameter t in [0, 1] is the fraction of the path's length.
+    radius
+        Zero for a sharp pin [m].
 
     Raises
     ------
     ValueError
-        If a point is not finite or the path has no length.
+        If a point is not finite, the path has no length or the radius is negative.
     """
 
     name: str
     path: tuple[Point, ...]
+    radius: float = 0.0
 
     def __post_init__(self) -> None:
         owner = f"Pin({self.name!r})"
         for point in self.path:
-            _require_point(owner, "path", point)
-        _require(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
-        _require(len(set(self.path)) > 1, owner, "path", self.path, "must have a positive length")
+            require_point(owner, "path", point)
+        require(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
+        require(len(set(self.path)) > 1, owner, "path", self.path, "must have a positive length")
+        finite = isfinite(self.radius) and self.radius >= 0
+        require(finite, owner, "radius", self.radius, "must be finite and not negative")
 
     def position(self, t: float) -> Floats:
-        """Return the pin's position ``(2,)`` at the load parameter ``t``."""
+        """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
         points = np.array(self.path, dtype=float)
         legs = np.hypot(*np.diff(points, axis=0).T)
         fractions = np.concatenate([[0.0], np.cumsum(legs)]) / legs.sum()
@@ -159,18 +53,29 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """Frictionless unilateral contact of a pin with a strip.
+    """Frictionless unilateral contact of a pin, or of another strip's end, with a strip.
 
     Parameters
     ----------
-    pin, strip
-        Names of the two.
+    node
+        A pin's name, or an end of another strip as ``"upper.end"``: the mean position of that edge.
+    strip
+        Name of the strip touched.
     side
-        Side of the strip, looking from start to end, that the pin comes from: ``"right"`` or ``"left"``.
+        Side of the strip, looking from start to end, that the node comes from: ``"right"`` or ``"left"``.
     surface
-        ``"axis"``: the curve of section-mean positions; ``"face"``: the face on the pin's side.
+        ``"axis"``: the curve of section-mean positions; ``"face"``: the face on the node's side.
     penalty
-        Contact stiffness eps of the energy ``eps |x_c - r|^2 / 2`` [N/m]; see `default_penalty`.
+        Contact stiffness eps of the energy ``eps g^2 / 2`` [N/m]; None for `default_penalty`.
+    penetration
+        Largest penetration left by augmented Lagrangian steps, relative to the strip's length; None leaves what the
+        penalty leaves.
+    spread
+        Half of the length of the strip over which its position is averaged and the contact force spread [m], zero for a
+        sharp contact; None for one and a half heights, at most a tenth of the length.
+    keep
+        Whether the contact, once closed, must not slip off an end of the strip: that ends the solution by name.
+        Otherwise the strip springs back to what the other contacts hold.
 
     Raises
     ------
@@ -178,66 +83,108 @@ class Contact:
         If a value breaks its rule.
     """
 
-    pin: str
+    node: str
     strip: str
     side: str = "right"
     surface: str = "axis"
-    penalty: float
+    penalty: float | None = None
+    penetration: float | None = None
+    spread: float | None = None
+    keep: bool = True
 
     def __post_init__(self) -> None:
         owner = f"Contact({self.name!r})"
-        _require(self.side in ("right", "left"), owner, "side", self.side, 'must be "right" or "left"')
-        _require(self.surface in ("axis", "face"), owner, "surface", self.surface, 'must be "axis" or "face"')
-        _require_positive(owner, "penalty", self.penalty)
+        require_choice(owner, "side", self.side, ("right", "left"))
+        require_choice(owner, "surface", self.surface, ("axis", "face"))
+        if self.penalty is not None:
+            require_positive(owner, "penalty", self.penalty)
+        if self.spread is not None:
+            fits = isfinite(self.spread) and self.spread >= 0
+            require(fits, owner, "spread", self.spread, "must be finite and not negative")
+        if self.penetration is not None:
+            fits = 1e-13 <= self.penetration <= 1
+            require(fits, owner, "penetration", self.penetration, "must lie between 1e-13 and 1")
 
     @property
     def name(self) -> str:
-        """Name of the pair, ``"pin->strip"``."""
-        return f"{self.pin}->{self.strip}"
+        """Name of the pair, ``"node->strip"``."""
+        return f"{self.node}->{self.strip}"
 
     @property
     def sign(self) -> float:
-        """Sign s of the gap ``g = s n . (x_c - r)``, n the left normal: +1 on the left, -1 on the right."""
+        """Sign s of the gap ``g = s n . (x_c - r) - radius``, n the left normal: +1 on the left, -1 on the right."""
         return 1.0 if self.side == "left" else -1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolidProblem:
-    """One strip, one pin and their contact.
+    """Strips, pins and their contacts.
 
     Raises
     ------
     ValueError
-        If the contact names another pin or strip, or if the pin starts on the wrong side of the strip.
+        If two have one name, a contact names nothing, or a node starts on the wrong side of a strip.
     """
 
-    strip: Strip
-    pin: Pin
-    contact: Contact
+    strips: tuple[Strip, ...]
+    pins: tuple[Pin, ...] = ()
+    contacts: tuple[Contact, ...] = ()
 
     def __post_init__(self) -> None:
-        owner = f"Contact({self.contact.name!r})"
-        _require(
-            self.contact.pin == self.pin.name, owner, "pin", self.contact.pin, "must name the problem's pin"
+        require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
+        _require_distinct("strips", [strip.name for strip in self.strips])
+        _require_distinct("pins", [pin.name for pin in self.pins])
+        _require_distinct("contacts", [contact.name for contact in self.contacts])
+        for contact in self.contacts:
+            owner, names = f"Contact({contact.name!r})", [strip.name for strip in self.strips]
+            nodes = [pin.name for pin in self.pins]
+            nodes += [f"{name}.{end}" for name in names if name != contact.strip for end in ("start", "end")]
+            require(contact.strip in names, owner, "strip", contact.strip, f"must name a strip: {names}")
+            rule = f"must name a pin or another strip's end: {nodes}"
+            require(contact.node in nodes, owner, "node", contact.node, rule)
+            self._require_side(contact)
+
+    def strip(self, name: str) -> Strip:
+        """Return the strip called ``name``."""
+        return next(strip for strip in self.strips if strip.name == name)
+
+    def pin(self, name: str) -> Pin | None:
+        """Return the pin called ``name``; None for a strip's end."""
+        return next((pin for pin in self.pins if pin.name == name), None)
+
+    def penalty(self, contact: Contact) -> float:
+        """Contact stiffness eps of a contact [N/m]."""
+        return contact.penalty or default_penalty(self.strip(contact.strip))
+
+    def start_of(self, contact: Contact) -> tuple[Point, float]:
+        """Where a contact's node starts, and its radius."""
+        pin = self.pin(contact.node)
+        if pin is not None:
+            return pin.path[0], pin.radius
+        name, end = contact.node.split(".")
+        strip = self.strip(name)
+        return (strip.start if end == "start" else strip.end), 0.0
+
+    def _require_side(self, contact: Contact) -> None:
+        strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
+        axial, transverse = strip.to_local(np.array(start, dtype=float))
+        height = strip.height / 2 if contact.surface == "face" else 0.0
+        gap = contact.sign * transverse - height - radius
+        pin = self.pin(contact.node) is not None
+        require(
+            gap >= -1e-9 * strip.length or not 0 < axial < strip.length,
+            f"Pin({contact.node!r})" if pin else f"Contact({contact.name!r})",
+            "path[0]" if pin else "node",
+            start,
+            f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})",
         )
-        _require(
-            self.contact.strip == self.strip.name,
-            owner,
-            "strip",
-            self.contact.strip,
-            "must name the problem's strip",
-        )
-        axial, transverse = self.strip.to_local(np.array(self.pin.path[0], dtype=float))
-        height = self.strip.height / 2 if self.contact.surface == "face" else 0.0
-        gap = self.contact.sign * transverse - height
-        length = self.strip.length
-        _require(
-            gap >= -1e-9 * length or not 0 < axial < length,
-            f"Pin({self.pin.name!r})",
-            "path[0]",
-            self.pin.path[0],
-            f"must not start beyond the {self.contact.side} {self.contact.surface} of the strip (gap {gap:.3g})",
-        )
+
+
+def _require_distinct(field: str, names: Iterable[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        require(name not in seen, "SolidProblem", field, name, "must not appear twice")
+        seen.add(name)
 
 
 def default_penalty(strip: Strip) -> float:

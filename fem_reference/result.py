@@ -20,11 +20,17 @@ class ContactHistory:
         Distance of the contact along the undeformed axis from the strip's start, nan where open, ``(s,)`` [m].
     gap
         Signed distance, minus the penetration where closed, ``(s,)`` [m].
+    vector
+        Force on the strip, ``(s, 2)`` [N].
+    slip_off
+        Load parameter at which the contact first left the strip over an end, nan if it did not.
     """
 
     force: Floats
     arc_position: Floats
     gap: Floats
+    vector: Floats
+    slip_off: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,11 +78,11 @@ class Result:
     mesh_points
         Reference positions of the nodes, ``(n, 2)`` [m].
     mesh_cells
-        Nodes of the elements in the order of VTK's biquadratic quad, ``(e, 9)``.
+        Nodes of the elements ``(e, k)`` by VTK's type, ``"quad"`` or ``"quad9"``, in VTK's order.
     displacement
         Nodal displacements, ``(s, n, 2)`` [m].
     model, states
-        The discrete model and its accepted states, in the strip's frame.
+        The discrete model and its accepted states, each strip in its own frame.
     """
 
     status: Status
@@ -92,7 +98,7 @@ class Result:
     unknowns: int
     wall_seconds: float
     mesh_points: Floats = field(repr=False)
-    mesh_cells: Ints = field(repr=False)
+    mesh_cells: dict[str, Ints] = field(repr=False)
     displacement: Floats = field(repr=False)
     model: Model = field(repr=False)
     states: tuple[State, ...] = field(repr=False)

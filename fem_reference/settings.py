@@ -13,11 +13,18 @@ class Settings:
         Largest nodal residual accepted, relative to the larger of contact force and ``E I / L^2``; the round-off of
         a nodal force is added.
     max_iterations
-        Newton iterations in one attempt.
+        Newton iterations with one set of closed contacts.
+    largest_growth, smallest_damping
+        A correction that the next one exceeds by this factor is halved, down to this part of it. Bending that overshoots
+        into stretch makes a good correction's successor grow too: a factor near one costs more than it saves.
     max_contact_changes
-        Changes between open and closed in one attempt.
+        Changes of the set of closed contacts in one attempt.
+    max_augmentations
+        Augmented Lagrangian steps in one attempt.
+    max_penetration
+        Largest penetration accepted, relative to the strip's length.
     balance_tolerance
-        Largest accepted mismatch of clamp reaction and contact force, relative as above.
+        Largest accepted mismatch of clamp reactions and contact forces, relative as above.
     min_step
         Smallest step of the load parameter.
     predictor_order
@@ -31,17 +38,28 @@ class Settings:
 
     tolerance: float = 1e-9
     max_iterations: int = 12
-    max_contact_changes: int = 4
+    largest_growth: float = 5.0
+    smallest_damping: float = 1 / 64
+    max_contact_changes: int = 6
+    max_augmentations: int = 12
+    max_penetration: float = 1e-3
     balance_tolerance: float = 1e-6
     min_step: float = 1e-6
     predictor_order: int = 3
 
     def __post_init__(self) -> None:
-        for field in ("tolerance", "balance_tolerance", "min_step"):
+        for field in ("tolerance", "smallest_damping", "max_penetration", "balance_tolerance", "min_step"):
             value = getattr(self, field)
             if not 0 < value < 1:
                 raise ValueError(f"Settings.{field} = {value!r}: must lie strictly between 0 and 1")
-        for field, low in (("max_iterations", 1), ("max_contact_changes", 0), ("predictor_order", 0)):
+        if not self.largest_growth >= 1:
+            raise ValueError(f"Settings.largest_growth = {self.largest_growth!r}: must be at least 1")
+        for field, low in (
+            ("max_iterations", 1),
+            ("max_contact_changes", 0),
+            ("max_augmentations", 0),
+            ("predictor_order", 0),
+        ):
             value = getattr(self, field)
             if not isinstance(value, int) or value < low:
                 raise ValueError(f"Settings.{field} = {value!r}: must be a whole number, >= {low}")

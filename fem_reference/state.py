@@ -1,85 +1,179 @@
-"""A state of the model and the forces in it, in the strip's frame."""
+"""A state of the model and the forces in it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fem_reference.arrays import Floats
-from fem_reference.contact import Projection
+from fem_reference.contact import Pair
+from fem_reference.curve import Projection
 from fem_reference.model import Model
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class State:
-    """Displacements with their contact.
+@dataclass(frozen=True, kw_only=True)
+class Condition:
+    """What is decided about a contact, rather than computed from displacements.
 
     Parameters
     ----------
-    u
-        Nodal displacements ``(n, 2)`` in the strip's frame [m].
-    pin
-        Pin position ``(2,)`` [m].
     closed
         Whether the contact acts.
+    armed
+        Whether it may: not after its node has left the strip over an end, until it is back on its side.
     force
-        Contact force lam, pushing the strip away from the pin; zero if open [N].
-    projection
-        The pin seen from the contact curve.
-    slopes, curvature
-        Factors ``U`` and ``H`` of the gap's derivatives, see `fem_reference.contact.gap_derivatives`.
+        Contact force lam, pushing the two apart; zero if open [N].
+    multiplier
+        Force lam_0 of the augmented Lagrangian, found before; zero for the penalty alone [N].
     """
 
-    u: Floats
-    pin: Floats
-    closed: bool
-    force: float
+    closed: bool = False
+    armed: bool = True
+    force: float = 0.0
+    multiplier: float = 0.0
+
+    def opened(self, *, armed: bool) -> "Condition":
+        """Return the open contact."""
+        return Condition(closed=False, armed=armed)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Touch:
+    """One contact in a state.
+
+    Parameters
+    ----------
+    pair, condition
+        The contact and what is decided about it.
+    projection
+        The node seen from the contact curve.
+    slopes, curvature
+        Factors ``U (2 n, 3)`` and ``H (3, 3)`` of the gap's derivatives, see `fem_reference.contact`.
+    """
+
+    pair: Pair
+    condition: Condition
     projection: Projection
     slopes: Floats
     curvature: Floats
 
     @property
+    def closed(self) -> bool:
+        """Whether the contact acts."""
+        return self.condition.closed
+
+    @property
+    def force(self) -> float:
+        """Contact force lam [N]."""
+        return self.condition.force
+
+    @property
     def gap(self) -> float:
-        """Signed distance of pin and strip; beyond an end of the strip, the distance to that end [m]."""
-        return float(self.projection.gap if self.projection.inside else self.projection.end_distance)
+        """Signed distance of node and strip, whether or not the closest point is on the strip [m]."""
+        return float(self.pair.gap(self.projection))
+
+    @property
+    def shown_gap(self) -> float:
+        """The gap; beyond an end of the strip, the distance to that end [m]."""
+        beyond = self.projection.end_distance - self.pair.radius
+        return self.gap if self.projection.inside else float(beyond)
+
+    @property
+    def mismatch(self) -> float:
+        """``g + (lam - lam_0) / eps`` [m], zero if open."""
+        added = self.force - self.condition.multiplier
+        return self.gap + added / self.pair.penalty if self.closed else 0.0
 
 
-def state(model: Model, u: Floats, pin: Floats, *, closed: bool, force: float) -> State:
-    """Project the pin and collect the state."""
-    projection = model.project(u, pin)
-    slopes, curvature = model.gap_derivatives(projection)
-    return State(
-        u=u,
-        pin=pin,
-        closed=closed,
-        force=force if closed else 0.0,
-        projection=projection,
-        slopes=slopes,
-        curvature=curvature,
-    )
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Displacements with their contacts.
+
+    Parameters
+    ----------
+    u
+        Nodal displacements ``(n, 2)``, each in the frame of its strip [m].
+    t
+        Load parameter, which places the pins.
+    touches
+        The contacts, in the order of the model's pairs.
+    """
+
+    u: Floats
+    t: float
+    touches: tuple[Touch, ...]
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What is decided about the contacts."""
+        return tuple(touch.condition for touch in self.touches)
+
+    @property
+    def closed(self) -> tuple[Touch, ...]:
+        """The contacts that act."""
+        return tuple(touch for touch in self.touches if touch.closed)
+
+
+def state(model: Model, u: Floats, t: float, conditions: tuple[Condition, ...]) -> State:
+    """Project the nodes and collect the state."""
+    touches = []
+    for pair, condition in zip(model.pairs, conditions, strict=True):
+        projection = pair.project(u, t)
+        U, H = pair.gap_derivatives(projection)
+        kept = condition if condition.closed else condition.opened(armed=condition.armed)
+        touches.append(Touch(pair=pair, condition=kept, projection=projection, slopes=U, curvature=H))
+    return State(u=u, t=t, touches=tuple(touches))
+
+
+def at_rest(model: Model, t: float = 0.0) -> State:
+    """The undeformed state with every contact open."""
+    return state(model, np.zeros((model.nodes, 2)), t, (Condition(),) * len(model.pairs))
+
+
+def with_conditions(at: State, conditions: tuple[Condition, ...]) -> State:
+    """Return the same displacements with other contact conditions."""
+    touches = zip(at.touches, conditions, strict=True)
+    return replace(at, touches=tuple(replace(touch, condition=condition) for touch, condition in touches))
 
 
 def residual(model: Model, at: State) -> Floats:
-    """Internal force minus contact force, ``(n, 2)``; in equilibrium, the support's force [N]."""
-    return model.internal_force(at.u) - at.force * at.slopes[:, 0].reshape(-1, 2)
+    """Internal force minus contact forces, ``(n, 2)``; in equilibrium, the clamps' forces [N]."""
+    R = model.internal_force(at.u)
+    for touch in at.closed:
+        R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
+    return R
 
 
-def push(model: Model, at: State) -> Floats:
-    """Force ``-s lam n`` of the pin on the strip, ``(2,)`` [N]."""
-    return -model.problem.contact.sign * at.force * at.projection.normal
+def push(touch: Touch) -> Floats:
+    """Force ``-s lam n`` of the node on the strip, ``(2,)``, in the global frame [N]."""
+    return np.asarray(-touch.pair.contact.sign * touch.force * touch.projection.normal)
 
 
-def clamp_reaction(model: Model, at: State) -> tuple[Floats, float]:
-    """Force ``(2,)`` [N] of the clamp on the strip and its moment about the clamped point [N m]."""
-    held = np.ones(at.u.size, dtype=bool)
-    held[model.stiffness.unknowns] = False
-    forces = np.where(held.reshape(-1, 2), residual(model, at), 0.0)
-    arm = model.mesh.nodes + at.u - model.clamped_point
-    return forces.sum(axis=0), float((arm[:, 0] * forces[:, 1] - arm[:, 1] * forces[:, 0]).sum())
+def clamp_reactions(model: Model, at: State) -> list[tuple[Floats, float]]:
+    """Force ``(2,)`` [N] of each clamp on its strip, in the global frame, and its moment about the clamped point [N m]."""
+    R, found = residual(model, at), []
+    for body, part in model.each():
+        edge = body.clamped_edge
+        forces = R[part][edge]
+        arm = body.mesh.nodes[edge] + at.u[part][edge] - body.clamped_point
+        moment = float((arm[:, 0] * forces[:, 1] - arm[:, 1] * forces[:, 0]).sum())
+        found.append((np.asarray(body.strip.frame @ forces.sum(axis=0)), moment))
+    return found
 
 
 def imbalance(model: Model, at: State) -> float:
-    """Largest component of clamp reaction plus pin force, moments about the clamped point over L [N]."""
-    force, moment = clamp_reaction(model, at)
-    p, arm = push(model, at), at.pin - model.clamped_point
-    total = (moment + arm[0] * p[1] - arm[1] * p[0]) / model.problem.strip.length
-    return float(np.abs(np.append(force + p, total)).max())
+    """Largest component of the clamps' reactions plus the pins' forces, moments about the first strip's start over L [N]."""
+    strips = model.problem.strips
+    total, moment = np.zeros(2), 0.0
+    for (force, own), body in zip(clamp_reactions(model, at), model.bodies, strict=True):
+        place = np.array(body.strip.start) - strips[0].start
+        total += force
+        moment += own + _cross(place + body.strip.frame @ body.clamped_point, force)
+    for touch in at.closed:
+        if len(touch.pair.strips) == 1:
+            total += push(touch)
+            moment += _cross(touch.pair.position(at.u, at.t), push(touch))
+    return float(np.abs([*total, moment / model.length]).max())
+
+
+def _cross(arm: Floats, force: Floats) -> float:
+    return float(arm[0] * force[1] - arm[1] * force[0])

@@ -19,7 +19,7 @@ from comparisons.scene.rules import (
 
 @dataclass(frozen=True, kw_only=True)
 class PinSpec:
-    """A frictionless point on a prescribed path, traversed at constant speed by the load parameter.
+    """A frictionless point, or a round pin, on a prescribed path, traversed at constant speed by the load parameter.
 
     Parameters
     ----------
@@ -29,6 +29,8 @@ class PinSpec:
         A straight path [length].
     path : tuple of (float, float)
         A polyline [length], instead of `start` and `displacement`.
+    radius : float, optional
+        Of a round pin, whose centre is on the path [length]; a point if not given.
 
     Raises
     ------
@@ -40,6 +42,7 @@ class PinSpec:
     start: Vector | None = None
     displacement: Vector | None = None
     path: Annotated[tuple[Point, ...], rules.polyline] | None = None
+    radius: Positive | None = None
 
     def __post_init__(self) -> None:
         apply_rules(self)
@@ -91,6 +94,9 @@ class ContactSpec:
         The beam's axis, or its face at half the height.
     penalty : float
         Penalty stiffness of the solid model [force/length]; automatic if not given.
+    penetration : float
+        Largest penetration that the solid's augmented Lagrangian steps leave, relative to the beam's length; if not given,
+        what the penalty leaves.
     keep : bool
         Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.
     """
@@ -100,6 +106,7 @@ class ContactSpec:
     side: Annotated[str, rules.choice("right", "left")]
     surface: Annotated[str, rules.choice("axis", "face")] = "axis"
     penalty: Positive | None = None
+    penetration: Positive | None = None
     keep: Annotated[bool, rules.truth] = False
 
     def __post_init__(self) -> None:

@@ -48,8 +48,13 @@ class BeamSpec:
     mesh : (int, int)
         Elements of the solid along and across.
     solid_clamp : {"rod", "full"}
-        Clamp of the solid: section mean only, or both displacements of the whole edge.
-    material : {"st-venant-kirchhoff", "biot-linear"}
+        Clamp of the solid: free to contract, or both displacements of the whole edge held.
+    solid_element : {"Q1", "Q2", "Q2-full"}
+        Elements of the solid.
+    solid_mesh_file : str, optional
+        A mesh of the solid's own in place of `mesh`, in the beam's frame, with named edges: see
+        `fem_reference.mesh_file.read_mesh`.
+    material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
         Law of the solid.
 
     Raises
@@ -73,7 +78,11 @@ class BeamSpec:
     elements: Count = 20
     mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
     solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
-    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear")] = "st-venant-kirchhoff"
+    solid_mesh_file: Annotated[str, rules.text] | None = None
+    solid_element: Annotated[str, rules.choice("Q1", "Q2", "Q2-full")] = "Q2"
+    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean")] = (
+        "st-venant-kirchhoff"
+    )
 
     def __post_init__(self) -> None:
         apply_rules(self)
@@ -173,9 +182,14 @@ class Scene:
         return next(pin for pin in self.pins if pin.name == name)
 
     def offset(self, contact: ContactSpec) -> float:
-        """Distance of the contact surface from the axis."""
+        """Distance of the contact's node, or of its pin's centre, from the axis where they touch."""
         height = self.beam(contact.beam).height
-        return 0.0 if contact.surface == "axis" or height is None else height / 2.0
+        surface = 0.0 if contact.surface == "axis" or height is None else height / 2.0
+        return surface + self.radius(contact)
+
+    def radius(self, contact: ContactSpec) -> float:
+        """Radius of the contact's pin, zero for a point."""
+        return next((pin.radius or 0.0 for pin in self.pins if pin.name == contact.node), 0.0)
 
     @property
     def all_supports(self) -> tuple[SupportSpec, ...]:

@@ -1,13 +1,16 @@
-"""A scene as a solid strip: plane stress, thickness equal to the width, a penalty for the contact."""
+"""A scene as solid strips: plane stress, thickness equal to the width, unilateral contact."""
 
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from comparisons.options import ModelError
 from comparisons.scene import BeamSpec, Scene
-from comparisons.translate.one_beam import one_beam_under_a_pin
 
 if TYPE_CHECKING:
     from fem_reference import SolidProblem, Strip
+
+SLENDER = 0.1
+"""Largest height over length of the rectangle that stands for a section given by area and second moment."""
 
 
 def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProblem":
@@ -16,37 +19,81 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     Parameters
     ----------
     scene : Scene
-        One beam given by width and height, clamped at one end and not supported at the other, and one pin.
+        Beams, each clamped at one end and not supported at the other, pins and contacts.
     mesh : (int, int), optional
-        Elements along and across, in place of the scene's.
+        Elements along and across of every beam, in place of the scene's.
 
     Raises
     ------
     ModelError
         If the scene is another one.
     """
-    from fem_reference import Contact, Pin, SolidProblem, default_penalty
+    from fem_reference import Contact, Pin, SolidProblem
 
-    clamp = one_beam_under_a_pin(scene, "the solid model has")
-    strip, pin, contact = _strip(scene.beams[0], clamp.end, mesh), scene.pins[0], scene.contacts[0]
+    if scene.loads:
+        raise ModelError(f'the solid model has no dead loads, the scene loads "{scene.loads[0].node}"')
+    if not scene.pins:
+        raise ModelError("the solid model has a pin that moves, the scene has none")
     return SolidProblem(
-        strip=strip,
-        pin=Pin(name=pin.name, path=pin.points),
-        contact=Contact(
-            pin=contact.node,
-            strip=contact.beam,
-            side=contact.side,
-            surface=contact.surface,
-            penalty=contact.penalty or default_penalty(strip),
+        strips=tuple(_strip(beam, _clamp(scene, beam), mesh) for beam in scene.beams),
+        pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
+        contacts=tuple(
+            Contact(
+                node=contact.node,
+                strip=contact.beam,
+                side=contact.side,
+                surface=contact.surface,
+                penalty=contact.penalty,
+                penetration=contact.penetration,
+                keep=contact.keep,
+            )
+            for contact in scene.contacts
         ),
     )
+
+
+def _clamp(scene: Scene, beam: BeamSpec) -> str:
+    """Return the clamped end of a beam that is held nowhere else."""
+    supports = scene.supports_of(beam.name)
+    if not supports or len(supports[0].held) < 3:
+        raise ModelError(f'the solid model has one end clamped, none of beam "{beam.name}" is')
+    clamp, *others = supports
+    if others:
+        raise ModelError(f'the solid model has one support, beam "{beam.name}" has two')
+    if clamp.moves:
+        raise ModelError(f'the solid model has the clamp at rest, "{clamp.node}" moves')
+    others_ends = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
+    if others_ends & {beam.start, beam.end}:
+        raise ModelError(f'the solid model has no joints, beam "{beam.name}" is joined to another')
+    return clamp.end
+
+
+def rectangle(beam: BeamSpec) -> tuple[float, float]:
+    """Return width and height of a beam's section, or of the rectangle with its area and second moment.
+
+    ``h = sqrt(12 I / A)``, ``b = A / h``.
+
+    Raises
+    ------
+    ModelError
+        If that rectangle is not slender in the plane.
+    """
+    if beam.width is not None and beam.height is not None:
+        return beam.width, beam.height
+    area, inertia, _ = beam.cross_section
+    height = sqrt(12.0 * inertia / area)
+    if height > SLENDER * beam.length:
+        raise ModelError(
+            f'the solid model needs the width and height of beam "{beam.name}": the rectangle of its area and second '
+            f"moment is {height:.3g} high, more than a tenth of the length"
+        )
+    return area / height, height
 
 
 def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip":
     from fem_reference import Strip
 
-    if beam.width is None or beam.height is None:
-        raise ModelError(f'the solid model needs the width and height of beam "{beam.name}"')
+    width, height = rectangle(beam)
     nu = beam.poissons_ratio
     if nu is None:
         nu = beam.youngs_modulus / (2.0 * (beam.shear_modulus or beam.youngs_modulus)) - 1.0
@@ -60,12 +107,14 @@ def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip
         name=beam.name,
         start=beam.start,
         end=beam.end,
-        height=beam.height,
-        width=beam.width,
+        height=height,
+        width=width,
         youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
         clamped=(clamped,),
         clamp=beam.solid_clamp,
+        element=beam.solid_element,
+        mesh_file=beam.solid_mesh_file if mesh is None else None,
         mesh=mesh or beam.mesh,
         material=beam.material,
     )

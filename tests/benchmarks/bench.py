@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -185,32 +185,68 @@ def exact_element(gates: list[Gate], times: dict[str, float]) -> None:
 
 
 def assembly(gates: list[Gate], times: dict[str, float]) -> None:
-    from fem_reference.model import build
+    """Tangent and residual of the solid against scikit-fem's forms, and against the factorisation."""
+    from scipy.sparse.linalg import splu
 
+    from fem_reference.body import build_body
+
+    forms = _forms()
+    for mesh, repeats in (((50, 2), 7), ((200, 4), 7), ((1000, 20), 1)):
+        strip = replace(to_solid(load_scene("ks-cantilever"), mesh=mesh).strips[0], element="Q2-full")
+        body, name = build_body(strip), f"{mesh[0]}x{mesh[1]}"
+        u = 1e-4 * np.random.default_rng(0).standard_normal(body.mesh.nodes.shape)
+        E, nu = strip.youngs_modulus, strip.poissons_ratio
+        lam, mu = E * nu / (1 - nu**2), E / (2 * (1 + nu))
+        basis, K = forms.vector_basis(body.mesh.nodes, body.mesh.cells), body.tangent(u)
+
+        def batched(body: Any = body, u: Any = u) -> None:
+            body.internal_force(u)
+            body.tangent(u)
+
+        def bilinear(basis: Any = basis, u: Any = u, lam: float = lam, mu: float = mu) -> None:
+            forms.tangent_and_residual(basis, u.ravel(), lam, mu, 0.02)
+
+        def factorise(K: Any = K, ordering: str = body.ordering) -> None:
+            splu(K, permc_spec=ordering)
+
+        ours, theirs, factor = seconds(batched, bilinear, factorise, repeats=repeats)
+        times |= {
+            f"tangent + residual {name}, batched": ours,
+            f"tangent + residual {name}, BilinearForm": theirs,
+            f"factorisation {name}": factor,
+        }
+        gates.append(Gate(f"BilinearForm over batched products, {name}", theirs / ours, 15, True))
+        if mesh == (200, 4):
+            gates.append(Gate(f"assembly over factorisation, {name}", ours / factor, 1, False))
+
+
+def _forms() -> Any:
     path = Path(__file__).parents[1] / "fem_reference" / "bilinear_reference.py"
     spec = importlib.util.spec_from_file_location("bilinear_reference", path)
     assert spec is not None
     assert spec.loader is not None
     forms = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(forms)
-    solid = to_solid(load_scene("ks-cantilever"), mesh=(50, 2))
-    model = build(solid)
-    mesh = model.mesh
-    u = 1e-3 * np.random.default_rng(0).standard_normal(mesh.nodes.shape)
-    E, nu = solid.strip.youngs_modulus, solid.strip.poissons_ratio
-    lam, mu = E * nu / (1 - nu**2), E / (2 * (1 + nu))
-    basis = forms.vector_basis(mesh.nodes, mesh.cells)
+    return forms
 
-    def batched() -> None:
-        model.internal_force(u)
-        model.solid_stiffness(u)
 
-    def bilinear() -> None:
-        forms.tangent_and_residual(basis, u.ravel(), lam, mu, solid.strip.width)
+PEAK = """
+import resource
+import numpy as np
+import fem_reference
+from comparisons.scene import load_scene
+from comparisons.translate import to_solid
+fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
 
-    ours, theirs = seconds(batched, bilinear)
-    times |= {"tangent + residual 50x2, batched": ours, "tangent + residual 50x2, BilinearForm": theirs}
-    gates.append(Gate("BilinearForm over batched products, 50x2", theirs / ours, 15, True))
+
+def memory(gates: list[Gate], times: dict[str, float]) -> None:
+    """Peak memory of one load parameter on 1000x20, 164,000 unknowns."""
+    begin = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", PEAK], check=True, capture_output=True, text=True)
+    times["one load parameter, 1000x20"] = time.perf_counter() - begin
+    gates.append(Gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5, False))
 
 
 def import_time(gates: list[Gate], times: dict[str, float]) -> None:
@@ -237,6 +273,7 @@ def main() -> None:
         linear_cost,
         exact_element,
         assembly,
+        memory,
         import_time,
     ):
         part(gates, times)

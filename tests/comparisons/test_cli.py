@@ -137,12 +137,13 @@ def test_bad_scene_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_model_that_cannot_state_the_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "area.toml"
     path.write_text(
-        KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-8")
+        KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-6")
     )
     assert run("solve", str(path), "--model", "solid") == 2
     assert (
         capsys.readouterr().err
-        == 'crossval: solid: the solid model needs the width and height of beam "cantilever"\n'
+        == 'crossval: solid: the solid model needs the width and height of beam "cantilever": the rectangle of its area '
+        "and second moment is 0.2 high, more than a tenth of the length\n"
     )
     assert run("solve", str(path), "--model", "tsm") == 0
 
@@ -152,7 +153,8 @@ def test_a_stopped_solution_is_status_3_and_keeps_what_was_reached(
 ) -> None:
     path, result = tmp_path / "slip.toml", tmp_path / "a.json"
     pin = "start = [0.9, 0.0]\ndisplacement = [0.0, 0.6]"
-    path.write_text(KS.replace("start = [1.0, 0.0]\ndisplacement = [-1.0, 0.6366197723675814]", pin))
+    scene = KS.replace("start = [1.0, 0.0]\ndisplacement = [-1.0, 0.6366197723675814]", pin)
+    path.write_text(scene.replace('side = "right"', 'side = "right"\nkeep = true'))
     assert run("solve", str(path), "--model", "solid", "--mesh", "16x1", "--json", str(result)) == 3
     err = capsys.readouterr().err
     assert "LOST_CONTACT" in err

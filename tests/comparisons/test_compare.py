@@ -15,6 +15,7 @@ from comparisons.scene import load_scene, read_scene, to_toml
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 FILES = {
     "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "tsm/tsm.pvd", "solid/solid.pvd",
+    "budget.png", "budget.svg", "budget.json",
 }  # fmt: skip
 
 
@@ -52,12 +53,13 @@ def test_compare_writes_every_file_and_the_same_numbers(
 
 
 def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None:
-    beam = replace(KS.beams[0], width=None, height=None, area=4e-4, second_moment=4e-8 / 3.0)
+    beam = replace(KS.beams[0], width=None, height=None, area=4e-4, second_moment=4e-6 / 3.0)
     lines: list[str] = []
     found = compare(replace(KS, beams=(beam,), load_parameters=2), tmp_path, lines.append)
     assert "solid" not in {row.label for row in found.rows}
     assert any("solid: left out, solid: the solid model needs" in line for line in lines)
     assert any(line.startswith("side-by-side.png: left out") for line in lines)
+    assert any(line.startswith("budget.json: left out") for line in lines)
     assert not (tmp_path / "solid").exists()
     assert (tmp_path / "tsm" / "tsm.pvd").is_file()
 
@@ -67,7 +69,8 @@ def test_a_run_that_stops_is_named_and_the_rest_goes_on(
 ) -> None:
     pin = replace(KS.pins[0], start=(0.9, 0.0), displacement=(0.0, 0.6))
     scene = tmp_path / "slip.toml"
-    scene.write_text(to_toml(replace(KS, pins=(pin,), load_parameters=4)))
+    contact = replace(KS.contacts[0], keep=True)
+    scene.write_text(to_toml(replace(KS, pins=(pin,), contacts=(contact,), load_parameters=4)))
     assert main(["compare", str(scene), "--out", str(tmp_path / "out")]) == 3
     printed, progress = capsys.readouterr()
     assert "crossval: solid: LOST_CONTACT" in progress

@@ -21,7 +21,7 @@ ROUND_TRIP = {"rtol": 1e-12, "atol": 1e-12}
 
 @pytest.fixture(scope="module", params=["tsm", "solid", "rod"])
 def response(request: pytest.FixtureRequest) -> Response:
-    options = {"tsm": Options(elements=4), "solid": Options(mesh=(8, 2))}
+    options = {"tsm": Options(elements=4), "solid": Options(mesh=(12, 2))}
     return solve(SCENE, request.param, options.get(request.param))
 
 
@@ -52,12 +52,12 @@ def test_fields_of_each_model(response: Response) -> None:
 
 
 def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
-    solid = solve(SCENE, "solid", Options(mesh=(8, 2)))
+    solid = solve(SCENE, "solid", Options(mesh=(12, 2)))
     write_vtu(tmp_path / "solid.vtu", solid.grid(0))
     view = pyvista.read(tmp_path / "solid.vtu")
     assert set(view.celltypes) == {pyvista.CellType.BIQUADRATIC_QUAD}
     # VTK integrates its own biquadratic cells: a wrong order of points gives another area
-    assert view.compute_cell_sizes()["Area"] == pytest.approx(np.full(16, 0.02 / 16), rel=1e-12)
+    assert view.compute_cell_sizes()["Area"] == pytest.approx(np.full(24, 0.02 / 24), rel=1e-12)
 
 
 def test_pin_force_balances_the_clamp_and_points_away_from_the_pin(response: Response) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.models import solve
 from comparisons.options import ModelError
 from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 from comparisons.translate import to_rod, to_solid, to_structure
@@ -31,18 +32,15 @@ def test_solid_takes_the_scene_or_the_option() -> None:
     scene = with_beam(FACE, mesh=(30, 4), solid_clamp="full", material="biot-linear")
     scene = replace(scene, contacts=(replace(scene.contacts[0], penalty=7.0),))
     problem = to_solid(scene)
-    assert (problem.strip.mesh, problem.strip.clamp, problem.strip.material) == (
-        (30, 4),
-        "full",
-        "biot-linear",
-    )
-    assert (problem.contact.penalty, problem.contact.surface) == (7.0, "face")
-    assert to_solid(scene, mesh=(10, 1)).strip.mesh == (10, 1)
+    strip, contact = problem.strips[0], problem.contacts[0]
+    assert (strip.mesh, strip.clamp, strip.material) == ((30, 4), "full", "biot-linear")
+    assert (contact.penalty, contact.surface) == (7.0, "face")
+    assert to_solid(scene, mesh=(10, 1)).strips[0].mesh == (10, 1)
 
 
 def test_solid_finds_nu_from_the_shear_modulus() -> None:
     scene = with_beam(KS, poissons_ratio=None, shear_modulus=2.1e4 / 2.5)
-    assert to_solid(scene).strip.poissons_ratio == pytest.approx(0.25)
+    assert to_solid(scene).strips[0].poissons_ratio == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize(
@@ -67,9 +65,29 @@ def test_two_beams_are_for_beams_only() -> None:
         "pin->cantilever",
         "lower.end->cantilever",
     ]
-    for translate in (to_rod, to_solid):
-        with pytest.raises(ModelError, match="one beam, one pin and one contact"):
-            translate(scene)
+    assert [contact.name for contact in to_solid(scene).contacts] == [
+        "pin->cantilever",
+        "lower.end->cantilever",
+    ]
+    with pytest.raises(ModelError, match="one beam, one pin and one contact"):
+        to_rod(scene)
+
+
+def test_solid_takes_the_rectangle_of_area_and_second_moment() -> None:
+    strips = to_solid(load_scene("double-beam")).strips
+    assert [strip.name for strip in strips] == ["upper", "lower"]
+    for strip in strips:
+        assert strip.width * strip.height == pytest.approx(3.0e-4)
+        assert strip.bending_stiffness == pytest.approx(2.0e7 * 2.2e-8)
+        assert strip.poissons_ratio == pytest.approx(0.4, abs=2e-4)
+
+
+def test_solid_refuses_joints_and_loads() -> None:
+    lower = replace(KS.beams[0], name="lower", start=(1.0, 0.0), end=(2.0, 0.0), clamped=("end",))
+    with pytest.raises(ModelError, match="no joints"):
+        to_solid(replace(KS, beams=(*KS.beams, lower)))
+    with pytest.raises(ModelError, match="no dead loads"):
+        to_solid(replace(KS, loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)))
 
 
 def test_unknown_element_is_named() -> None:
@@ -124,3 +142,27 @@ def test_structure_takes_over_supports_loads_and_keep() -> None:
 @pytest.mark.parametrize("element", tsm.ELEMENTS)
 def test_every_element_of_tsm_can_be_chosen_by_name(element: str) -> None:
     assert to_structure(KS, element=element).beams[0].element == element
+
+
+def test_round_pin_is_an_offset_for_rods_and_a_radius_for_the_solid() -> None:
+    pin = replace(FACE.pins[0], start=(1.0, -0.015), radius=0.005)
+    contact = replace(FACE.contacts[0], penetration=1e-10)
+    scene = replace(FACE, pins=(pin,), contacts=(contact,))
+    assert to_structure(scene).contacts[0].offset == pytest.approx(0.015)
+    assert to_rod(scene).offset == pytest.approx(0.015)
+    problem = to_solid(with_beam(scene, solid_element="Q2-full"))
+    assert (problem.pins[0].radius, problem.contacts[0].penetration) == (0.005, 1e-10)
+    assert problem.strips[0].element == "Q2-full"
+
+
+def test_mesh_file_is_the_scenes_unless_a_mesh_is_asked_for() -> None:
+    scene = with_beam(KS, solid_mesh_file="mine.msh")
+    assert to_solid(scene).strips[0].mesh_file == "mine.msh"
+    assert to_solid(scene, mesh=(20, 2)).strips[0].mesh_file is None
+
+
+def test_mesh_file_that_is_not_there_costs_one_line() -> None:
+    with pytest.raises(
+        ModelError, match=r"solid: Strip\('cantilever'\)\.mesh_file = 'nothing.msh': cannot be read"
+    ):
+        solve(with_beam(KS, solid_mesh_file="nothing.msh"), "solid")

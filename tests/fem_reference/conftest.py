@@ -1,13 +1,14 @@
 """Strips, pins and solutions that several tests share."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.model import Model, build
+from fem_reference.model import Model
 
 Make = Callable[..., Any]
 
@@ -27,12 +28,16 @@ def _strip(**changes: Any) -> fr.Strip:
 
 
 def _problem(
-    path: Any = None, side: str = "right", surface: str = "axis", penalty: float = 1e4, **changes: Any
+    path: Any = None, radius: float = 0.0, contact: dict[str, Any] | None = None, **changes: Any
 ) -> fr.SolidProblem:
-    y = -0.01 if surface == "face" else 0.0
+    values: dict[str, Any] = {"node": "pin", "strip": "cantilever", "penalty": 1e4} | (contact or {})
+    y = (-0.01 if values.get("surface") == "face" else 0.0) - radius
     ks = ((1.0, y), (0.0, y + 2 / np.pi))
-    contact = fr.Contact(pin="pin", strip="cantilever", side=side, surface=surface, penalty=penalty)
-    return fr.SolidProblem(strip=_strip(**changes), pin=fr.Pin(name="pin", path=path or ks), contact=contact)
+    return fr.SolidProblem(
+        strips=(_strip(**changes),),
+        pins=(fr.Pin(name="pin", path=path or ks, radius=radius),),
+        contacts=(fr.Contact(**values),),
+    )
 
 
 @pytest.fixture(scope="session")
@@ -46,10 +51,16 @@ def problem() -> Make:
     return _problem
 
 
+def _with_pin(model: Model, point: Any, **changes: Any) -> Model:
+    place = tuple(map(float, point))
+    pin = fr.Pin(name="pin", path=(place, (place[0] + 1.0, place[1])), **changes)
+    return replace(model, pairs=(replace(model.pairs[0], node=pin),))
+
+
 @pytest.fixture(scope="session")
-def small_model() -> Model:
-    """A short strip on a coarse mesh."""
-    return build(_problem(path=((0.95, 0.0), (0.5, 0.2)), height=0.2, mesh=(5, 2)))
+def with_pin() -> Callable[..., Model]:
+    """The model with its pin at a point at the load parameter 0."""
+    return _with_pin
 
 
 @pytest.fixture(scope="session")
@@ -59,4 +70,4 @@ def ks_axis() -> fr.Result:
 
 @pytest.fixture(scope="session")
 def ks_face() -> fr.Result:
-    return fr.solve(_problem(surface="face"), np.arange(1, 51) / 50)
+    return fr.solve(_problem(contact={"surface": "face"}), np.arange(1, 51) / 50)

@@ -1,8 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from scipy.sparse import eye_array
 
-from fem_reference.contact import Curve, gap_derivatives, project
+import fem_reference as fr
+from fem_reference.curve import Curve, averaging
 from fem_reference.model import build
 
 STEP = 1e-30
@@ -13,137 +17,195 @@ PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97
 
 @pytest.fixture
 def model(request, problem):
-    return build(problem(height=0.2, mesh=(5, 2), surface=getattr(request, "param", "axis")))
-
-
-def bent(model, seed=0):
-    """Nodes of a bent strip with some noise."""
-    x = model.mesh.nodes
-    noise = 0.004 * np.random.default_rng(seed).standard_normal(x.shape)
-    angle = 1.2 * x[:, 0]
-    return (
-        np.stack(
-            [
-                np.sin(angle) / 1.2 - x[:, 1] * np.sin(angle),
-                (1 - np.cos(angle)) / 1.2 + x[:, 1] * np.cos(angle),
-            ],
-            1,
+    """A strip turned by 0.4 in its scene, so that no frame is mistaken for another."""
+    end = (float(np.cos(0.4)), float(np.sin(0.4)))
+    return build(
+        problem(
+            height=0.2,
+            mesh=(5, 2),
+            end=end,
+            path=((2.0, 2.0), (1.0, 1.0)),
+            contact={"surface": getattr(request, "param", "axis")},
         )
-        + noise
     )
 
 
-def pin_near(curve, x, zeta, distance):
-    r, r1, _ = curve.basis(zeta) @ curve.points(x)
+def bent(model, seed=0):
+    """Displacements of a bent strip with some noise."""
+    x = model.bodies[0].mesh.nodes
+    noise = 0.004 * np.random.default_rng(seed).standard_normal(x.shape)
+    angle = 1.2 * x[:, 0]
+    bend = np.stack([np.sin(angle), 1 - np.cos(angle)], 1) / 1.2
+    return bend + x[:, 1:] * np.stack([-np.sin(angle), np.cos(angle)], 1) + noise - x
+
+
+def near(model, u, zeta, distance):
+    """The point at a distance to the left of the curve at zeta."""
+    pair = model.pairs[0]
+    r, r1, _ = pair.curve.basis(zeta) @ pair.carrier.points(u)
     return r + distance * np.array([-r1[1], r1[0]]) / np.hypot(*r1)
 
 
 @surfaces
 def test_curve_interpolates_sections_and_straight_lines(problem, surface):
-    model = build(problem(mesh=(6, 2), surface=surface))
-    X = model.curve.points(model.mesh.nodes)
+    pair = build(problem(mesh=(6, 2), contact={"surface": surface})).pairs[0]
+    X = pair.carrier.reference
     height = 0.0 if surface == "axis" else -0.01
     for zeta in (0.0, 0.123, 0.5, 0.987, 1.0, 1.01):
-        r, r1, r2 = model.curve.basis(zeta) @ X
+        r, r1, r2 = pair.curve.basis(zeta) @ X
         np.testing.assert_allclose(r, [zeta, height], atol=1e-14)
         np.testing.assert_allclose(r1, [1, 0], atol=1e-12)
         np.testing.assert_allclose(r2, 0, atol=1e-9)
 
 
 def test_face_is_the_one_on_the_pins_side(problem):
-    left = build(problem(side="left", surface="face", path=((0.5, 0.01), (0.5, 0.0))))
-    assert left.curve.points(left.mesh.nodes)[:, 1] == pytest.approx(0.01)
+    left = build(problem(contact={"side": "left", "surface": "face"}, path=((0.5, 0.01), (0.5, 0.0))))
+    assert left.pairs[0].carrier.reference[:, 1] == pytest.approx(0.01)
 
 
 def test_curve_is_twice_continuously_differentiable(model):
-    s = model.curve.stations
-    for k in range(1, s.size - 1):
-        before, after = model.curve.basis(np.nextafter(s[k], 0)), model.curve.basis(np.nextafter(s[k], 1))
+    curve = model.pairs[0].curve
+    for station in curve.stations[1:-1]:
+        before, after = curve.basis(np.nextafter(station, 0)), curve.basis(np.nextafter(station, 1))
         scale = np.array([1.0, 1 / 0.1, 1 / 0.01])[:, None]
         np.testing.assert_allclose(before / scale, after / scale, atol=1e-11)
 
 
 def test_curve_derivatives_by_complex_steps(model):
+    curve = model.pairs[0].curve
     for zeta in PLACES:
-        B, step = model.curve.basis(zeta), model.curve.basis(zeta + 1j * STEP).imag / STEP
+        B, step = curve.basis(zeta), curve.basis(zeta + 1j * STEP).imag / STEP
         np.testing.assert_allclose(B[1], step[0], atol=1e-12)
         np.testing.assert_allclose(B[2], step[1], atol=1e-10)
 
 
-def test_curve_converges_with_fourth_order():
+@pytest.mark.parametrize("spread", [0.0, 1e-4])
+def test_curve_converges_with_fourth_order(spread):
     """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
 
     def error(n):
         s = np.linspace(0, 1, n + 1)
         slopes = CubicSpline(s, np.eye(n + 1))(s, 1)
-        curve = Curve(stations=s, slopes=slopes, nodes=np.arange(n + 1)[:, None], weights=np.ones(1))
+        offsets, kernel = averaging(spread, 1 / n)
+        curve = Curve(
+            stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"), offsets=offsets, kernel=kernel
+        )
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
 
     assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
 
 
+def test_average_leaves_cubics_and_reaches_no_further():
+    offsets, kernel = averaging(0.3, 0.01)
+    for power, moment in ((0, 1.0), (1, 0.0), (2, 0.0), (3, 0.0)):
+        assert kernel @ offsets**power == pytest.approx(moment, abs=1e-14)
+    assert np.abs(offsets).max() < 0.3
+    assert [part.tolist() for part in averaging(0.0, 0.01)] == [[0.0], [1.0]]
+
+
+def test_contact_is_spread_over_a_stated_length(problem):
+    """By default 1.5 heights to either side, at most a tenth of the length; never beyond what is asked for."""
+    for height, spread, expected in ((0.02, None, 0.03), (0.2, None, 0.1), (0.02, 0.05, 0.05)):
+        curve = build(problem(height=height, contact={"spread": spread})).pairs[0].curve
+        assert expected * 0.95 < np.abs(curve.offsets).max() < expected
+
+
 @pytest.mark.parametrize("zeta", PLACES)
 @pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
-def test_projection_finds_the_foot_of_the_normal(model, zeta, distance):
-    x = bent(model)
-    at = project(model.curve, x, pin_near(model.curve, x, zeta, distance), -1.0)
+def test_projection_finds_the_foot_of_the_normal(model, with_pin, zeta, distance):
+    u = bent(model)
+    at = with_pin(model, near(model, u, zeta, distance)).pairs[0].project(u, 0.0)
     assert at.stationary
     assert at.inside
     assert at.zeta == pytest.approx(zeta, abs=1e-13)
-    assert at.gap == pytest.approx(-distance, abs=1e-14)
+    assert at.distance == pytest.approx(distance, abs=1e-14)
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
 @pytest.mark.parametrize("zeta", PLACES)
 @pytest.mark.parametrize("model", ["axis", "face"], indirect=True)
-def test_gap_derivatives_by_complex_steps(model, zeta, distance, side):
+def test_gap_derivatives_by_complex_steps(model, with_pin, zeta, distance, side):
     """Both derivatives, at and beside the nodes of the curve, with the pin off it and on it."""
-    x = bent(model)
-    n = len(x)
-    pin = pin_near(model.curve, x, zeta, distance)
-    U, H = gap_derivatives(model.curve, project(model.curve, x, pin, side), n, side)
-    v = np.random.default_rng(3).standard_normal(x.shape)
-    at = project(model.curve, x + 1j * STEP * v, pin, side)
-    assert U[:, 0] @ v.ravel() == pytest.approx(at.gap.imag / STEP, abs=1e-11)
-    slope = gap_derivatives(model.curve, at, n, side)[0][:, 0].imag / STEP
+    u = bent(model)
+    pair = with_pin(model, near(model, u, zeta, distance), radius=0.01).pairs[0]
+    check_derivatives(replace(pair, contact=replace(pair.contact, side=side)), u)
+
+
+def check_derivatives(pair, u):
+    U, H = pair.gap_derivatives(pair.project(u, 0.0))
+    v = np.random.default_rng(3).standard_normal(u.shape)
+    at = pair.project(u + 1j * STEP * v, 0.0)
+    assert U[:, 0] @ v.ravel() == pytest.approx(pair.gap(at).imag / STEP, abs=1e-11)
+    slope = pair.gap_derivatives(at)[0][:, 0].imag / STEP
     np.testing.assert_allclose(U @ (H @ (U.T @ v.ravel())), slope, rtol=0, atol=1e-9)
 
 
-def test_penalty_energy_has_the_reduced_force_and_tangent(model):
+def two_strips(strip, surface="face"):
+    """An upper strip whose end comes down on a lower one that points the other way."""
+    upper = strip(name="upper", start=(0.0, 0.3), end=(0.8, 0.25), height=0.1, mesh=(4, 2))
+    lower = strip(name="lower", start=(1.1, 0.0), end=(0.1, 0.1), height=0.1, mesh=(5, 1), clamped=("start",))
+    contact = fr.Contact(node="upper.end", strip="lower", side="right", surface=surface)
+    return build(fr.SolidProblem(strips=(upper, lower), contacts=(contact,)))
+
+
+@surfaces
+def test_gap_derivatives_of_an_end_act_on_both_strips(strip, surface):
+    model = two_strips(strip, surface)
+    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
+    check_derivatives(model.pairs[0], u)
+
+
+def test_action_and_reaction_of_two_strips_cancel(strip):
+    """Forces and, where they touch, moments of the unit contact force in the global frame."""
+    model = two_strips(strip)
+    pair = model.pairs[0]
+    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
+    forces = pair.gap_derivatives(pair.project(u, 0.0))[0][:, 0].reshape(-1, 2)
+    upper, lower = (
+        forces[part].sum(axis=0) @ body.strip.frame.T
+        for body, part in zip(model.bodies, model.parts, strict=True)
+    )
+    np.testing.assert_allclose(upper, -lower, atol=1e-13)
+    assert np.hypot(*upper) == pytest.approx(1, abs=1e-13)
+
+
+def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin):
     """``eps (W^T W - c c^T / h)`` of the penalty alone is ``eps (g' g'^T + g g'')``."""
-    x = bent(model)
-    at = project(model.curve, x, pin_near(model.curve, x, 0.37, 0.02), -1.0)
-    U, H = gap_derivatives(model.curve, at, len(x), -1.0)
-    tangent = np.outer(U[:, 0], U[:, 0]) + at.gap * U @ H @ U.T
-    r, r1, r2 = at.basis @ model.curve.points(x)
-    d = r - pin_near(model.curve, x, 0.37, 0.02)
-    W, W1 = (np.zeros((2, x.size)) for _ in range(2))
-    for row, target in ((0, W), (1, W1)):
-        field = np.zeros(len(x))
-        field[model.curve.nodes] = at.basis[row][:, None] * model.curve.weights
-        target[0, ::2] = target[1, 1::2] = field
+    u = bent(model)
+    point = near(model, u, 0.37, 0.02)
+    pair = with_pin(model, point).pairs[0]
+    at = pair.project(u, 0.0)
+    U, H = pair.gap_derivatives(at)
+    tangent = np.outer(U[:, 0], U[:, 0]) + pair.gap(at) * U @ H @ U.T
+    r, r1, r2 = at.basis @ pair.carrier.points(u)
+    d = r - point
+    W, W1 = (
+        np.stack([pair.carrier.pull(at.basis[row], axis).ravel() for axis in np.eye(2)]) for row in range(2)
+    )
     c = W.T @ r1 + W1.T @ d
     np.testing.assert_allclose(tangent, W.T @ W - np.outer(c, c) / (r1 @ r1 + d @ r2), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(at.gap * U[:, 0], W.T @ d, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(pair.gap(at) * U[:, 0], W.T @ d, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("x", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
-def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, x):
-    at = project(model.curve, model.mesh.nodes, np.array([x, 0.0]), -1.0)
+@pytest.mark.parametrize("axial", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
+def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, with_pin, axial):
+    pair = with_pin(model, model.problem.strips[0].to_global(np.array([axial, 0.0]))).pairs[0]
+    at = pair.project(np.zeros((model.nodes, 2)), 0.0)
     assert at.inside
-    assert at.gap == pytest.approx(0, abs=1e-16)
+    assert pair.gap(at) == pytest.approx(0, abs=2e-16)
 
 
 @pytest.mark.parametrize(("pin", "distance"), [((1.5, -0.3), np.hypot(0.5, 0.3)), ((-0.4, 0.3), 0.5)])
-def test_pin_beyond_an_end_is_not_on_the_strip(model, pin, distance):
-    at = project(model.curve, model.mesh.nodes, np.array(pin), -1.0)
+def test_pin_beyond_an_end_is_not_on_the_strip(model, with_pin, pin, distance):
+    moved = with_pin(model, model.problem.strips[0].to_global(np.array(pin)))
+    at = moved.pairs[0].project(np.zeros((model.nodes, 2)), 0.0)
     assert not at.inside
     assert at.end_distance == pytest.approx(distance)
 
 
-def test_contact_slopes_balance(model):
-    """The contact's nodal forces sum to the unit force on the strip."""
-    at = project(model.curve, bent(model), np.array([0.5, 0.2]), -1.0)
-    U, _ = gap_derivatives(model.curve, at, len(model.mesh.nodes), -1.0)
-    np.testing.assert_allclose(U[:, 0].reshape(-1, 2).sum(axis=0), at.normal, atol=1e-13)
+def test_radius_moves_the_gap_by_itself(model, with_pin):
+    u = bent(model)
+    point = near(model, u, 0.6, -0.05)
+    sharp, round_ = (with_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
+    assert sharp.gap(sharp.project(u, 0.0)) - round_.gap(round_.project(u, 0.0)) == pytest.approx(0.02)

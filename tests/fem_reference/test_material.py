@@ -1,70 +1,130 @@
 import numpy as np
 import pytest
 from scipy.linalg import polar
+from scipy.optimize import brentq
 
 from fem_reference.arrays import Array
-from fem_reference.material import MATERIALS, plane_stress_constants
+from fem_reference.material import MATERIALS, PLANES, elastic_law, in_plane_lam, lame_constants
 
-LAM, MU = plane_stress_constants(2.1e4, 0.3)
+E, NU = 2.1e4, 0.3
+LAM, MU = lame_constants(E, NU)
 STEP = 1e-30
-laws = pytest.mark.parametrize("law", MATERIALS.values(), ids=MATERIALS.keys())
+
+
+@pytest.fixture(params=[(name, plane) for name in MATERIALS for plane in PLANES], ids="-".join)
+def law(request):
+    name, plane = request.param
+    return elastic_law(name, E, NU, plane)
+
+
+def rotation(angle: float) -> Array:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def gradients(points: int = 5) -> Array:
     """Deformation gradients near rotations by all angles."""
     rng = np.random.default_rng(1)
-    angles = np.linspace(0, 2 * np.pi, points, endpoint=False)
-    Q = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]])
+    Q = np.stack([rotation(angle) for angle in np.linspace(0, 2 * np.pi, points, endpoint=False)], axis=-1)
     return np.einsum(
         "ij...,jk...->ik...", Q, np.eye(2)[:, :, None] + 0.2 * rng.standard_normal((2, 2, points))
     )
 
 
-@laws
-def test_stress_is_the_gradient_of_the_energy(law):
-    F = gradients()
-    P = law.stress(F, LAM, MU)
+def directions():
     for i, j in np.ndindex(2, 2):
         dF = np.zeros((2, 2, 1))
         dF[i, j] = 1
-        derivative = law.energy(F + 1j * STEP * dF, LAM, MU).imag / STEP
-        np.testing.assert_allclose(P[i, j], derivative, rtol=0, atol=1e-13 * MU)
+        yield i, j, dF
 
 
-@laws
+def test_stress_is_the_gradient_of_the_energy(law):
+    F = gradients()
+    P = law.stress(F)
+    for i, j, dF in directions():
+        derivative = law.energy(F + 1j * STEP * dF).imag / STEP
+        np.testing.assert_allclose(P[i, j], derivative, rtol=0, atol=1e-12 * MU)
+
+
 def test_tangent_is_the_derivative_of_the_stress_and_symmetric(law):
     F = gradients()
-    A = law.tangent(F, LAM, MU)
-    for k, m in np.ndindex(2, 2):
-        dF = np.zeros((2, 2, 1))
-        dF[k, m] = 1
-        derivative = law.stress(F + 1j * STEP * dF, LAM, MU).imag / STEP
-        np.testing.assert_allclose(A[:, :, k, m], derivative, rtol=0, atol=1e-12 * MU)
+    A = law.tangent(F)
+    for k, m, dF in directions():
+        derivative = law.stress(F + 1j * STEP * dF).imag / STEP
+        np.testing.assert_allclose(A[:, :, k, m], derivative, rtol=0, atol=1e-11 * MU)
     np.testing.assert_allclose(A, A.transpose(2, 3, 0, 1, 4), rtol=0, atol=1e-12 * MU)
 
 
-@laws
 def test_rotation_changes_no_energy_and_turns_the_stress(law):
-    F, angle = gradients(), 2.3
-    Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    F, Q = gradients(), rotation(2.3)
     turned = np.einsum("ij,jk...->ik...", Q, F)
-    np.testing.assert_allclose(law.energy(turned, LAM, MU), law.energy(F, LAM, MU), atol=1e-13 * MU)
-    P = np.einsum("ij,jk...->ik...", Q, law.stress(F, LAM, MU))
-    np.testing.assert_allclose(law.stress(turned, LAM, MU), P, atol=1e-12 * MU)
-
-
-@laws
-def test_small_uniaxial_stress_gives_youngs_modulus(law):
-    strain = 1e-6
-    F = np.diag([1 + strain, 1 - 0.3 * strain])[:, :, None]
+    np.testing.assert_allclose(law.energy(turned), law.energy(F), atol=1e-12 * MU)
     np.testing.assert_allclose(
-        law.stress(F, LAM, MU)[:, :, 0], np.diag([2.1e4 * strain, 0]), atol=1e-5 * 2.1e4 * strain
+        law.stress(turned), np.einsum("ij,jk...->ik...", Q, law.stress(F)), atol=1e-12 * MU
     )
 
 
+def test_reference_state_is_free_of_energy_and_stress(law):
+    F = np.eye(2)[:, :, None] + np.zeros((2, 2, 3))
+    assert np.all(law.energy(F) == 0)
+    np.testing.assert_allclose(law.stress(F), 0, atol=1e-14 * MU)
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("name", MATERIALS)
+@pytest.mark.parametrize("nu", [-0.4, 0.0, 0.3, 0.4999])
+def test_small_strains_are_hookes(name, plane, nu):
+    """``dP/dF`` at rest is isotropic linear elasticity: ``lam tr(e) I + 2 mu e`` with the plane's lam."""
+    lam, mu = lame_constants(E, nu)
+    lam = in_plane_lam(lam, mu, plane)
+    d = np.eye(2)
+    expected = lam * np.einsum("ij,kl->ijkl", d, d) + mu * (
+        np.einsum("ik,jl->ijkl", d, d) + np.einsum("il,jk->ijkl", d, d)
+    )
+    A = elastic_law(name, E, nu, plane).tangent(d[:, :, None])[..., 0]
+    np.testing.assert_allclose(A, expected, rtol=0, atol=1e-12 * (lam + mu))
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_small_uniaxial_stress_gives_youngs_modulus(name):
+    strain = 1e-6
+    F = np.diag([1 + strain, 1 - NU * strain])[:, :, None]
+    P = elastic_law(name, E, NU).stress(F)[:, :, 0]
+    np.testing.assert_allclose(P, np.diag([E * strain, 0]), atol=1e-5 * E * strain)
+
+
 def test_biot_energy_is_quadratic_in_the_stretch_minus_identity():
-    F = gradients()
+    F, law = gradients(), elastic_law("biot-linear", E, NU, "strain")
     for point in range(F.shape[2]):
         U = polar(F[:, :, point], side="right")[1] - np.eye(2)
         expected = LAM / 2 * np.trace(U) ** 2 + MU * np.sum(U * U)
-        assert MATERIALS["biot-linear"].energy(F[:, :, point], LAM, MU) == pytest.approx(expected, rel=1e-12)
+        assert law.energy(F[:, :, point]) == pytest.approx(expected, rel=1e-12)
+
+
+THREE_DIMENSIONAL = {
+    "st-venant-kirchhoff": lambda C: ((C - 1) / 2).sum() ** 2 * LAM / 2 + MU * (((C - 1) / 2) ** 2).sum(),
+    "biot-linear": lambda C: (np.sqrt(C) - 1).sum() ** 2 * LAM / 2 + MU * ((np.sqrt(C) - 1) ** 2).sum(),
+    "neo-hookean": lambda C: MU / 2 * (C.sum() - 3 - np.log(C.prod())) + LAM / 8 * np.log(C.prod()) ** 2,
+}
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_plane_stress_is_the_three_dimensional_law_without_transverse_stress(name):
+    """Principal stretches, the transverse one found by a bracketing root search on its stress."""
+    W = THREE_DIMENSIONAL[name]
+    F = gradients()
+    law = elastic_law(name, E, NU)
+    for point in range(F.shape[2]):
+        in_plane = np.linalg.eigvalsh(F[:, :, point].T @ F[:, :, point])
+
+        def transverse_stress(stretch, in_plane=in_plane):
+            return W(np.array([*in_plane, (stretch + 1j * STEP) ** 2])).imag / STEP
+
+        stretch = brentq(transverse_stress, 0.6, 1.6, xtol=1e-15)
+        assert law.energy(F[:, :, point]) == pytest.approx(W(np.array([*in_plane, stretch**2])), rel=1e-11)
+
+
+def test_folded_point_is_not_finite():
+    with np.errstate(all="ignore"):
+        assert not np.isfinite(
+            elastic_law("neo-hookean", E, NU).stress(np.diag([1.0, -0.1])[:, :, None])
+        ).all()

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from fem_reference.mesh import discretise
+from fem_reference.strip import ELEMENTS
 
 
 @pytest.mark.parametrize("mesh", [(2, 1), (5, 2), (4, 3)])
@@ -18,21 +19,39 @@ def test_cells_are_anticlockwise_quads_with_midsides_and_centre(strip, mesh):
     np.testing.assert_allclose(x[:, 8], x[:, :4].mean(axis=1), atol=1e-15)
 
 
-def test_weights_sum_to_the_volume_and_columns_order_the_nodes(strip):
+def test_weights_sum_to_the_volume_and_edges_order_the_nodes(strip):
     d = discretise(strip(mesh=(7, 3)))
     assert d.weights.sum() == pytest.approx(1 * 0.02 * 0.02, rel=1e-14)
-    assert sorted(d.columns.ravel()) == list(range(len(d.nodes)))
-    grid = d.nodes[d.columns]
-    np.testing.assert_allclose(grid[:, :, 0], np.linspace(0, 1, 15)[:, None] + np.zeros(7), atol=1e-15)
-    np.testing.assert_allclose(grid[:, :, 1], np.linspace(-0.01, 0.01, 7) + np.zeros((15, 1)), atol=1e-15)
+    np.testing.assert_allclose(d.stations, np.linspace(0, 1, 15), atol=1e-15)
+    for name, x, y in (
+        ("right", None, -0.01),
+        ("left", None, 0.01),
+        ("start", 0.0, None),
+        ("end", 1.0, None),
+    ):
+        along = np.linspace(0, 1, 15) if x is None else np.linspace(-0.01, 0.01, 7)
+        expected = np.stack(np.broadcast_arrays(along if x is None else x, along if y is None else y), 1)
+        np.testing.assert_allclose(d.nodes[d.edges[name]], expected, atol=1e-15)
 
 
-@pytest.mark.parametrize("rows", [1, 2, 4])
-def test_section_weights_integrate_cubics(strip, rows):
-    d = discretise(strip(mesh=(2, rows)))
-    y = d.nodes[d.columns[0], 1]
-    for power, mean in ((0, 1.0), (1, 0.0), (2, 1 / 3), (3, 0.0)):
-        assert d.section_weights @ (y / 0.01) ** power == pytest.approx(mean, abs=1e-15)
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("rows", [1, 2, 3, 4])
+def test_section_means_are_those_of_polynomials(strip, rows, element):
+    """Exact for cubics with Q2, for straight lines with Q1."""
+    d = discretise(strip(mesh=(2, rows), element=element))
+    means = ((0, 1.0), (1, 0.0), (2, 1 / 3), (3, 0.0))[: 2 if element == "Q1" else 4]
+    for power, mean in means:
+        np.testing.assert_allclose(d.sections @ (d.nodes[:, 1] / 0.01) ** power, mean, atol=1e-15)
+    np.testing.assert_allclose(d.sections @ d.nodes[:, 0], d.stations, atol=1e-15)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_grading_is_the_ratio_of_last_to_first_element(strip, element):
+    d = discretise(strip(mesh=(6, 1), grading=8.0, element=element))
+    lengths = np.diff(d.stations[:: 1 if element == "Q1" else 2])
+    np.testing.assert_allclose(lengths[1:] / lengths[:-1], 8 ** (1 / 5), rtol=1e-12)
+    assert (d.stations[0], d.stations[-1]) == (0.0, 1.0)
+    assert d.weights.sum() == pytest.approx(0.02 * 0.02, rel=1e-14)
 
 
 def test_gradients_are_exact_for_biquadratic_fields(strip):

@@ -23,6 +23,9 @@ NAN = float("nan")
         ("mesh", (4, 0)),
         ("mesh", (4.5, 1)),
         ("material", "rubber"),
+        ("plane", "stretch"),
+        ("element", "Q3"),
+        ("grading", -1.0),
     ],
 )
 def test_strip_refuses_and_names_the_field(strip, field, value):
@@ -43,11 +46,25 @@ def test_pin_runs_at_constant_speed():
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("side", "up"), ("surface", "top"), ("penalty", 0.0), ("penalty", float("inf"))]
+    ("field", "value"),
+    [
+        ("side", "up"),
+        ("surface", "top"),
+        ("penalty", 0.0),
+        ("penalty", float("inf")),
+        ("penetration", 0.0),
+        ("spread", -1.0),
+    ],
 )
 def test_contact_refuses_and_names_the_field(problem, field, value):
     with pytest.raises(ValueError, match=rf"Contact\('pin->cantilever'\)\.{field} = .*: must"):
-        problem(**{field: value})
+        problem(contact={field: value})
+
+
+@pytest.mark.parametrize("radius", [-0.1, NAN])
+def test_pin_refuses_a_radius(radius):
+    with pytest.raises(ValueError, match=r"Pin\('pin'\)\.radius = .*: must"):
+        fr.Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0)), radius=radius)
 
 
 @pytest.mark.parametrize(
@@ -56,17 +73,34 @@ def test_contact_refuses_and_names_the_field(problem, field, value):
 )
 def test_problem_refuses_a_pin_that_starts_on_the_wrong_side(problem, side, surface, y):
     with pytest.raises(ValueError, match=r"Pin\('pin'\)\.path\[0\] = .*must not start beyond"):
-        problem(path=((0.5, y), (0.5, 1.0)), side=side, surface=surface)
+        problem(path=((0.5, y), (0.5, 1.0)), contact={"side": side, "surface": surface})
 
 
-def test_problem_refuses_a_contact_that_names_nothing(strip):
-    pin = fr.Pin(name="pin", path=((1.0, 0.0), (0.0, 1.0)))
-    with pytest.raises(ValueError, match="must name the problem's strip"):
-        fr.SolidProblem(strip=strip(), pin=pin, contact=fr.Contact(pin="pin", strip="beam", penalty=1.0))
-    with pytest.raises(ValueError, match="must name the problem's pin"):
-        fr.SolidProblem(
-            strip=strip(), pin=pin, contact=fr.Contact(pin="nail", strip="cantilever", penalty=1.0)
-        )
+@pytest.mark.parametrize(
+    ("contact", "rule"),
+    [
+        ({"strip": "beam"}, "strip = 'beam': must name a strip"),
+        ({"node": "nail"}, "node = 'nail': must name a pin"),
+        ({"node": "cantilever.end"}, "node = 'cantilever.end': must name a pin"),
+    ],
+)
+def test_problem_refuses_a_contact_that_names_nothing(problem, contact, rule):
+    with pytest.raises(ValueError, match=rule):
+        problem(contact=contact)
+
+
+def test_problem_refuses_names_that_appear_twice(strip):
+    with pytest.raises(ValueError, match=r"strips = 'cantilever': must not appear twice"):
+        fr.SolidProblem(strips=(strip(), strip()))
+
+
+def test_problem_refuses_an_end_that_starts_beyond_the_other_strip(strip):
+    upper = strip(name="upper", start=(0.0, 0.1), end=(1.0, 0.1))
+    contact = fr.Contact(node="upper.end", strip="cantilever", side="right")
+    with pytest.raises(
+        ValueError, match=r"Contact\('upper.end->cantilever'\)\.node = .*must not start beyond"
+    ):
+        fr.SolidProblem(strips=(strip(end=(2.0, 0.0)), upper), contacts=(contact,))
 
 
 @pytest.mark.parametrize(
@@ -77,6 +111,8 @@ def test_problem_refuses_a_contact_that_names_nothing(strip):
         ("balance_tolerance", NAN),
         ("max_iterations", 0),
         ("predictor_order", -1),
+        ("largest_growth", 0.5),
+        ("max_penetration", 2.0),
     ],
 )
 def test_settings_refuse_and_name_the_field(field, value):

@@ -66,7 +66,10 @@ def test_biot_linear_material_is_closer_to_the_rod(problem):
 @pytest.mark.parametrize("surface", ["axis", "face"])
 @pytest.mark.parametrize("mesh", [(25, 2), (50, 2), (100, 2), (200, 4)])
 def test_every_mesh_and_penalty_completes(problem, mesh, surface, penalty):
-    result = fr.solve(problem(mesh=mesh, surface=surface, penalty=penalty), loads(50))
+    settings = fr.Settings(max_penetration=1e-2)
+    result = fr.solve(
+        problem(mesh=mesh, contact={"surface": surface, "penalty": penalty}), loads(50), settings
+    )
     assert result.status is fr.Status.COMPLETED
     assert result.newton_iterations.sum() <= 5 * result.substeps
     if penalty == 1e4:
@@ -79,7 +82,7 @@ def test_every_mesh_and_penalty_completes(problem, mesh, surface, penalty):
 def test_penalty_error_is_linear_in_its_inverse(problem, ks_axis):
     stiff = ks_axis.contacts[PAIR].force[24]
     errors = [
-        fr.solve(problem(penalty=eps), loads(50)[:25]).contacts[PAIR].force[24] / stiff - 1
+        fr.solve(problem(contact={"penalty": eps}), loads(50)[:25]).contacts[PAIR].force[24] / stiff - 1
         for eps in (10.0, 40.0)
     ]
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
@@ -117,9 +120,13 @@ def test_pose_does_not_matter(problem, ks_face):
     turned = dict(zip(("start", "end"), place(ends), strict=True))
     reversed_ = {**dict(zip(("end", "start"), place(ends), strict=True)), "clamped": ("end",)}
     cases = {
-        "turned": fr.solve(problem(path=place(path), surface="face", **turned), few),
-        "mirrored": fr.solve(problem(path=place(path, -1.0), surface="face", side="left", **turned), few),
-        "reversed": fr.solve(problem(path=place(path), surface="face", side="left", **reversed_), few),
+        "turned": fr.solve(problem(path=place(path), contact={"surface": "face"}, **turned), few),
+        "mirrored": fr.solve(
+            problem(path=place(path, -1.0), contact={"side": "left", "surface": "face"}, **turned), few
+        ),
+        "reversed": fr.solve(
+            problem(path=place(path), contact={"side": "left", "surface": "face"}, **reversed_), few
+        ),
     }
     moment, force, tip = (
         ks_face.supports[STRIP].moment[:10],
@@ -140,12 +147,22 @@ def test_pose_does_not_matter(problem, ks_face):
         )
 
 
+def test_place_does_not_matter(problem, ks_axis):
+    """A thousand lengths from the origin; the pin's own position is rounded there, to 1e-13."""
+    far = 1000.0
+    strip = {"start": (far, -far), "end": (far + 1, -far)}
+    result = fr.solve(problem(path=((far + 1, -far), (far, 2 / np.pi - far)), **strip), loads(10))
+    moved, original = result.contacts[PAIR], ks_axis.contacts[PAIR]
+    np.testing.assert_allclose(moved.force, original.force[4::5], rtol=1e-8)
+    np.testing.assert_allclose(moved.arc_position, original.arc_position[4::5], rtol=1e-8)
+
+
 def test_units_do_not_matter(problem, ks_axis):
     """Steel and a strip of a kilometre: the same ``F L^2 / EI`` and ``s / L``."""
     size = 1000.0
     strip = {"end": (size, 0.0), "height": 0.02 * size, "youngs_modulus": 2.1e11}
     path = ((size, 0.0), (0.0, 2 / np.pi * size))
-    result = fr.solve(problem(path=path, penalty=1e4 * 1e7, **strip), loads(10))
+    result = fr.solve(problem(path=path, contact={"penalty": 1e4 * 1e7}, **strip), loads(10))
     scaled, original = result.contacts[PAIR], ks_axis.contacts[PAIR]
     np.testing.assert_allclose(scaled.force, original.force[4::5] * 1e7 * size, rtol=1e-8)
     np.testing.assert_allclose(scaled.arc_position, original.arc_position[4::5] * size, rtol=1e-8)
@@ -154,7 +171,7 @@ def test_units_do_not_matter(problem, ks_axis):
 def test_slender_strip_converges_to_the_elastica(problem):
     """``h/L`` = 1/500: round-off in the residual, and the closed form ``F = 4.66473101966 EI / L^2`` at half way."""
     result = fr.solve(problem(height=0.002, mesh=(200, 1)), loads(20)[:10])
-    stiffness = result.model.problem.strip.bending_stiffness
+    stiffness = result.model.problem.strips[0].bending_stiffness
     assert result.contacts[PAIR].force[-1] / stiffness == pytest.approx(4.66473101966107, rel=2e-4)
     assert result.contacts[PAIR].arc_position[-1] == pytest.approx(0.612622877902267, rel=1e-4)
 
@@ -171,9 +188,10 @@ def test_reaction_balances_the_contact_force(ks_face):
     for at, force, moment in zip(
         ks_face.states, ks_face.supports[STRIP].force, ks_face.supports[STRIP].moment, strict=True
     ):
-        p = push(model, at)
-        np.testing.assert_allclose(force, -p, rtol=0, atol=1e-8 * at.force + 1e-12)
-        assert moment == pytest.approx(-(at.pin[0] * p[1] - at.pin[1] * p[0]), rel=1e-6)
+        touch, pin = at.touches[0], model.problem.pins[0].position(at.t)
+        p = push(touch)
+        np.testing.assert_allclose(force, -p, rtol=0, atol=1e-8 * touch.force + 1e-12)
+        assert moment == pytest.approx(-(pin[0] * p[1] - pin[1] * p[0]), rel=1e-6)
 
 
 def test_gap_is_minus_the_penetration(ks_axis):
@@ -194,7 +212,7 @@ def test_work_of_the_pin_is_the_stored_energy(ks_axis):
 def test_pin_that_comes_later_touches_and_leaves(problem):
     result = fr.solve(problem(path=((0.8, -0.1), (0.8, 0.2), (0.8, -0.2)), mesh=(20, 1)), loads(14))
     contact = result.contacts[PAIR]
-    height = np.array([result.model.problem.pin.position(t)[1] for t in result.load_parameter])
+    height = np.array([result.model.problem.pins[0].position(t)[1] for t in result.load_parameter])
     pushing, apart = height > 1e-12, height < -1e-12
     assert result.status is fr.Status.COMPLETED
     assert np.all(contact.force[pushing] > 1e-6)

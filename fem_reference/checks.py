@@ -1,0 +1,26 @@
+"""Bad input costs one line: owner, field, value and the rule it breaks."""
+
+from math import isfinite
+
+Point = tuple[float, float]
+
+
+def require(condition: bool, owner: str, field: str, value: object, rule: str) -> None:
+    """Raise a ``ValueError`` that names the value and the rule unless ``condition`` holds."""
+    if not condition:
+        raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
+
+
+def require_positive(owner: str, field: str, value: float) -> None:
+    """Require a positive finite number."""
+    require(isfinite(value) and value > 0, owner, field, value, "must be positive and finite")
+
+
+def require_point(owner: str, field: str, value: Point) -> None:
+    """Require two finite numbers."""
+    require(len(value) == 2 and all(map(isfinite, value)), owner, field, value, "must be two finite numbers")
+
+
+def require_choice(owner: str, field: str, value: object, options: tuple[object, ...]) -> None:
+    """Require one of ``options``."""
+    require(value in options, owner, field, value, f"must be one of {', '.join(map(repr, options))}")

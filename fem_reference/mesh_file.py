@@ -1,0 +1,174 @@
+"""A strip's mesh of the user's own, read by meshio and checked."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, kron
+from scipy.sparse.csgraph import connected_components
+
+from fem_reference.arrays import Floats, Ints
+from fem_reference.mesh import EDGES, Discretisation, from_basis, scalar_basis
+from fem_reference.sampling import sample_basis
+from fem_reference.strip import Strip
+
+_LAYERS = 8
+_ROUND_OFF = 1e-9
+
+
+class MeshError(ValueError):
+    """A mesh file breaks a rule: one line."""
+
+
+def read_mesh(strip: Strip) -> Discretisation:
+    """Read ``strip.mesh_file``: straight-sided quadrilaterals in the strip's frame, with four named edges.
+
+    The strip lies along x from 0 to its length, between the faces "right" (below) and "left" (above), which may be any
+    curves over x; its ends "start" and "end" are straight, at x = 0 and at its length. The edges are named sets of lines:
+    Gmsh's physical groups, or meshio's cell sets.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, an edge is missing or out of place, an element is clockwise, not convex or without area,
+        or the mesh falls into parts.
+    """
+    from skfem import MeshQuad
+
+    assert strip.mesh_file is not None, "the strip's mesh is its own"
+    try:
+        points, quads, lines = _contents(Path(strip.mesh_file))
+        _check_elements(points, quads)
+        quads = _along(points, quads)
+        basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
+        edges = {name: _edge(basis, name, lines) for name in EDGES}
+        _check_place(strip, basis.doflocs.T, edges)
+    except MeshError as error:
+        raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
+    nodes = basis.doflocs.T
+    stations = nodes[edges["right"], 0]
+    return from_basis(strip, basis, edges, stations, _sections(basis, nodes, edges, stations))
+
+
+def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
+    """Corners ``(n, 2)``, quadrilaterals ``(e, 4)``, and the lines ``(l, 2)`` of each named edge."""
+    import meshio
+
+    try:
+        mesh = meshio.read(path)
+    except (OSError, meshio.ReadError, SystemExit) as error:
+        raise MeshError(f"cannot be read ({str(error) or type(error).__name__})") from None
+    quads, lines = [], dict[str, list[Ints]]()
+    named = _names(mesh)
+    for number, block in enumerate(mesh.cells):
+        if block.type.startswith("quad"):
+            _check_straight(mesh.points[:, :2], block.data)
+            quads.append(block.data[:, :4])
+        elif block.type.startswith("line"):
+            for name, sets in named.items():
+                lines.setdefault(name, []).append(block.data[sets[number], :2])
+        elif block.type != "vertex":
+            raise MeshError(f'must hold quadrilaterals only, it has cells of type "{block.type}"')
+    if not quads:
+        raise MeshError("must hold quadrilaterals, it has none")
+    corners, local = np.unique(np.concatenate(quads), return_inverse=True)
+    number_of = np.full(len(mesh.points), -1)
+    number_of[corners] = np.arange(corners.size)
+    found = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
+    return mesh.points[corners, :2].astype(float), local.reshape(-1, 4), found
+
+
+def _names(mesh: Any) -> dict[str, list[Ints]]:
+    """Cells of each named set, block by block: meshio's cell sets, or Gmsh's physical groups."""
+    empty = np.zeros(0, dtype=np.int64)
+    named = {
+        name: [empty if part is None else np.asarray(part, dtype=np.int64) for part in sets]
+        for name, sets in mesh.cell_sets.items()
+        if name in EDGES
+    }
+    tags = mesh.cell_data.get("gmsh:physical")
+    for name, (tag, dimension) in mesh.field_data.items():
+        if tags is not None and dimension == 1 and name in EDGES:
+            named[name] = [np.flatnonzero(part == tag) for part in tags]
+    return named
+
+
+def _check_straight(points: Floats, cells: Ints) -> None:
+    """Require that midsides and centres, if there are any, lie half way."""
+    corners = points[cells[:, :4]]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    expected = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)[:, : cells.shape[1] - 4]
+    off = np.abs(points[cells[:, 4:]] - expected).max(axis=(1, 2), initial=0.0)
+    size = np.ptp(corners, axis=1).max(axis=1)
+    if np.any(off > _ROUND_OFF * size):
+        raise MeshError(f"element {int(np.argmax(off / size))} must have straight sides")
+
+
+def _check_elements(points: Floats, quads: Ints) -> None:
+    x = points[quads]
+    sides = np.roll(x, -1, axis=1) - x
+    after = np.roll(sides, -1, axis=1)
+    turn = sides[..., 0] * after[..., 1] - sides[..., 1] * after[..., 0]
+    diagonals = x[:, 2:] - x[:, :2]
+    area = (diagonals[:, 0, 0] * diagonals[:, 1, 1] - diagonals[:, 0, 1] * diagonals[:, 1, 0]) / 2
+    size = (sides**2).sum(axis=2).max(axis=1)
+    for failed, rule in (
+        (np.abs(area) <= _ROUND_OFF * size, "has no area"),
+        (area < 0, "is clockwise, must be anticlockwise"),
+        (turn.min(axis=1) <= _ROUND_OFF * size, "is not convex"),
+    ):
+        if failed.any():
+            raise MeshError(f"element {int(np.argmax(failed))} {rule}")
+    shares = coo_matrix((np.ones(quads.size), (np.repeat(np.arange(len(quads)), 4), quads.ravel())))
+    parts, _ = connected_components(shares.T @ shares)
+    if parts > 1:
+        raise MeshError(f"falls into {parts} parts that share no node")
+
+
+def _along(points: Floats, quads: Ints) -> Ints:
+    """Begin every element with the side that runs furthest along the strip."""
+    x = points[quads, 0]
+    first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
+    turned: Ints = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
+    return turned
+
+
+def _edge(basis: Any, name: str, lines: dict[str, Ints]) -> Ints:
+    """Nodes on the lines of a named edge: the ends upwards, the faces from start to end."""
+    if not lines.get(name, np.zeros(0)).size:
+        raise MeshError(f'must name the lines of the edge "{name}", it names {sorted(lines) or "none"}')
+    wanted = {tuple(sorted(map(int, line))) for line in lines[name]}
+    facets = basis.mesh.boundary_facets()
+    chosen = [facet for facet in facets if tuple(sorted(map(int, basis.mesh.facets[:, facet]))) in wanted]
+    if len(chosen) < len(wanted):
+        raise MeshError(f'the edge "{name}" must lie on the boundary')
+    dofs = np.unique(basis.get_dofs(np.array(chosen)).flatten())
+    axis = 1 if name in ("start", "end") else 0
+    return np.asarray(dofs[np.argsort(basis.doflocs[axis, dofs])], dtype=np.int64)
+
+
+def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
+    L = strip.length
+    for name, place in (("start", 0.0), ("end", L)):
+        if np.abs(nodes[edges[name], 0] - place).max() > _ROUND_OFF * L:
+            raise MeshError(f'the edge "{name}" must lie at x = {place:g}')
+    for name in ("right", "left"):
+        x = nodes[edges[name], 0]
+        if abs(x[0]) + abs(x[-1] - L) > _ROUND_OFF * L or np.any(np.diff(x) <= _ROUND_OFF * L):
+            raise MeshError(f'the edge "{name}" must be a curve over x from 0 to {L:g}')
+    low, high = (nodes[edges[name]] for name in ("right", "left"))
+    if np.any(np.interp(low[:, 0], *high.T) <= low[:, 1]):
+        raise MeshError('the edge "right" must lie below the edge "left"')
+
+
+def _sections(basis: Any, nodes: Floats, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
+    """Section means by three Gauss points in each of eight layers."""
+    low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
+    points, weights = np.polynomial.legendre.leggauss(3)
+    fractions = (np.arange(_LAYERS)[:, None] + (1 + points) / 2).ravel() / _LAYERS
+    shares = np.tile(weights / 2, _LAYERS) / _LAYERS
+    y = low[:, None] + fractions * (high - low)[:, None]
+    x = np.broadcast_to(stations[:, None], y.shape)
+    sampled = sample_basis(basis, basis.element_dofs.T, np.stack([x.ravel(), y.ravel()], axis=1))
+    means = kron(np.eye(stations.size), shares[None], format="csr")
+    return csr_matrix(means @ sampled.rows(len(nodes)))

@@ -1,0 +1,119 @@
+"""A strip of material: its place, section, law, clamp and mesh."""
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from fem_reference.arrays import Array, Floats
+from fem_reference.checks import Point, require, require_choice, require_point, require_positive
+from fem_reference.material import MATERIALS, PLANES
+
+ELEMENTS = ("Q1", "Q2", "Q2-full")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strip:
+    """A straight strip, clamped at one end.
+
+    Parameters
+    ----------
+    name
+        How results refer to it.
+    start, end
+        Ends of the axis [m]; its direction is from start to end.
+    height, width
+        Dimensions of the section in the plane and out of it [m].
+    youngs_modulus, poissons_ratio
+        Elastic constants [Pa, -].
+    clamped
+        The clamped end, ``("start",)`` or ``("end",)``.
+    clamp
+        ``"rod"``: no axial displacement on the edge, no transverse one at its middle (the clamp of a rod; Poisson's
+        contraction stays free). ``"full"``: both displacements vanish on the edge.
+    mesh
+        Numbers of elements along the axis (at least 2) and over the height.
+    element
+        ``"Q2"``, biquadratic with two Gauss points along the strip and three across; ``"Q2-full"``, three each way;
+        ``"Q1"``, bilinear (which locks in bending where it is longer than high).
+    grading
+        Length of the last element along the axis over that of the first.
+    mesh_file
+        A mesh of quadrilaterals in the strip's frame, in place of ``mesh`` and ``grading``; see
+        `fem_reference.mesh_file.read_mesh`.
+    material
+        A key of `fem_reference.material.MATERIALS`.
+    plane
+        ``"stress"``: free to contract out of the plane; ``"strain"``: not.
+
+    Raises
+    ------
+    ValueError
+        If a value breaks its rule.
+    """
+
+    name: str
+    start: Point
+    end: Point
+    height: float
+    width: float
+    youngs_modulus: float
+    poissons_ratio: float
+    clamped: tuple[str, ...] = ("start",)
+    clamp: str = "rod"
+    mesh: tuple[int, int] = (50, 2)
+    element: str = "Q2"
+    grading: float = 1.0
+    mesh_file: str | None = None
+    material: str = "st-venant-kirchhoff"
+    plane: str = "stress"
+
+    def __post_init__(self) -> None:
+        owner = f"Strip({self.name!r})"
+        require_point(owner, "start", self.start)
+        require_point(owner, "end", self.end)
+        require(self.length > 0, owner, "end", self.end, "must differ from start")
+        for field in ("height", "width", "youngs_modulus", "grading"):
+            require_positive(owner, field, getattr(self, field))
+        nu = self.poissons_ratio
+        require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
+        require_choice(owner, "clamped", self.clamped, (("start",), ("end",)))
+        whole = all(isinstance(n, int) for n in self.mesh) and len(self.mesh) == 2
+        require(
+            whole and self.mesh[0] >= 2 and self.mesh[1] >= 1,
+            owner,
+            "mesh",
+            self.mesh,
+            "must be two whole numbers, >= 2 and >= 1",
+        )
+        require_choice(owner, "clamp", self.clamp, ("rod", "full"))
+        require_choice(owner, "element", self.element, ELEMENTS)
+        require_choice(owner, "material", self.material, tuple(MATERIALS))
+        require_choice(owner, "plane", self.plane, PLANES)
+
+    @property
+    def length(self) -> float:
+        """Length of the axis [m]."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    @property
+    def bending_stiffness(self) -> float:
+        """``E b h^3 / 12`` [N m^2]."""
+        return self.youngs_modulus * self.width * self.height**3 / 12
+
+    @property
+    def frame(self) -> Floats:
+        """Rotation ``Q (2, 2)`` from the strip's frame (x along the axis, origin at start) to the global one."""
+        c = (self.end[0] - self.start[0]) / self.length
+        s = (self.end[1] - self.start[1]) / self.length
+        return np.array([[c, -s], [s, c]])
+
+    def to_local(self, points: Array) -> Array:
+        """Points ``(..., 2)`` from the global frame to the strip's."""
+        local: Array = (points - np.array(self.start)) @ self.frame
+        return local
+
+    def to_global(self, points: Array) -> Array:
+        """Points ``(..., 2)`` from the strip's frame to the global one."""
+        placed: Array = points @ self.frame.T + np.array(self.start)
+        return placed

@@ -1,0 +1,183 @@
+import numpy as np
+import pytest
+
+import fem_reference as fr
+from fem_reference.body import build_body
+from fem_reference.mesh import discretise
+from fem_reference.sampling import sample
+
+meshio = pytest.importorskip("meshio")
+PAIR = "pin->cantilever"
+
+
+def parts(nx=20, ny=2, length=1.0, height=0.02, tilt=0.2):
+    """Points and cells of a strip of slanted quadrilaterals, and the lines of its edges by name."""
+    x, y = np.meshgrid(np.linspace(0, 1, nx + 1), np.linspace(-0.5, 0.5, ny + 1), indexing="ij")
+    slant = tilt / nx * np.sin(np.pi * x) * y
+    points = np.stack([length * (x + slant).ravel(), height * y.ravel(), 0 * x.ravel()], 1)
+    number = np.arange(x.size).reshape(x.shape)
+    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], -1).reshape(-1, 4)
+    sides = {"start": number[0], "end": number[-1], "right": number[:, 0], "left": number[:, -1]}
+    return points, quads, {name: np.stack([side[:-1], side[1:]], 1) for name, side in sides.items()}
+
+
+def write(path, points, quads, lines):
+    tags = {name: tag for tag, name in enumerate(lines, 1)}
+    cells = [("quad", quads), *(("line", part) for part in lines.values())]
+    marks = [np.full(len(quads), 9), *(np.full(len(part), tags[name]) for name, part in lines.items())]
+    mesh = meshio.Mesh(
+        points,
+        cells,
+        cell_data={"gmsh:physical": marks, "gmsh:geometrical": marks},
+        field_data={name: np.array([tag, 1]) for name, tag in tags.items()},
+    )
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
+    return str(path)
+
+
+@pytest.mark.parametrize("element", fr.ELEMENTS)
+def test_mesh_of_the_users_own_has_the_strips_edges_and_sections(strip, tmp_path, element):
+    file = write(tmp_path / "a.msh", *parts(height=0.3))
+    d = discretise(strip(mesh_file=file, element=element, height=0.3))
+    per_side = 1 if element == "Q1" else 2
+    assert {name: nodes.size for name, nodes in d.edges.items()} == {
+        "start": 2 * per_side + 1,
+        "end": 2 * per_side + 1,
+        "right": 20 * per_side + 1,
+        "left": 20 * per_side + 1,
+    }
+    assert d.weights.sum() == pytest.approx(0.3 * 0.02)
+    np.testing.assert_allclose(d.sections @ d.nodes, np.stack([d.stations, 0 * d.stations], 1), atol=1e-12)
+
+
+def test_ks_cantilever_on_a_mesh_of_the_users_own(problem, tmp_path):
+    """Slanted elements against straight ones, on axis and face."""
+    file = write(tmp_path / "a.msh", *parts(nx=50))
+    for surface in ("axis", "face"):
+        own, built_in = (
+            fr.solve(problem(contact={"surface": surface}, **changes), np.arange(1, 11) / 20).contacts[PAIR]
+            for changes in ({"mesh_file": file}, {})
+        )
+        np.testing.assert_allclose(own.force, built_in.force, rtol=1e-3)
+        np.testing.assert_allclose(own.arc_position, built_in.arc_position, rtol=5e-4)
+
+
+def quad9(nx=4):
+    """As `parts`, straight, with midsides and centres."""
+    points, quads, lines = parts(nx=nx, tilt=0.0)
+    corners = points[quads]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    more = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
+    added = len(points) + np.arange(more.shape[0] * 5).reshape(-1, 5)
+    return np.concatenate([points, more.reshape(-1, 3)]), np.concatenate([quads, added], axis=1), lines
+
+
+def test_midsides_are_read_and_must_be_straight(strip, tmp_path):
+    points, quads, lines = quad9()
+    for bow in (0.0, 1e-3):
+        points[quads[2, 4], 1] += bow
+        mesh = meshio.Mesh(points, [("quad9", quads), *(("line", part) for part in lines.values())])
+        mesh.cell_data["gmsh:physical"] = [np.full(8, 9)] + [
+            np.full(len(part), number) for number, part in enumerate(lines.values(), 1)
+        ]
+        mesh.cell_data["gmsh:geometrical"] = mesh.cell_data["gmsh:physical"]
+        mesh.field_data = {name: np.array([number, 1]) for number, name in enumerate(lines, 1)}
+        path = tmp_path / "a.msh"
+        meshio.write(path, mesh, file_format="gmsh22", binary=False)
+        if bow:
+            with pytest.raises(ValueError, match="element 2 must have straight sides"):
+                discretise(strip(mesh_file=str(path)))
+        else:
+            d = discretise(strip(mesh_file=str(path)))
+            assert d.cells.shape == (8, 9)
+            assert d.weights.sum() == pytest.approx(0.02 * 0.02)
+
+
+def flipped(points, quads, lines):
+    return points, np.where(np.arange(len(quads))[:, None] == 3, quads[:, ::-1], quads), lines
+
+
+def flat(points, quads, lines):
+    moved = points.copy()
+    moved[quads[5, 2:]] = moved[quads[5, :2][::-1]]
+    return moved, quads, lines
+
+
+def parted(points, quads, lines):
+    split = np.where(quads[:, :1] >= 30, quads + len(points), quads)
+    return np.concatenate([points, points]), split, lines
+
+
+def without(points, quads, lines):
+    return points, quads, {name: part for name, part in lines.items() if name != "end"}
+
+
+def upside_down(points, quads, lines):
+    return points, quads, {**lines, "right": lines["left"], "left": lines["right"]}
+
+
+@pytest.mark.parametrize(
+    ("change", "rule"),
+    [
+        (flipped, "element 3 is clockwise"),
+        (flat, "element 5 has no area"),
+        (parted, "falls into 2 parts"),
+        (without, 'must name the lines of the edge "end", it names'),
+        (upside_down, 'the edge "right" must lie below'),
+        (lambda *all_: (all_[0] + [0.1, 0, 0], *all_[1:]), 'the edge "start" must lie at x = 0'),
+        (lambda *all_: (0.5 * all_[0], *all_[1:]), 'the edge "end" must lie at x = 1'),
+        (
+            lambda p, q, lines: (p, q, {**lines, "end": q[3:4, [0, 2]]}),
+            'the edge "end" must lie on the boundary',
+        ),
+    ],
+)
+def test_mesh_that_breaks_a_rule_costs_one_line(strip, tmp_path, change, rule):
+    path = write(tmp_path / "bad.msh", *change(*parts()))
+    with pytest.raises(
+        ValueError, match=r"Strip\('cantilever'\)\.mesh_file = .*bad\.msh.*: " + rule
+    ) as caught:
+        discretise(strip(mesh_file=path))
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_mesh_of_triangles_and_files_that_are_not_there_are_refused(strip, tmp_path):
+    mesh = meshio.Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [("triangle", np.array([[0, 1, 2]]))])
+    meshio.write(tmp_path / "a.vtu", mesh)
+    with pytest.raises(ValueError, match='it has cells of type "triangle"'):
+        discretise(strip(mesh_file=str(tmp_path / "a.vtu")))
+    with pytest.raises(ValueError, match="cannot be read"):
+        discretise(strip(mesh_file=str(tmp_path / "nothing.msh")))
+
+
+@pytest.mark.parametrize("element", fr.ELEMENTS)
+def test_samples_are_exact_for_the_elements_own_fields(strip, element):
+    d = discretise(strip(mesh=(5, 3), element=element))
+    points = np.array([[0.0, 0.0], [0.4, -0.01], [0.123, 0.004], [1.0, 0.01]])
+    found = sample(d, points)
+    x, y = d.nodes.T
+    field, expected = x * y, points[:, 0] * points[:, 1]
+    np.testing.assert_allclose(found.rows(len(d.nodes)) @ field, expected, atol=1e-15)
+    np.testing.assert_allclose(
+        (found.gradients @ field[found.cells][:, :, None])[:, :, 0], points[:, ::-1], atol=1e-13
+    )
+    with pytest.raises(ValueError, match="outside"):
+        sample(d, np.array([[2.0, 0.0]]))
+
+
+def test_clamp_without_a_node_at_the_middle_holds_what_its_neighbours_interpolate(strip, tmp_path):
+    """A rigid rotation about the middle moves both neighbours by what the clamp leaves them: nothing across."""
+    points, quads, lines = parts(ny=3, height=0.3, tilt=0.0)
+    points[:, 1] = 0.15 * np.sinh(3 * (points[:, 1] / 0.15 - 0.1)) / np.sinh(3)
+    body = build_body(
+        strip(mesh_file=write(tmp_path / "a.msh", points, quads, lines), element="Q1", height=0.3)
+    )
+    edge = body.clamped_edge
+    y = body.mesh.nodes[edge, 1]
+    middle = y[[0, -1]].mean()
+    assert np.abs(y - middle).min() > 1e-3
+    stretched = np.stack([0 * body.mesh.nodes[:, 0], body.mesh.nodes[:, 1] - middle], 1)
+    for field, held in ((stretched, False), (stretched * 0 + [0.0, 1.0], True)):
+        q = np.linalg.lstsq(body.expansion.toarray(), field.ravel(), rcond=None)[0]
+        error = np.abs(body.expansion @ q - field.ravel()).max()
+        assert (error > 0.1) if held else (error < 1e-13)

@@ -1,0 +1,149 @@
+"""Problems with known fields on distorted meshes: patch tests and a manufactured solution in large strain."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix, eye_array
+from scipy.sparse.linalg import spsolve
+from skfem import MeshQuad
+
+from fem_reference.assembly import (
+    deformation_gradient,
+    element_tangents,
+    internal_force,
+    pattern,
+)
+from fem_reference.material import MATERIALS, PLANES, elastic_law
+from fem_reference.mesh import from_basis, scalar_basis
+from fem_reference.strip import ELEMENTS
+
+E, WIDTH = 2.1e4, 0.02
+STEP = 1e-30
+laws = pytest.mark.parametrize("material", MATERIALS)
+elements = pytest.mark.parametrize("element", ELEMENTS)
+
+
+def distorted(strip, element, n, height=0.6):
+    """A mesh of n x n elements whose inner corners are displaced smoothly, by a third of a side where n = 4."""
+    base = MeshQuad.init_tensor(np.linspace(0, 1, n + 1), np.linspace(-height / 2, height / 2, n + 1))
+    x, y = base.p
+    bubble = np.sin(np.pi * x) * np.cos(np.pi * y / height)
+    moved = np.stack([x + 0.08 * bubble * np.cos(7 * y), y + 0.05 * bubble * np.sin(9 * x)])
+    basis = scalar_basis(MeshQuad(moved, base.t[[0, 3, 2, 1]]), element)
+    return from_basis(strip(), basis, {}, np.zeros(0), csr_matrix((0, 0)))
+
+
+def solve(mesh, law, prescribed, held, loads):
+    """Newton's method with the displacements of the nodes ``held`` prescribed and nodal ``loads``, from nine tenths inside."""
+    u = np.where(held[:, None], prescribed, 0.9 * prescribed)
+    free = np.flatnonzero(~np.repeat(held, 2))
+    T = eye_array(u.size, format="csr")[:, free]
+    stiffness = pattern(mesh, csr_matrix(T))
+    for _ in range(30):
+        F = deformation_gradient(mesh, u)
+        R = (internal_force(mesh, law.stress(F)) - loads).ravel()[free]
+        step = spsolve(stiffness.matrix(element_tangents(mesh, law.tangent(F))), -R)
+        u = u + (T @ step).reshape(-1, 2)
+        if np.abs(step).max() < 1e-14:
+            return u
+    raise AssertionError("no convergence")
+
+
+def boundary(mesh, height=0.6):
+    x, y = mesh.nodes.T
+    return (np.abs(x * (x - 1)) < 1e-9) | (np.abs(np.abs(y) - height / 2) < 1e-9)
+
+
+@elements
+@laws
+@pytest.mark.parametrize("plane", PLANES)
+def test_patch_test(strip, material, element, plane):
+    """Linear displacements on the boundary of distorted elements: a constant gradient inside, to 1e-12 (bar 1e-10)."""
+    mesh = distorted(strip, element, 4)
+    H = np.array([[0.1, 0.3], [-0.2, 0.05]])
+    exact = mesh.nodes @ H.T
+    law = elastic_law(material, E, 0.3, plane)
+    u = solve(mesh, law, exact, boundary(mesh), 0 * exact)
+    np.testing.assert_allclose(u, exact, rtol=0, atol=1e-12)
+    P = law.stress(deformation_gradient(mesh, u))
+    expected = law.stress((np.eye(2) + H)[:, :, None])[:, :, 0]
+    np.testing.assert_allclose(P, expected[:, :, None, None] + 0 * P, rtol=0, atol=1e-10 * E)
+
+
+@elements
+@laws
+def test_patch_test_under_a_pressed_face(strip, material, element):
+    """A uniform traction on the upper face, supports that let it contract: uniaxial stress everywhere, to 1e-10."""
+    height, mesh = 0.6, distorted(strip, element, 4)
+    law, x, y = elastic_law(material, E, 0.3), *mesh.nodes.T
+    H = uniaxial(law, -0.05 * E)
+    loads = np.zeros(mesh.nodes.shape)
+    top = np.flatnonzero(np.abs(y - height / 2) < 1e-9)
+    top = top[np.argsort(x[top])]
+    shares = (1, 1) if element == "Q1" else (1, 4, 1)
+    for i in range(0, top.size - 1, len(shares) - 1):
+        side = top[i : i + len(shares)]
+        loads[side, 1] += np.array(shares) / sum(shares) * (x[side[-1]] - x[side[0]]) * -0.05 * E * WIDTH
+    exact = (mesh.nodes + np.array([0.0, height / 2])) @ H.T
+    held = np.stack([np.abs(x) < 1e-9, np.abs(y + height / 2) < 1e-9], 1)
+    T = eye_array(held.size, format="csr")[:, np.flatnonzero(~held.ravel())]
+    stiffness = pattern(mesh, csr_matrix(T))
+    u = np.zeros(mesh.nodes.shape)
+    for _ in range(12):
+        F = deformation_gradient(mesh, u)
+        R = T.T @ (internal_force(mesh, law.stress(F)) - loads).ravel()
+        u -= (T @ spsolve(stiffness.matrix(element_tangents(mesh, law.tangent(F))), R)).reshape(-1, 2)
+    np.testing.assert_allclose(u, exact, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(law.stress(deformation_gradient(mesh, u))[1, 1], -0.05 * E, rtol=1e-10)
+
+
+def uniaxial(law, pressure):
+    """Displacement gradient of uniaxial stress P_yy, by Newton's method on the two stretches."""
+    stretches = np.ones(2)
+    for _ in range(20):
+        F = np.diag(stretches)[:, :, None]
+        R = np.diag(law.stress(F)[:, :, 0]) - [0.0, pressure]
+        A = law.tangent(F)[..., 0]
+        stretches = stretches - np.linalg.solve(
+            [[A[0, 0, 0, 0], A[0, 0, 1, 1]], [A[1, 1, 0, 0], A[1, 1, 1, 1]]], R
+        )
+    return np.diag(stretches) - np.eye(2)
+
+
+def field(X, Y):
+    """A smooth displacement with strains of a third."""
+    return 0.1 * np.sin(2 * X + Y), 0.12 * np.cos(X - 2 * Y)
+
+
+def gradient(X, Y):
+    """``I`` plus the gradient of `field`, in closed form."""
+    a, b = 2 * X + Y, X - 2 * Y
+    return np.array([[1 + 0.2 * np.cos(a), 0.1 * np.cos(a)], [-0.12 * np.sin(b), 1 + 0.24 * np.sin(b)]])
+
+
+@elements
+@laws
+def test_manufactured_solution_in_large_strain(strip, material, element):
+    """Orders p + 1 in the mean square of u and p in that of its gradient; body force by complex steps."""
+    law = elastic_law(material, E, 0.3)
+    errors = np.array([manufactured_errors(strip, law, element, n) for n in (8, 16)])
+    order = 1 if element == "Q1" else 2
+    orders = np.log2(errors[0] / errors[1])
+    assert orders[0] == pytest.approx(order + 1, abs=0.15)
+    assert orders[1] == pytest.approx(order, abs=0.1)
+
+
+def manufactured_errors(strip, law, element, n):
+    mesh = distorted(strip, element, n)
+    X, Y = np.asarray(mesh.basis.global_coordinates())
+    force = -sum(
+        law.stress(gradient(X + 1j * STEP * (j == 0), Y + 1j * STEP * (j == 1)))[:, j].imag / STEP
+        for j in range(2)
+    )
+    shapes = np.stack([np.broadcast_to(np.asarray(part[0]), X.shape) for part in mesh.basis.basis])
+    loads = np.zeros(mesh.nodes.shape)
+    np.add.at(loads, mesh.cells, np.einsum("aeq,ieq,eq->eai", shapes, force, mesh.weights))
+    exact = np.stack(field(*mesh.nodes.T), 1)
+    u = solve(mesh, law, exact, boundary(mesh), loads)
+    difference = np.einsum("aeq,eai->ieq", shapes, u[mesh.cells]) - np.array(field(X, Y))
+    slopes = deformation_gradient(mesh, u) - gradient(X, Y)
+    return [np.sqrt((part**2 * mesh.weights).sum()) for part in (difference, slopes)]
