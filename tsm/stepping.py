@@ -225,13 +225,12 @@ class Stepper:
         if any(other.kind is not EventKind.TOUCH or other.pair != margin.pair for other in past):
             self.failure = Status.ITERATION_LIMIT
             return self.failure
-        coming = {(before.kind, before.pair) for before, _ in events}
         together = [
             other
-            for other in self._measure(at)
-            if (other.kind, other.pair) in coming
-            and {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
+            for before, other in zip(self.margins, self._measure(at), strict=True)
+            if {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
             and other.value <= _COINCIDENT
+            and other.value < before.value
         ]
         return self._switch(at, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
 
@@ -391,7 +390,8 @@ class Stepper:
             ahead = 1 if new.element > old.element else -1
             for element in range(old.element + ahead, new.element + ahead, ahead):
                 arc = arc_position(model, pair.target, element, 0.0 if ahead > 0 else 1.0)
-                part = (arc - arcs[0]) / (arcs[1] - arcs[0])
+                moved = arcs[1] - arcs[0]
+                part = (arc - arcs[0]) / moved if moved else 1.0
                 t0, t1 = before.state.load_parameter, after.state.load_parameter
                 self.events.append(
                     Event(

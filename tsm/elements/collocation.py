@@ -40,6 +40,10 @@ class Collocation(NamedTuple):
     barycentric: Array
 
 
+_TINY = 1e-290
+"""Distance to a station whose inverse would overflow."""
+
+
 @lru_cache(maxsize=64)
 def collocation(order: int) -> Collocation:
     """Tables with `order` Gauss nodes.
@@ -79,8 +83,8 @@ def interpolation(order: int, x: Array) -> Array:
     """Matrix that takes values at the stations to the points x (m,) of the polynomial through them, shape (m, p + 1)."""
     table = collocation(order)
     apart = x[:, None] - table.stations
-    if not apart.all():
-        hit = apart == 0
+    hit = np.abs(apart) < _TINY
+    if hit.any():
         apart[hit.any(axis=1)] = np.inf
         apart[hit] = 1.0
     found: Array = table.barycentric / apart
