@@ -180,7 +180,7 @@ class _Path:
             if not np.isfinite(residuals[-1]):
                 self.failure = Status.NOT_FINITE
                 return None, iteration
-            finer = self.newton.finer(state, system, residuals)
+            finer = self.newton.with_more_nodes(state, system, residuals)
             if finer is not None:
                 state = finer
                 continue

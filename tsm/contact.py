@@ -18,6 +18,9 @@ from tsm.elements.curve import Curve
 from tsm.elements.mixed_contact import cross_compliance
 from tsm.elements.properties import Array
 from tsm.model import BeamModel, Model, PairModel
+from tsm.rods.accuracy import deflected
+from tsm.rods.profile import recut
+from tsm.rods.shape import RodShape, tangent_at
 from tsm.state import State, Touch
 
 _SAMPLES = 33
@@ -68,7 +71,7 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -
         owned.append(touch if element == touch.element else replace(touch, element=element, xi=xi))
     if model.rods is None:
         return replace(state, touches=tuple(owned))
-    return model.rods.recut(replace(state, touches=touches), tuple(owned))
+    return recut(model.rods, replace(state, touches=touches), tuple(owned))
 
 
 def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:
@@ -95,7 +98,12 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
     The chords give the owner, Newton's method on the owner's curve the point.
     """
     if pair.cuts:
-        return _project_on_rods(model, pair, state)
+        assert model.rods is not None, "the pair touches an exact element"
+        shape = deflected(model.rods, state)
+        seen: dict[int, Projection] = model.rods.memo.closest if model.rods.memo else {}
+        if pair.slot not in seen:
+            seen[pair.slot] = _project_on_rods(model, pair, state, shape)
+        return seen[pair.slot]
     q = state.q
     node = model.node_position(pair, q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, q, node)
@@ -118,10 +126,10 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
     return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
 
 
-def _project_on_rods(model: Model, pair: PairModel, state: State) -> Projection:
+def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShape) -> Projection:
     """Closest point of exact elements: of points along the axis the nearest, and Newton's method from there."""
     assert model.rods is not None, "the pair touches an exact element"
-    shape, target = model.rods.shape(state), pair.target
+    target = pair.target
     node = np.array(model.node_position(pair, state.q, state.load_parameter))
     l0 = model.element[target.first].l0
     samples = np.linspace(0, l0, _SAMPLES)
@@ -134,7 +142,7 @@ def _project_on_rods(model: Model, pair: PairModel, state: State) -> Projection:
     for _ in range(30):
         inside = min(max(arc, 0.0), l0)
         at = shape.at(first + e, np.array([inside]))
-        tangent, bend = model.rods.tangent(first + e, at)
+        tangent, bend = tangent_at(model.rods, first + e, at)
         apart = at.position[0] + (arc - inside) * tangent - node
         slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
         step = float(apart @ tangent) / slope if slope > 0 else 0.0

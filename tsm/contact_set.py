@@ -9,6 +9,7 @@ import numpy as np
 from tsm.contact import chord_owner, project
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model, PairModel
+from tsm.rods.profile import recut, undeformed
 from tsm.state import State, Touch
 from tsm.status import Status
 
@@ -19,7 +20,7 @@ def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: b
     touches[k], flags[k] = touch, armed
     state = replace(state, armed=tuple(flags))
     if model.rods:
-        return model.rods.recut(state, tuple(touches))
+        return recut(model.rods, state, tuple(touches))
     return replace(state, touches=tuple(touches))
 
 
@@ -46,7 +47,7 @@ def initial_state(model: Model) -> State:
     q = np.zeros(model.dof_count)
     count = len(model.pairs)
     none: tuple[Touch | None, ...] = (None,) * count
-    straight = model.rods.undeformed(none) if model.rods else None
+    straight = undeformed(model.rods, none) if model.rods else None
     start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count, profile=straight)
     touches: list[Touch | None] = []
     for pair in model.pairs:
@@ -64,7 +65,7 @@ def initial_state(model: Model) -> State:
             Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
         )
     if model.rods:
-        start = model.rods.recut(start, tuple(touches))
+        start = recut(model.rods, start, tuple(touches))
     return owned(model, replace(start, touches=start.touches if model.rods else tuple(touches)))
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from tsm.elements import ELEMENTS, EXACT, ClosedForm, ElementType
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
-from tsm.rods import Rods
+from tsm.rods.assembly import Rods
 from tsm.structure import Beam, ContactPair, Pin, Structure
 
 
@@ -76,6 +76,11 @@ class PairModel:
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
         return self.element_type is EXACT
+
+    @property
+    def reach(self) -> float:
+        """Offset of the contact surface from the axis, positive to the right of the beam's direction."""
+        return self.side * self.pair.offset
 
     @property
     def slots(self) -> slice:

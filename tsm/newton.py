@@ -10,6 +10,7 @@ import numpy as np
 from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
 from tsm.model import Model
+from tsm.rods.accuracy import finer, inaccurate
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
@@ -129,9 +130,9 @@ class Newton:
             residuals.append(residual)
             owners.append(tuple(touch.element for touch in state.touches if touch is not None))
             status = self._status(system, residuals, owners, left)
-            finer = self.finer(state, system, residuals) if left else None
-            if finer is not None:
-                state, taken = finer, None
+            more = self.with_more_nodes(state, system, residuals) if left else None
+            if more is not None:
+                state, taken = more, None
                 continue
             step = self.assembler.solve(system) if status is None else None
             if step is None:
@@ -162,19 +163,19 @@ class Newton:
             return None
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
 
-    def finer(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
+    def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
         """State with more Gauss nodes where it comes near equilibrium, or in it, and those of the exact elements are too few."""
         rods = self.model.rods
         if rods is None or system.rods is None or not residuals[-1] <= _NEAR:
             return None
         if len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system):
             return None
-        return rods.finer(state, system.rods, self.accuracy)
+        return finer(rods, state, system.rods, self.accuracy)
 
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
         rods = self.model.rods
-        if rods and system.rods and rods.inaccurate(system.rods, self.accuracy):
+        if rods and system.rods and inaccurate(rods, system.rods, self.accuracy):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 

@@ -9,13 +9,14 @@ from typing import Any
 from tsm.contact import arc_position, handed_over
 from tsm.contact_set import owned
 from tsm.model import Model, PairModel
+from tsm.rods.profile import alike
 from tsm.state import State, Touch
 
 
 def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
     if model.rods:
-        history = model.rods.alike(history)
+        history = alike(model.rods, history)
     at = [state.load_parameter for state in history]
     weights = [
         math.prod((t - other) / (own - other) for k, other in enumerate(at) if k != n)

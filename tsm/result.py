@@ -14,7 +14,8 @@ from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.rod_shape import Stations
+from tsm.rods.accuracy import deflected
+from tsm.rods.shape import Stations, pieces
 from tsm.status import Status
 from tsm.stepping import Step
 from tsm.system import Assembler
@@ -150,7 +151,7 @@ class Result:
         rods = self.model.rods
         assert rods is not None, "an exact element has rods"
         state = self.equilibria[k].state
-        return rods.shape(state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
+        return deflected(rods, state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
 
     def _curve(self, e: int, k: int, xi: Array) -> Array:
         x = self.equilibria[k].state.q[self.model.dofs[:, e]]
@@ -172,18 +173,12 @@ class Result:
         rods = self.model.rods
         assert rods is not None, "an exact element has rods"
         count = max(4, math.ceil(60 / place.beam.elements))
-        pieces = [
-            rods.pieces(state, int(self.model.place[e]), count) for e in range(place.first, place.last + 1)
+        axis, l0 = deflected(rods, state), self.model.element[place.first].l0
+        parts = [
+            pieces(rods, axis, int(self.model.place[e]), count) for e in range(place.first, place.last + 1)
         ]
-        l0 = self.model.element[place.first].l0
-        arc = np.concatenate([part.arc + n * l0 for n, part in enumerate(pieces)])
-        rotation = np.concatenate([part.rotation for part in pieces])
-        return Stations(
-            arc,
-            np.concatenate([part.position for part in pieces]),
-            rotation,
-            np.concatenate([part.forces for part in pieces]),
-        )
+        parts = [part._replace(arc=part.arc + n * l0) for n, part in enumerate(parts)]
+        return Stations(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def section_forces(self, beam: str, k: int) -> Array:
         """Axial force, shear force and moment at both ends of the elements of a beam.

@@ -22,7 +22,8 @@ from scipy.linalg.lapack import dgbsv, dgesv
 from tsm.elements import ClosedForm, beam, mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
-from tsm.rods import CUT, OWN, CutElement, RodBalance, RodTangent
+from tsm.rods.assembly import CutElement, RodBalance, RodTangent
+from tsm.rods.layout import CUT, OWN
 from tsm.state import State, Touch
 
 _EPS = float(np.finfo(float).eps)
@@ -115,6 +116,45 @@ class Solved(NamedTuple):
         return -1 if odd % 2 else 1
 
 
+class Units:
+    """Units of the equations and unknowns: exact elements put lengths, forces and angles into one matrix.
+
+    Parameters
+    ----------
+    model : Model
+        Its longest beam and largest ``EI/L^2`` are the units.
+    k : int
+        Bandwidth.
+    """
+
+    def __init__(self, model: Model, k: int) -> None:
+        L, F = model.length, model.force_scale
+        kind = model.free % 3 + 3 * (model.free >= 3 * len(model.coordinates))
+        counts = [pair.element_type.contact_unknowns for pair in model.pairs]
+        own_columns = [[F, F, L, 1.0][:count] for count in counts]
+        own_rows = [[L, L, F, 1.0][:count] for count in counts]
+        self.columns = np.concatenate([np.array([L, L, 1.0, F, F, F * L])[kind], *own_columns])
+        self.rows = 1 / np.concatenate([np.array([F, F, F * L, L, L, 1.0])[kind], *own_rows])
+        banded, last = model.banded, model.equations
+        column, entry = np.indices((banded, 3 * k + 1))
+        row = column + entry - 2 * k
+        inside = (row >= 0) & (row < banded)
+        self.band = np.where(inside, self.columns[column] * self.rows[np.where(inside, row, 0)], 0.0)
+        self.right = np.append(self.rows[:last], 0.0)[:, None] * self.columns[banded:]
+        self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
+        self.corner = self.rows[banded:, None] * self.columns[banded:]
+
+    def without(self, tangent: Bordered, given: Array) -> tuple[Bordered, Array]:
+        """Tangent and right-hand sides as plain numbers."""
+        plain = tangent._replace(
+            band=tangent.band * self.band,
+            right=tangent.right * self.right,
+            below=tangent.below * self.below,
+            corner=tangent.corner * self.corner,
+        )
+        return plain, given * self.rows[:, None]
+
+
 class Assembler:
     """Scatter maps of a model, made once."""
 
@@ -122,6 +162,7 @@ class Assembler:
         self.model = model
         self.k = model.bandwidth
         self.ldab = 3 * self.k + 1
+        self.units = Units(model, self.k) if model.rods else None
         banded, last = model.banded, model.equations
         self.nodal_dofs = model.dofs[:, model.closed]
         maps = [_pairs(model.equation[dofs]) for dofs in (self.nodal_dofs, model.exact_dofs)]
@@ -318,6 +359,8 @@ class Assembler:
         tangent = system.tangent
         residual = system.residual if tangent.carried is None else system.residual + tangent.carried
         given = np.stack([-residual, *more], axis=1)
+        if self.units:
+            tangent, given = self.units.without(tangent, given)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
         lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
@@ -325,13 +368,16 @@ class Assembler:
             return self._solve_whole(tangent, given) if border else None
         factors = (lu[2 * self.k], pivots)
         if not border:
-            return Solved(X, (factors,))
+            return Solved(self._with_units(X), (factors,))
         reduced = tangent.below[:, :banded] @ X
         lu, pivots, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
         if info != 0:
             return None
         x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
-        return Solved(x, (factors, (lu.diagonal(), pivots)))
+        return Solved(self._with_units(x), (factors, (lu.diagonal(), pivots)))
+
+    def _with_units(self, x: Array) -> Array:
+        return x if self.units is None else x * self.units.columns[:, None]
 
     def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
         """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
@@ -348,7 +394,8 @@ class Assembler:
         except RuntimeError:
             return None
         exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
-        return Solved(lu.solve(given), ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+        x = self._with_units(lu.solve(given))
+        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
 
 
 def _exchanges(order: Array) -> Array:

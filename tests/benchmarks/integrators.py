@@ -21,11 +21,13 @@ import tsm
 from comparisons.exact.rod import rod_under_pin
 from comparisons.scene import load_scene
 from comparisons.translate import to_rod, to_structure
-from tsm import model, rods
+from tsm import contact, contact_set, newton
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.rod_shape import RodShape
+from tsm.rods import assembly, profile, shape
+from tsm.rods.assembly import Rods
+from tsm.rods.layout import layout
 from tsm.state import Cuts, Profile, State, Touch
 from tsm.system import Assembler
 
@@ -176,49 +178,58 @@ class Explicit:
         return steps
 
 
-class Shot(rods.Rods):
-    """Exact elements whose profile holds the angle and moment at the start of every segment."""
+def starts_undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
+    """Profile that holds the angle and moment at the start of every segment, in place of angles at Gauss nodes."""
+    straight = profile.undeformed(rods, touches)
+    return Profile(cuts=straight.cuts, angle=straight.angle[:, :2] * [1.0, 0.0])
 
-    def undeformed(self, touches: tuple[Touch | None, ...]) -> Profile:
-        profile = super().undeformed(touches)
-        return Profile(cuts=profile.cuts, angle=profile.angle[:, :2] * [1.0, 0.0])
 
-    def sampled(self, shape: RodShape, state: State, cuts: Cuts, _: int) -> State:
-        place, inside = rods.layout(len(self.length), cuts), dict(cuts)
-        starts = np.empty((len(place.owner), 2))
-        for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
-            xi = [0.0, *(rods._touch(state, k).xi for k in inside.get(element, ()))]
-            at = shape.at(element, np.array(xi) * self.length[element])
-            starts[first : last + 1] = np.stack([at.angle, at.moment], axis=1)
-        return replace(state, profile=Profile(cuts=cuts, angle=starts))
+def starts_sampled(rods: Rods, axis: shape.RodShape, state: State, cuts: Cuts, _: int) -> State:
+    """Take such a profile from a shape."""
+    place, inside = layout(len(rods.length), cuts), dict(cuts)
+    starts = np.empty((len(place.owner), 2))
+    for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
+        xi = [0.0, *(assembly.touch_of(state, k).xi for k in inside.get(element, ()))]
+        at = axis.at(element, np.array(xi) * rods.length[element])
+        starts[first : last + 1] = np.stack([at.angle, at.moment], axis=1)
+    return replace(state, profile=Profile(cuts=cuts, angle=starts))
 
-    def shape(self, state: State) -> RodShape:
-        entry = self.enter(state)
-        at, nodes = entry.at, collocation(SHAPE_ORDER).c
-        own = np.repeat(np.arange(len(at.length)), SHAPE_ORDER)
-        flexibility = rod.Flexibility(*(value[own] for value in at.flexibility))
-        arcs = (at.length * nodes).reshape(-1, 1)
-        course = rods.rod.field(rod.Segments(flexibility, at.force[:, own], arcs, at.angle[own]))
-        at = at._replace(angle=course.end.reshape(-1, SHAPE_ORDER))
-        return self._plain_shape(state, entry._replace(at=at, of=rod.field(at)))
+
+def axis_by_steps(rods: Rods, state: State, *_: Any) -> shape.RodShape:
+    """Deflected axis, integrated to `SHAPE_ORDER` Gauss nodes of every segment."""
+    entry = rods.enter(state)
+    at, nodes = entry.at, collocation(SHAPE_ORDER).c
+    own = np.repeat(np.arange(len(at.length)), SHAPE_ORDER)
+    flexibility = rod.Flexibility(*(value[own] for value in at.flexibility))
+    arcs = (at.length * nodes).reshape(-1, 1)
+    course = assembly.rod.field(rod.Segments(flexibility, at.force[:, own], arcs, at.angle[own]))
+    at = at._replace(angle=course.end.reshape(-1, SHAPE_ORDER))
+    return shape.plain_shape(rods, state, entry._replace(at=at, of=rod.field(at)))
 
 
 def fixed() -> Any:
     """Keep the accuracy inside exact elements as it is."""
-    return patch.object(rods.Rods, "finer", lambda *_: None)
+    return patch.object(newton, "finer", lambda *_: None)
 
 
 @contextmanager
 def explicit(steps: int) -> Iterator[None]:
     """Integrate exact elements by DOP853."""
-    with patch.object(rods, "rod", Explicit(steps)), patch.object(model, "Rods", Shot), fixed():
+    with (
+        patch.object(assembly, "rod", Explicit(steps)),
+        patch.object(contact_set, "undeformed", starts_undeformed),
+        patch.object(profile, "sampled", starts_sampled),
+        patch.object(profile, "plain_shape", axis_by_steps),
+        patch.object(contact, "deflected", axis_by_steps),
+        fixed(),
+    ):
         yield
 
 
 @contextmanager
 def gauss(order: int) -> Iterator[None]:
     """Integrate exact elements with a fixed number of Gauss nodes."""
-    with patch.object(rods, "START_ORDER", order), fixed():
+    with patch.object(profile, "START_ORDER", order), fixed():
         yield
 
 

@@ -1,0 +1,1 @@
+"""Exact elements: the Reissner rod's equations from load to load."""

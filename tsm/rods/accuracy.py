@@ -1,0 +1,81 @@
+"""How accurate the integration inside exact elements is, and what is done about it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tsm.elements import rod
+from tsm.elements.collocation import collocation
+from tsm.rods.assembly import Entry, Memo, RodBalance, Rods, profile_of
+from tsm.rods.profile import resampled
+from tsm.rods.shape import RodShape, plain_shape
+from tsm.state import State
+
+MOST_NODES = 96
+"""Gauss nodes of a segment at most."""
+_AT_ONCE = 4
+"""Nodes added at least."""
+_FALL = 100.0
+"""What the error is expected to fall by with two nodes more."""
+_SMOOTH = 1e-13
+"""Error inside that does not show."""
+
+
+def truncation(rods: Rods, entry: Entry) -> float:
+    """Estimated error of the integration, in positions over the longest beam's length and in angles.
+
+    At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
+    both are measured by the last two Legendre coefficients of moment and tangent vector, and both integrations divide by p.
+    """
+    at, values = entry.at, entry.of.values
+    order = values.shape[2]
+    tail = np.abs(values @ collocation(order).legendre[-2:].T).max(axis=2)
+    length = np.abs(at.length[:, 0])
+    turn = tail[0] * length**2 * at.flexibility.bend[:, 0]
+    largest = np.maximum(turn, tail[1:].max(axis=0) * length / rods.model.length).max()
+    return float(largest / order) ** 2
+
+
+def finer(rods: Rods, state: State, balance: RodBalance, accuracy: float) -> State | None:
+    """State with more Gauss nodes, None where the error estimate of `truncation` is small enough."""
+    order, error = profile_of(state).angle.shape[1], truncation(rods, balance.entry)
+    if error <= accuracy or order == MOST_NODES:
+        return None
+    more = 2 * math.ceil(math.log(error / accuracy, _FALL)) if math.isfinite(error) else order
+    return resampled(rods, state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
+
+
+def inaccurate(rods: Rods, balance: RodBalance, accuracy: float) -> bool:
+    """Whether the most Gauss nodes do not suffice."""
+    return balance.arrival.bent.shape[1] == MOST_NODES and truncation(rods, balance.entry) > accuracy
+
+
+def deflected(rods: Rods, state: State) -> RodShape:
+    """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments.
+
+    Inside, a polynomial of p Gauss nodes has order p, at the ends 2p; so it is computed anew with 2p nodes between the same ends.
+    """
+    if rods.memo is None or rods.memo.state is not state:
+        entry = rods.enter(state)
+        if math.sqrt(truncation(rods, entry)) > _SMOOTH:
+            entry = _finer_inside(rods, state)
+        rods.memo = Memo(state, plain_shape(rods, state, entry), {})
+    return rods.memo.shape
+
+
+def _finer_inside(rods: Rods, state: State) -> Entry:
+    """Segments between the same ends, with twice the Gauss nodes."""
+    finer = resampled(rods, state, 2 * profile_of(state).angle.shape[1])
+    entry = rods.enter(finer)
+    for _ in range(5):
+        arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+        if np.abs(arrival.inside).max() < _SMOOTH:
+            break
+        inner = rod.condense(entry.at, entry.of, arrival, entry.moment).inner
+        profile = profile_of(finer)
+        finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
+        entry = rods.enter(finer)
+    return entry

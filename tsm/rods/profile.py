@@ -1,0 +1,92 @@
+"""Angles inside the exact elements as contacts move, open and close: where the elements are cut, and what is taken over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tsm.elements.collocation import collocation
+from tsm.elements.properties import Array
+from tsm.rods.assembly import Rods, profile_of, touch_of
+from tsm.rods.layout import layout
+from tsm.rods.shape import RodShape, plain_shape
+from tsm.state import Cuts, Profile, State, Touch
+
+START_ORDER = 14
+"""Gauss nodes of a straight element."""
+
+
+def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
+    """Where touches cut the elements."""
+    found: dict[int, list[tuple[float, int]]] = {}
+    for k, (pair, touch) in enumerate(zip(rods.model.pairs, touches, strict=True)):
+        if touch is not None and pair.cuts:
+            found.setdefault(int(rods.model.place[touch.element]), []).append((touch.xi, k))
+    return tuple((element, tuple(k for _, k in sorted(on))) for element, on in sorted(found.items()))
+
+
+def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
+    """Profile of the straight elements."""
+    cuts = cuts_of(rods, touches)
+    owner = layout(len(rods.length), cuts).owner
+    return Profile(cuts=cuts, angle=np.repeat(rods.angle0[owner][:, None], START_ORDER, axis=1))
+
+
+def recut(rods: Rods, state: State, touches: tuple[Touch | None, ...]) -> State:
+    """State with other touches, its profile cut where they are; a new touch takes the angle that it finds."""
+    cuts = cuts_of(rods, touches)
+    if cuts == profile_of(state).cuts:
+        return replace(state, touches=touches)
+    shape, given, q = plain_shape(rods, state, rods.enter(state)), list(touches), state.q.copy()
+    for element, pairs in cuts:
+        for k in pairs:
+            old, touch = state.touches[k], touches[k]
+            assert touch is not None, "a cut is a closed contact"
+            if old is None:
+                angle = shape.at(element, np.array([touch.xi * rods.length[element]])).angle[0]
+                given[k] = replace(touch, angle=float(angle))
+            else:
+                _shift(rods, q, old.element, touch)
+    cut = replace(state, q=q, touches=tuple(given))
+    return sampled(rods, shape, cut, cuts, profile_of(state).angle.shape[1])
+
+
+def _shift(rods: Rods, q: Array, before: int, touch: Touch) -> None:
+    """Add the force of a contact that passed to another element to the starts that now lie before it, or take it away."""
+    first, last = sorted((before, touch.element))
+    sign = 1 if touch.element > before else -1
+    for element in range(first + 1, last + 1):
+        q[rods.dofs[3:5, rods.model.place[element]]] += sign * np.array(touch.force)
+
+
+def alike(rods: Rods, history: list[State]) -> list[State]:
+    """The latest states that are cut alike, with as many Gauss nodes as the last."""
+    cuts, order = profile_of(history[-1]).cuts, profile_of(history[-1]).angle.shape[1]
+    found: list[State] = []
+    for state in reversed(history):
+        if profile_of(state).cuts != cuts:
+            break
+        same = profile_of(state).angle.shape[1] == order
+        found.insert(0, state if same else resampled(rods, state, order))
+    return found
+
+
+def resampled(rods: Rods, state: State, order: int) -> State:
+    """State with another number of Gauss nodes."""
+    shape = plain_shape(rods, state, rods.enter(state))
+    return sampled(rods, shape, state, profile_of(state).cuts, order)
+
+
+def sampled(rods: Rods, shape: RodShape, state: State, cuts: Cuts, order: int) -> State:
+    """State whose angles inside are taken from a shape."""
+    place = layout(len(rods.length), cuts)
+    angle = np.empty((len(place.owner), order))
+    nodes = collocation(order).c
+    inside = dict(cuts)
+    for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
+        arcs = [touch_of(state, k).xi * rods.length[element] for k in inside.get(element, ())]
+        ends = np.array([0.0, *arcs, rods.length[element]])
+        at = ends[:-1, None] + np.diff(ends)[:, None] * nodes
+        angle[first : last + 1] = shape.at(element, at.ravel()).angle.reshape(at.shape)
+    return replace(state, profile=Profile(cuts=cuts, angle=angle))

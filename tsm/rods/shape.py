@@ -1,0 +1,153 @@
+"""The deflected axis of exact elements between their Gauss nodes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements import rod
+from tsm.elements.collocation import collocation, interpolation
+from tsm.elements.properties import Array
+from tsm.rods.assembly import Entry, Rods, profile_of
+from tsm.state import State
+
+
+class Station(NamedTuple):
+    """Points of the axis.
+
+    Attributes
+    ----------
+    position : ndarray, shape (m, 2)
+        Position.
+    angle : ndarray, shape (m,)
+        Angle of the section from the x axis.
+    moment : ndarray, shape (m,)
+        Bending moment.
+    force : ndarray, shape (m, 2)
+        Internal force.
+    """
+
+    position: Array
+    angle: Array
+    moment: Array
+    force: Array
+
+
+class Stations(NamedTuple):
+    """Short lines along a beam, each with its own two ends: section forces may jump from one to the next.
+
+    Attributes
+    ----------
+    arc : ndarray, shape (c, 2)
+        Distance along the undeformed axis.
+    position : ndarray, shape (c, 2, 2)
+        Deformed position.
+    rotation : ndarray, shape (c, 2)
+        Rotation from the undeformed state.
+    forces : ndarray, shape (c, 2, 3)
+        Axial force, shear force and moment.
+    """
+
+    arc: Array
+    position: Array
+    rotation: Array
+    forces: Array
+
+
+class RodShape:
+    """Polynomials of angle, moment and position in every segment.
+
+    Parameters
+    ----------
+    first, last : ndarray of int, shape (r,)
+        First and last segment of every element.
+    arc, length : ndarray, shape (s,)
+        Arc position of the start within the element, and undeformed length, of every segment.
+    force : ndarray, shape (2, s)
+        Internal force of every segment.
+    start : ndarray, shape (4, s)
+        Position (x, y), angle and moment at the start of every segment.
+    rates : ndarray, shape (4, s, p)
+        Their derivatives in the arc position at the Gauss nodes.
+    """
+
+    def __init__(
+        self,
+        first: Array,
+        last: Array,
+        arc: Array,
+        length: Array,
+        force: Array,
+        start: Array,
+        rates: Array,
+    ) -> None:
+        self.first, self.last, self.arc, self.length, self.force = first, last, arc, length, force
+        self.order = rates.shape[2]
+        risen = start[:, :, None] + rates @ collocation(self.order).once.T * length[:, None]
+        self.values = np.concatenate([start[:, :, None], risen], axis=2)
+
+    def at(self, element: int, arc: Array) -> Station:
+        """Stations of an element, counted over the exact ones, at arc positions (m,) within it."""
+        first, last = int(self.first[element]), int(self.last[element])
+        within = np.searchsorted(self.arc[first + 1 : last + 1], arc, side="right")
+        if (within == within[0]).all():
+            segment = first + int(within[0])
+            length = self.length[segment]
+            sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
+            return self.within(segment, sigma)
+        parts = [self.at(element, arc[within == n]) for n in range(last - first + 1) if n in within]
+        found = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
+        for n, part in zip(np.unique(within), parts, strict=True):
+            for whole, value in zip(found, part, strict=True):
+                whole[within == n] = value
+        return found
+
+    def within(self, segment: int, sigma: Array) -> Station:
+        """Stations at parts sigma (m,) of a segment."""
+        x, y, angle, moment = self.values[:, segment] @ interpolation(self.order, sigma).T
+        force = np.empty((len(sigma), 2))
+        force[:] = self.force[:, segment]
+        return Station(np.array([x, y]).T, angle, moment, force)
+
+
+def plain_shape(rods: Rods, state: State, entry: Entry) -> RodShape:
+    """Polynomials through what is known at the Gauss nodes."""
+    at, of, place = entry.at, entry.of, entry.place
+    table = collocation(at.angle.shape[1])
+    moment = entry.moment + at.length * (of.values[0] @ table.once.T)
+    x, y = rods.start[:, place.owner] + state.q[rods.dofs[:2]][:, place.owner]
+    length = at.length[:, 0]
+    arc = np.zeros(len(length))
+    for element, _ in profile_of(state).cuts:
+        for s in range(place.first[element], place.last[element]):
+            arc[s + 1] = arc[s] + length[s]
+            x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
+    start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
+    rates = np.stack([*of.values[1:], at.flexibility.bend * moment, of.values[0]])
+    return RodShape(place.first, place.last, arc, length, at.force[:, :, 0], start, rates)
+
+
+def tangent_at(rods: Rods, element: int, at: Station) -> tuple[Array, Array]:
+    """Tangent vector r' of the axis at a single station of an element, and its derivative along the arc."""
+    stretch, shear, bend = (float(value[element]) for value in rods.flexibility)
+    x, y = at.force[0].tolist()
+    found = rod.tangent(stretch, shear, (x, y), float(at.angle[0]))
+    return np.array(found.vector), np.array(found.turned) * (bend * float(at.moment[0]))
+
+
+def pieces(rods: Rods, shape: RodShape, element: int, count: int) -> Stations:
+    """Lines along an element, `count` for every segment."""
+    found = []
+    for s in range(shape.first[element], shape.last[element] + 1):
+        sigma = np.linspace(0, 1, count + 1)
+        at = shape.within(s, sigma)
+        c, sn = np.cos(at.angle), np.sin(at.angle)
+        nx, ny = at.force.T
+        forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
+        arc = shape.arc[s] + sigma * shape.length[s]
+        found.append((arc, at.position, at.angle - rods.angle0[element], forces))
+    pairs = np.arange(count)[:, None] + np.arange(2)
+    return Stations(
+        *(np.concatenate([part[pairs] for part in column]) for column in zip(*found, strict=True))
+    )
