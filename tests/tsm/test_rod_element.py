@@ -1,0 +1,470 @@
+"""The exact element: its tables, its segments alone, its tangent in a structure, its error estimate."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import tsm
+from tsm.elements import rod
+from tsm.elements.collocation import collocation, interpolation
+from tsm.elements.rod import Flexibility, Segments
+from tsm.newton import Newton
+from tsm.rods import accuracy, profile
+from tsm.state import Touch
+
+STEP = 1e-30
+ORDERS = range(4, 21)
+KS = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 14, 40])
+def test_quadrature_is_exact_to_degree_2p_minus_1(order):
+    table, degree = collocation(order), np.arange(2 * order)
+    powers = table.c ** degree[:, None]
+    assert powers @ table.w == pytest.approx(1 / (degree + 1), rel=1e-13)
+    twice = 1 / (degree + 1) / (degree + 2)
+    assert powers[:-1] @ table.ends[:, 1] == pytest.approx(twice[:-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [2, 5, 14, 40])
+def test_integrals_of_polynomials_at_the_nodes(order):
+    """`once` is exact to degree p - 1, `twice` to p - 2, less half the line to the integral at the far end."""
+    table, degree = collocation(order), np.arange(order)
+    powers = table.c[:, None] ** degree
+    assert np.abs(table.once @ powers - table.c[:, None] ** (degree + 1) / (degree + 1)).max() <= 1e-14
+    second = (table.c[:, None] ** (degree + 2) - table.c[:, None] / 2) / (degree + 1) / (degree + 2)
+    assert np.abs(table.twice @ powers - second)[:, :-1].max() <= 1e-14
+    polynomials = np.polynomial.legendre.legvander(2 * table.c - 1, order - 1)
+    assert np.abs(table.legendre @ polynomials - np.eye(order)).max() <= 1e-13
+
+
+@pytest.mark.parametrize("order", [2, 5, 14, 40])
+def test_integration_is_symplectic_and_greens_function_symmetric(order):
+    table = collocation(order)
+    once = table.w[:, None] * table.once
+    assert np.abs(once + once.T - np.outer(table.w, table.w)).max() <= 1e-16
+    green = table.w[:, None] * (table.twice - np.outer(table.c, table.ends[:, 1]) / 2)
+    assert np.abs(green - green.T).max() <= 1e-16
+    assert np.abs(table.once - np.roll(table.once, 1)).max() > 1e-3
+
+
+@pytest.mark.parametrize("order", [2, 5, 14, 40])
+def test_interpolation(order):
+    """Exact to degree p between the stations, on them, and one last bit beside them."""
+    table = collocation(order)
+    near = np.concatenate([np.nextafter(table.c, 0), np.nextafter(table.c, 1), [1e-300]])
+    x = np.concatenate([table.stations, np.linspace(0, 1, 33), near])
+    degree = np.arange(order + 1)
+    found = interpolation(order, x) @ table.stations[:, None] ** degree
+    assert np.abs(found - x[:, None] ** degree).max() <= 1e-13
+    assert np.array_equal(interpolation(order, table.stations), np.eye(order + 1))
+
+
+def random_segments(rng, order, count):
+    """Slack and stiff sections, forces of any direction, lengths of both signs, one zero; ends that nothing fits."""
+    stretch, shear = 10 ** rng.uniform(-9, -0.5, (2, count, 1))
+    bend = 10 ** rng.uniform(-1, 1, (count, 1))
+    length = 10 ** rng.uniform(-3, 0.3, (count, 1)) * rng.choice([-1.0, 1.0], (count, 1))
+    length[0] = 0.0
+    force = rng.normal(size=(2, count, 1)) / bend
+    waves = rng.normal(size=(count, 3)) @ collocation(order).c ** np.arange(3)[:, None]
+    angle = rng.uniform(-np.pi, np.pi, (count, 1)) + waves + 0.01 * rng.normal(size=(count, order))
+    at = Segments(Flexibility(stretch, shear, bend), force, length, angle)
+    start, end = angle[:, :1] + 0.1 * rng.normal(size=(2, count, 1))
+    return at, start, rng.normal(size=(count, 1)), end
+
+
+def outputs(at, start, moment, end):
+    """Residual inside (p), then miss, moment at the end and vector, of the equations before elimination."""
+    of = rod.field(at)
+    found = rod.arrival(at, of, start, moment, end)
+    total = at.length * of.sums[:, :, 0].T
+    ends = [found.miss[:, None], moment + total[:, :1], total[:, 1:]]
+    return np.concatenate([found.inside, *ends], axis=1)
+
+
+def whole_jacobian(at, start, moment, end):
+    """Complex steps of all outputs by the angles inside, then by start, moment, end, force x and y, length."""
+    columns = []
+    for k in range(at.angle.shape[1]):
+        angle = at.angle.astype(complex)
+        angle[:, k] += STEP * 1j
+        columns.append(outputs(at._replace(angle=angle), start, moment, end))
+    for k in range(3):
+        given = [start, moment, end]
+        given[k] = given[k] + STEP * 1j
+        columns.append(outputs(at, *given))
+    for k in range(2):
+        force = at.force.astype(complex)
+        force[k] += STEP * 1j
+        columns.append(outputs(at._replace(force=force), start, moment, end))
+    columns.append(outputs(at._replace(length=at.length + STEP * 1j), start, moment, end))
+    return np.stack(columns, axis=2).imag / STEP
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_condensed_derivatives_are_those_of_the_whole_equations(order):
+    """60 random segments of every order, 1,020 in all: every derivative by complex steps, condensed by numbers."""
+    at, start, moment, end = random_segments(np.random.default_rng(order), order, 60)
+    whole = whole_jacobian(at, start, moment, end)
+    of = rod.field(at)
+    found = rod.arrival(at, of, start, moment, end)
+    right = np.concatenate([whole[:, :order, order:], found.inside[:, :, None]], axis=2)
+    inner = -np.linalg.solve(whole[:, :order, :order], right)
+    direct = np.pad(whole[:, order:, order:], ((0, 0), (0, 0), (0, 1)))
+    transfer = whole[:, order:, :order] @ inner + direct
+    condensed = rod.condense(at, of, found, moment)
+    for got, expected in ((condensed.inner, inner), (condensed.transfer, transfer)):
+        size = np.abs(expected).max(axis=(1, 2))
+        assert (np.abs(got - expected).max(axis=(1, 2)) <= 1e-8 * size).all()
+
+
+def test_a_segment_without_length_changes_nothing():
+    at, start, moment, end = random_segments(np.random.default_rng(1), 7, 20)
+    at = at._replace(length=np.zeros_like(at.length))
+    of = rod.field(at)
+    condensed = rod.condense(at, of, rod.arrival(at, of, start, moment, end), moment)
+    found = outputs(at, start, moment, end)[:, 7:]
+    assert np.array_equal(found, np.concatenate([start - end, moment, 0 * moment, 0 * moment], axis=1))
+    identity = np.zeros((4, 5))
+    identity[0, [0, 2]], identity[1, 1] = (1, -1), 1
+    assert np.array_equal(condensed.transfer[:, :, :5], np.broadcast_to(identity, (20, 4, 5)))
+    rates = np.concatenate([at.flexibility.bend * moment, of.sums[:, :, 0].T], axis=1)
+    assert condensed.transfer[:, :, 5] == pytest.approx(rates, rel=1e-13)
+
+
+def shot(order, section, length, start, moment, force):
+    """Angle, moment and position on arrival, from angle and moment at the start: Newton on what `condense` gives."""
+    flexibility = Flexibility(*(np.array([[1 / value]]) for value in (section.EA, section.GA, section.EI)))
+    force = np.array(force)[:, None, None]
+    at = Segments(flexibility, force, np.array([[length]]), np.full((1, order), start))
+    start, moment, end = np.array([[start]]), np.array([[moment]]), np.array([[start]])
+    for _ in range(30):
+        of = rod.field(at)
+        found = rod.arrival(at, of, start, moment, end)
+        if max(np.abs(found.inside).max(), abs(found.miss[0])) < 1e-15:
+            break
+        condensed = rod.condense(at, of, found, moment)
+        turned = -(found.miss[0] + condensed.transfer[0, 0, 6]) / condensed.transfer[0, 0, 2]
+        at = at._replace(angle=at.angle + condensed.inner[:, :, 2] * turned + condensed.inner[:, :, 6])
+        end = end + turned
+    return np.concatenate([end[0], outputs(at, start, moment, end)[0, order + 1 :]])
+
+
+def integrated(section, length, start, moment, force):
+    """The same by an explicit method of eighth order with tight tolerances."""
+
+    def rates(_, z):
+        c, s = np.cos(z[0]), np.sin(z[0])
+        N, Q = force[0] * c + force[1] * s, force[1] * c - force[0] * s
+        x = (1 + N / section.EA) * c - Q / section.GA * s
+        y = (1 + N / section.EA) * s + Q / section.GA * c
+        return [z[1] / section.EI, force[0] * y - force[1] * x, x, y]
+
+    return solve_ivp(rates, (0, length), [start, moment, 0, 0], method="DOP853", rtol=1e-13, atol=1e-14).y[
+        :, -1
+    ]
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 5])
+def test_order_2p_at_the_ends(order):
+    """One segment of length h: the error falls with h^(2p + 1)."""
+    section = tsm.Section(EA=20.0, GA=12.0, EI=1.0)
+    given = 0.3, 1.1, (0.8, 1.7)
+    lengths = np.array([1.0, 0.5]) * (0.6, 1.0, 1.6, 2.2)[order - 2]
+    errors = [np.abs(shot(order, section, h, *given) - integrated(section, h, *given)).max() for h in lengths]
+    assert errors[1] > 1e-12
+    assert abs(np.log2(errors[0] / errors[1]) - (2 * order + 1)) <= 0.6
+
+
+@pytest.mark.parametrize("force", [(8.0, -3.0), (-8.0, 3.0), (0.5, 30.0)])
+def test_a_segment_against_an_explicit_integrator(force):
+    section = tsm.Section(EA=200.0, GA=80.0, EI=1.0)
+    for length in (1.0, -0.7):
+        found, exact = (f(section, length, 0.3, 1.1, force) for f in (lambda *a: shot(40, *a), integrated))
+        assert np.abs(found - exact).max() <= 1e-11 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("order", [14, 24])
+def test_half_way_elimination_is_regular_at_every_axial_force(order):
+    """Straight, ``N h^2/EI = k``: with the start's angle and moment held, or both angles, the same matrix is singular somewhere."""
+    table = collocation(order)
+    line = np.outer(table.c, table.ends[:, 1]) / 2
+
+    def condition(k, matrix):
+        return np.linalg.cond(np.eye(order) - k * matrix)
+
+    for k in (0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6):
+        assert condition(k, table.twice) <= 10 * (1 + k)
+    assert condition(1e3, table.twice + line) > 1e3 * condition(1e3, table.twice)
+    for k in (-(np.pi**2), -4 * np.pi**2):
+        assert condition(k, table.twice) <= 20
+        assert condition(k, table.twice - line) > 1e12
+
+
+@pytest.mark.parametrize("k", [-100.0, -4 * np.pi**2, -(np.pi**2), 0.0, 1.0, 1e2, 1e3])
+def test_straight_rod_under_axial_force_in_closed_form(k):
+    """Angles inside that turn with the end, ``m_i h/EI - phi_i`` held: ``sinh(sqrt(k) c)/(sqrt(k) + sinh(sqrt(k)))``."""
+    order, one = 40, np.ones((1, 1))
+    flexibility = Flexibility(1e-12 * one, 1e-12 * one, one)
+    at = Segments(flexibility, np.array([k, 0.0])[:, None, None], one, np.zeros((1, order)))
+    of = rod.field(at)
+    found = rod.arrival(at, of, 0 * one, 0 * one, 0 * one)
+    root = np.sqrt(complex(k))
+    c = collocation(order).c
+    exact = np.sinh(root * c) / (root + np.sinh(root)) if k else c / 2
+    inner = rod.condense(at, of, found, 0 * one).inner[0, :, 2]
+    assert np.abs(inner - exact.real).max() <= 1e-9 * np.abs(exact).max()
+
+
+def beam(name, start, end, *, section=KS, elements=1, element="exact"):
+    return tsm.Beam(name=name, start=start, end=end, section=section, elements=elements, element=element)
+
+
+def two_beams(elements=1, lower="exact"):
+    """A tip that meets a second beam, a pin on each, one of them with an offset."""
+    return tsm.Structure(
+        beams=(
+            beam("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
+            beam("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
+        ),
+        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
+        pins=(
+            tsm.Pin(name="p", path=((0.7, 0.01), (0.65, -0.25))),
+            tsm.Pin(name="q", path=((0.4, -0.1), (0.4, -0.08))),
+        ),
+        contacts=(
+            tsm.ContactPair(node="p", beam="upper", side="left", offset=0.01),
+            tsm.ContactPair(node="q", beam="lower"),
+            tsm.ContactPair(node="upper.end", beam="lower", side="left", offset=0.003),
+        ),
+    )
+
+
+def two_pins(elements=1):
+    """Two pins on one beam, from both sides."""
+    return tsm.Structure(
+        beams=(beam("b", (0.0, 0.0), (1.0, 0.0), elements=elements),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(
+            tsm.Pin(name="p", path=((0.5, -0.01), (0.5, 0.2))),
+            tsm.Pin(name="q", path=((0.9, 0.01), (0.9, 0.1))),
+        ),
+        contacts=(
+            tsm.ContactPair(node="p", beam="b", offset=0.01),
+            tsm.ContactPair(node="q", beam="b", side="left", offset=0.01),
+        ),
+    )
+
+
+def dense(model, tangent):
+    """The band with its border as one matrix."""
+    n, banded, k = model.equations + model.contact_unknowns, model.banded, model.bandwidth
+    matrix = np.zeros((n, n))
+    for column in range(banded):
+        for row in range(max(0, column - k), min(banded, column + k + 1)):
+            matrix[row, column] = tangent.band[column, 2 * k + row - column]
+    matrix[:banded, banded:], matrix[banded:, :banded] = tangent.right[:banded], tangent.below[:, :banded]
+    matrix[banded:, banded:] = tangent.corner
+    return matrix
+
+
+def settled(newton, state):
+    """State whose angles inside belong to the rest of it."""
+    rods = newton.model.rods
+    for _ in range(20):
+        balance = rods.balance(state)
+        if balance.inside < 1e-15:
+            break
+        inner = rods.linearise(state, balance).inner[:, :, 6]
+        state = replace(state, profile=replace(state.profile, angle=state.profile.angle + inner))
+    return state
+
+
+def perturbed(newton, equilibrium, rng):
+    """A state out of equilibrium in every unknown."""
+    model = newton.model
+    step = 0.02 * rng.normal(size=model.equations + model.contact_unknowns) / newton.scale
+    step[: model.equations][newton.per_limit > 0] = 0.01 * rng.normal(size=int((newton.per_limit > 0).sum()))
+    for pair in model.pairs:
+        if pair.cuts:
+            step[model.equations + pair.slot + 2 : model.equations + pair.slot + 4] = 0.01 * rng.normal(
+                size=2
+            )
+    system = newton.assembler.linearise(equilibrium.state)
+    return newton.update(equilibrium.state, step, system)
+
+
+SCENES = {
+    "two beams": two_beams,
+    "two beams, two elements each": lambda: two_beams(2),
+    "tip on mixed": lambda: two_beams(2, "mixed"),
+    "two pins": two_pins,
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_assembled_tangent(name):
+    """Out of equilibrium, every column by central differences with one extrapolation, the equations inside satisfied."""
+    result = tsm.solve(SCENES[name](), np.array([0.5, 1.0]))
+    newton, rng = Newton(result.model, tsm.Settings()), np.random.default_rng(5)
+    assert all(result.equilibria[-1].state.touches)
+    state = settled(newton, perturbed(newton, result.equilibria[-1], rng))
+    system = newton.assembler.linearise(state)
+    assert newton.norm(system) > 1.0
+    matrix = dense(newton.model, system.tangent)
+    for column in range(len(matrix)):
+        unit = np.zeros(len(matrix))
+        unit[column] = 1.0
+
+        def difference(h, unit=unit):
+            ends = [
+                newton.assembler.linearise(settled(newton, newton.update(state, s * h * unit, system)))
+                for s in (1, -1)
+            ]
+            return (ends[0].residual - ends[1].residual) / (2 * h)
+
+        h = 2e-3 * (min(1.0, 1e-3) if newton.scale[column] > 10 else 1.0)
+        expected = (4 * difference(h / 2) - difference(h)) / 3
+        size = np.abs(matrix[:, column]).max()
+        assert np.abs(matrix[:, column] - expected).max() <= 1e-7 * size, column
+
+
+def test_what_the_residual_inside_carries():
+    """Off by d inside, residual + `carried` is what is left once the angles are settled, to d^2."""
+    result = tsm.solve(two_beams(2), np.array([0.5, 1.0]))
+    newton, rng = Newton(result.model, tsm.Settings()), np.random.default_rng(6)
+    state = settled(newton, perturbed(newton, result.equilibria[-1], rng))
+    goal = newton.assembler.linearise(state).residual
+    shift = rng.normal(size=state.profile.angle.shape)
+    missed = []
+    for d in (1e-3, 5e-4):
+        off = newton.assembler.linearise(
+            replace(state, profile=replace(state.profile, angle=state.profile.angle + d * shift))
+        )
+        carried = off.tangent.carried
+        assert np.abs((off.residual - goal) * newton.scale).max() > 100 * newton.tolerance
+        missed.append(np.abs((off.residual + carried - goal) * newton.scale).max())
+    assert 3.5 < missed[0] / missed[1] < 4.5
+
+
+def cantilever(load=None, pins=(), contacts=(), section=KS, elements=1):
+    return tsm.Structure(
+        beams=(beam("b", (0.0, 0.0), (1.0, 0.0), section=section, elements=elements),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        loads=(load,) if load else (),
+        pins=pins,
+        contacts=contacts,
+    )
+
+
+def ks():
+    pin = tsm.Pin(name="p", path=((1.0, 0.0), (0.0, 2 / np.pi)))
+    return cantilever(pins=(pin,), contacts=(tsm.ContactPair(node="p", beam="b"),))
+
+
+def test_energy_is_the_work_of_a_tip_load():
+    """Slack section, so that stretch, shear and bending all store; work by Gauss quadrature of the dead load's."""
+    section, force = tsm.Section(EA=30.0, GA=10.0, EI=1.0), np.array([-1.0, 4.0])
+    gauss, weight = np.polynomial.legendre.leggauss(20)
+    t = np.append((gauss + 1) / 2, 1.0)
+    result = tsm.solve(
+        cantilever(tsm.Load(beam="b", end="end", force=tuple(force)), section=section, elements=2), t
+    )
+    moved = (result.tips["b"] - [1.0, 0.0]) @ force
+    # work = [t u] - int u dt, u the tip's way along the load
+    work = moved[-1] - weight @ moved[:-1] / 2
+    assert result.strain_energy[-1] == pytest.approx(work, rel=1e-10)
+
+
+def test_energy_of_a_circle():
+    moment = 2 * np.pi * KS.EI
+    result = tsm.solve(cantilever(tsm.Load(beam="b", end="end", moment=moment)), np.arange(1, 5) / 4)
+    t = result.load_parameter
+    assert result.strain_energy == pytest.approx((t * moment) ** 2 / (2 * KS.EI), rel=1e-12)
+
+
+def with_nodes(monkeypatch, order, t):
+    """KS with a fixed number of Gauss nodes."""
+    monkeypatch.setattr(profile, "START_ORDER", order)
+    result = tsm.solve(ks(), t, tsm.Settings(accuracy=0.5))
+    assert {e.state.profile.angle.shape[1] for e in result.equilibria} == {order}
+    contact = result.contacts["p->b"]
+    found = [contact.force / KS.EI, contact.arc_position, *result.tips["b"].T]
+    return result, np.stack([*found, [e.state.q[5] for e in result.equilibria]], axis=1)
+
+
+def test_error_estimate_is_an_upper_bound(monkeypatch):
+    """Force, arc position, tip and its rotation on KS against 40 nodes: below the estimate, within a factor of 1e5."""
+    t = np.arange(1, 11) / 10
+    _, exact = with_nodes(monkeypatch, 40, t)
+    counted = 0
+    for order in (8, 10, 12, 14):
+        result, found = with_nodes(monkeypatch, order, t)
+        rods = result.model.rods
+        estimate = np.array([accuracy.truncation(rods, rods.enter(e.state)) for e in result.equilibria])
+        error = np.abs(found - exact).max(axis=1)
+        seen = estimate > 1e-13
+        assert (error <= estimate + 1e-13).all()
+        assert (estimate[seen] <= 1e5 * error[seen]).all()
+        counted += int(seen.sum())
+    assert counted >= 12
+
+
+def test_nodes_are_added_until_the_accuracy_is_reached(monkeypatch):
+    monkeypatch.setattr(profile, "START_ORDER", 4)
+    orders = []
+    for asked in (1e-5, 1e-9, 1e-13):
+        result = tsm.solve(ks(), np.array([1.0]), tsm.Settings(accuracy=asked))
+        state, rods = result.equilibria[-1].state, result.model.rods
+        assert accuracy.truncation(rods, rods.enter(state)) <= asked
+        orders.append(state.profile.angle.shape[1])
+    assert 4 < orders[0] < orders[1] < orders[2] <= 24
+
+
+TWO_TURNS = tsm.Load(beam="b", end="end", moment=4 * np.pi * KS.EI)
+
+
+def test_too_few_nodes_are_told(monkeypatch):
+    """Two turns in one element need more than 14 nodes: equilibrium with 14 does not pass for accurate."""
+    result = tsm.solve(cantilever(TWO_TURNS), np.arange(1, 17) / 16)
+    newton, state = Newton(result.model, tsm.Settings()), result.equilibria[-1].state
+    assert newton.solve(state).status is tsm.Status.CONVERGED
+    monkeypatch.setattr(accuracy, "MOST_NODES", 14)
+    turned = replace(state, profile=replace(state.profile, angle=4 * np.pi * collocation(14).c[None]))
+    assert newton.solve(turned).status is tsm.Status.INACCURATE
+
+
+def test_a_march_that_ends_for_too_few_nodes_says_so(monkeypatch):
+    monkeypatch.setattr(accuracy, "MOST_NODES", 14)
+    result = tsm.solve(cantilever(TWO_TURNS), np.arange(1, 17) / 16, throw=False)
+    rods = result.model.rods
+    assert max(accuracy.truncation(rods, rods.enter(e.state)) for e in result.equilibria) <= 1e-9
+    assert result.status is tsm.Status.INACCURATE
+
+
+def axis(rods, state):
+    at = accuracy.deflected(rods, state).at(0, np.linspace(0, 1, 101))
+    return np.concatenate([at.position, at.angle[:, None], at.moment[:, None] / KS.EI], axis=1)
+
+
+def test_resampling_and_cutting_keep_the_shape():
+    pins = tsm.Pin(name="p", path=((1.0, 0.0), (0.0, 2 / np.pi))), tsm.Pin(name="q", path=((0, -3), (0, -4)))
+    pairs = tuple(tsm.ContactPair(node=name, beam="b") for name in "pq")
+    result = tsm.solve(cantilever(pins=pins, contacts=pairs), np.array([0.5, 0.8]))
+    state, rods = result.equilibria[-1].state, result.model.rods
+    first, none = state.touches
+    assert none is None
+    shape = axis(rods, state)
+    order = state.profile.angle.shape[1]
+    for more in (order + 4, 2 * order):
+        assert np.abs(axis(rods, profile.resampled(rods, state, more)) - shape).max() <= 1e-9
+    for xi in (0.0, 0.3, first.xi, 0.97, 1.0):
+        cut = profile.recut(rods, state, (first, Touch(element=0, xi=xi, force=(0.0, 0.0))))
+        assert cut.profile.angle.shape == (3, order)
+        assert rods.balance(cut).inside <= 1e-7
+        assert np.abs(axis(rods, settled(Newton(result.model, tsm.Settings()), cut)) - shape).max() <= 1e-9
