@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from tsm.rods.shape import RodShape
 
 
+_KEPT = 16
+"""Divisions into segments whose constants are kept."""
+
+
 class Owned(NamedTuple):
     """Constants of the elements, one for every segment.
 
@@ -197,6 +201,8 @@ class Rods:
 
     def _owned(self, cuts: Cuts) -> Owned:
         if cuts not in self._constants:
+            if len(self._constants) == _KEPT:
+                self._constants.clear()
             place = layout(len(self.length), cuts)
             own = place.owner
             stretch, shear, bend = (value[own, None] for value in self.flexibility)
