@@ -182,6 +182,12 @@ class Model:
             self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
 
     @cached_property
+    def kind(self) -> Array:
+        """What the equations are about: displacement (0, 1), rotation (2), an exact element's force (3, 4), moment (5)."""
+        kind: Array = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
+        return kind
+
+    @cached_property
     def whole(self) -> bool:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
         return len(self.exact) == len(self.beams) and not len(self.closed)

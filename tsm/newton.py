@@ -100,11 +100,10 @@ class Newton:
             [sharp, sharp, 1 / force, 1 / _SHARP][: pair.element_type.contact_unknowns]
             for pair in model.pairs
         ]
-        kind = model.free % 3 + 3 * (model.free >= 3 * len(model.coordinates))
-        self.scale = np.concatenate([scale[kind], *own])
+        self.scale = np.concatenate([scale[model.kind], *own])
         per_limit = np.array([1 / (0.3 * length), 1 / (0.3 * length), 1 / 0.7])
         own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
-        self.per_limit = np.concatenate([per_limit, np.zeros(3)])[kind]
+        self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
         self.own_per_limit = np.concatenate([np.empty(0), *own])
 
     def norm(self, system: Linearisation) -> float:
