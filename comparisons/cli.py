@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.files import OutputError, writable_file, writable_folder, write_text
 from comparisons.options import OPTIONS, ModelError, Options
+from comparisons.peers.ccx import CalculixError
 from comparisons.scene import Scene, SceneError, built_in_scenes, load_scene
 from comparisons.scene.rules import RuleError, whole_number
 from comparisons.studies.figures import FIGURES
@@ -29,6 +30,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (SceneError, ModelError, OutputError) as error:
         print(f"crossval: {error}", file=sys.stderr)
         return BAD_INPUT
+    except CalculixError as error:
+        print(f"crossval: {error}", file=sys.stderr)
+        return BAD_INPUT if error.printed is None else STOPPED
     except BrokenPipeError:
         # whoever read the output has had enough; spare the interpreter its last flush
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

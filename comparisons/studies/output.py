@@ -4,7 +4,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,11 @@ import numpy as np
 
 from comparisons.files import write_text
 from comparisons.statement import versions
+
+Row = dict[str, Any]
+"""One line of a study's table."""
+Report = Callable[[str], None]
+"""Told of progress."""
 
 
 def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:

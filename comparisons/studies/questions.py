@@ -5,5 +5,6 @@ QUESTIONS = {
     "thin-beams": "whether the solid with the rod's law becomes the rod as h^2",
     "scatter": "how much the answers differ between meshes",
     "penalty": "from which penalty to which the answers hold",
+    "peers": "whether CalculiX, a program of others, gives the same answers; needs its program ccx",
 }
 """What the studies answer, by name."""

@@ -10,13 +10,12 @@ import numpy as np
 from comparisons.models import solve
 from comparisons.response import Array
 from comparisons.scene import Scene, load_scene
+from comparisons.studies.output import Report, Row
+from comparisons.studies.peers import peers
 from comparisons.translate import to_solid
 
 if TYPE_CHECKING:
     from fem_reference import SolidProblem
-
-Row = dict[str, Any]
-Report = Callable[[str], None]
 
 STEPS = 20
 """Load parameters of every run."""
@@ -133,6 +132,7 @@ STUDIES: dict[str, Callable[[Report], list[Row]]] = {
     "thin-beams": thin_beams,
     "scatter": scatter,
     "penalty": penalty,
+    "peers": peers,
 }
 """The studies by name; `comparisons.studies.questions` says what they answer."""
 

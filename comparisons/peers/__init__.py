@@ -1,0 +1,1 @@
+"""Programs that others wrote, asked the same questions."""
