@@ -1,7 +1,7 @@
 """March along the load: predictor, step control, contact events.
 
 A step goes to the next prescribed load parameter, or less far after a cut-back. It starts from the extrapolation of the
-last accepted states, or from the last one itself. Where an event lies inside the step, the step ends on the event, the
+last accepted states. Where an event lies inside the step, the step ends on the event, the
 contact is opened or closed, and the march goes on from there.
 """
 
@@ -173,25 +173,17 @@ class Stepper:
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
     def _solve(self, t: float) -> Equilibrium | None:
-        if self.guard:
-            starts = [self.guard.predicted(t)]
-        else:
-            starts = [replace(self.history[-1], load_parameter=t)]
-            if len(self.history) > 1:
-                starts.insert(0, extrapolate(self.model, self.history, t))
-        for start in starts:
-            equilibrium = self.newton.solve(start)
-            self.iterations += equilibrium.iterations
-            if equilibrium.status is Status.CONVERGED:
-                if self.guard and not self.guard.keeps(equilibrium.state):
-                    self.failure = Status.ITERATION_LIMIT
-                    return None
-                if not self._strays(equilibrium):
-                    return equilibrium
-                self.failure = Status.ITERATION_LIMIT
-                continue
+        """Equilibrium at t from the predicted state; from the last state itself a long step may end on another branch."""
+        start = self.guard.predicted(t) if self.guard else extrapolate(self.model, self.history, t)
+        equilibrium = self.newton.solve(start)
+        self.iterations += equilibrium.iterations
+        if equilibrium.status is not Status.CONVERGED:
             self.failure = equilibrium.status
-        return None
+            return None
+        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(equilibrium):
+            self.failure = Status.ITERATION_LIMIT
+            return None
+        return equilibrium
 
     def _strays(self, found: Equilibrium) -> bool:
         """Whether a long step ended beyond a singular tangent: on another branch, which the path does not lead to.
