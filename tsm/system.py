@@ -19,39 +19,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg.lapack import dgbsv, dgesv
 
+from tsm.border import Border, Bordered, Units
 from tsm.elements import ClosedForm, beam, mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
-from tsm.rods.assembly import CutElement, RodBalance, RodTangent
-from tsm.rods.layout import CUT, OWN
+from tsm.rods.assembly import RodBalance
+from tsm.rods.layout import OWN
 from tsm.state import State, Touch
 
 _EPS = float(np.finfo(float).eps)
-
-
-class Bordered(NamedTuple):
-    """Tangent, a band with a border.
-
-    Attributes
-    ----------
-    band : ndarray, shape (banded, ldab)
-        LAPACK band storage, one row per column of the matrix.
-    right, below : ndarray, shapes (equations + 1, border), (border, equations + 1)
-        Border columns and rows.
-    corner : ndarray, shape (border, border)
-        Where they meet; the unknowns of open contacts stand alone in it.
-    carried : ndarray, shape (equations + contact unknowns,) or None
-        What the residual inside exact elements adds to the residual once it is eliminated.
-    rods : RodTangent or None
-        The exact elements.
-    """
-
-    band: Array
-    right: Array
-    below: Array
-    corner: Array
-    carried: Array | None
-    rods: RodTangent | None
 
 
 @dataclass(kw_only=True, eq=False)
@@ -116,44 +92,6 @@ class Solved(NamedTuple):
         return -1 if odd % 2 else 1
 
 
-class Units:
-    """Units of the equations and unknowns: exact elements put lengths, forces and angles into one matrix.
-
-    Parameters
-    ----------
-    model : Model
-        Its longest beam and largest ``EI/L^2`` are the units.
-    k : int
-        Bandwidth.
-    """
-
-    def __init__(self, model: Model, k: int) -> None:
-        L, F = model.length, model.force_scale
-        counts = [pair.element_type.contact_unknowns for pair in model.pairs]
-        own_columns = [[F, F, L, 1.0][:count] for count in counts]
-        own_rows = [[L, L, F, 1.0][:count] for count in counts]
-        self.columns = np.concatenate([np.array([L, L, 1.0, F, F, F * L])[model.kind], *own_columns])
-        self.rows = 1 / np.concatenate([np.array([F, F, F * L, L, L, 1.0])[model.kind], *own_rows])
-        banded, last = model.banded, model.equations
-        column, entry = np.indices((banded, 3 * k + 1))
-        row = column + entry - 2 * k
-        inside = (row >= 0) & (row < banded)
-        self.band = np.where(inside, self.columns[column] * self.rows[np.where(inside, row, 0)], 0.0)
-        self.right = np.append(self.rows[:last], 0.0)[:, None] * self.columns[banded:]
-        self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
-        self.corner = self.rows[banded:, None] * self.columns[banded:]
-
-    def without(self, tangent: Bordered, given: Array) -> tuple[Bordered, Array]:
-        """Tangent and right-hand sides as plain numbers."""
-        plain = tangent._replace(
-            band=tangent.band * self.band,
-            right=tangent.right * self.right,
-            below=tangent.below * self.below,
-            corner=tangent.corner * self.corner,
-        )
-        return plain, given * self.rows[:, None]
-
-
 class Assembler:
     """Scatter maps of a model, made once."""
 
@@ -180,7 +118,7 @@ class Assembler:
     def linearise(self, state: State, load: Array | None = None) -> Linearisation:
         """Residual and tangent at a state, under given nodal forces besides the model's own if any."""
         model = self.model
-        border = _Border(model)
+        border = Border(model)
         force, tangent = self._closed_form(state, border)
         nodal: Array = np.bincount(self.closed_dofs, weights=force.ravel(), minlength=model.dof_count)
         rods = None
@@ -205,7 +143,7 @@ class Assembler:
             assemble=lambda: self._tangent(state, tangent, border, rods),
         )
 
-    def _tangent(self, state: State, closed: Array, border: _Border, balance: RodBalance | None) -> Bordered:
+    def _tangent(self, state: State, closed: Array, border: Border, balance: RodBalance | None) -> Bordered:
         model = self.model
         values, rods, carried = closed.ravel(), None, None
         if model.rods and balance:
@@ -232,7 +170,7 @@ class Assembler:
         total: Array = np.bincount(self.exact_dofs, weights=values.ravel(), minlength=count)
         return total
 
-    def _closed_form(self, state: State, border: _Border) -> tuple[Array, Array]:
+    def _closed_form(self, state: State, border: Border) -> tuple[Array, Array]:
         """Forces (6, c) and tangents (36, c) of the elements in closed form; their contacts enter the border."""
         model = self.model
         if model.coefficients:
@@ -326,7 +264,7 @@ class Assembler:
         assert isinstance(pair.element_type, ClosedForm), "an exact element is cut instead"
         return pair.element_type.contact(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
 
-    def _cross(self, values: Array, border: _Border) -> None:
+    def _cross(self, values: Array, border: Border) -> None:
         """Couple beam ends that touch chord elements, whose equations lie in the border."""
         model, right, below, corner = self.model, border.right, border.below, border.corner
         right += np.bincount(self.scatter_right, values, self.size + 1)[:-1].reshape(right.shape)
@@ -405,97 +343,6 @@ def _exchanges(order: Array) -> Array:
         exchanges[row] = other
         at[[row, other]] = at[[other, row]]
     return exchanges
-
-
-class _Border:
-    """Border of the system while its contacts are entered."""
-
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.right = np.zeros((model.equations + 1, model.border))
-        self.below = np.zeros((model.border, model.equations + 1))
-        self.corner = np.zeros((model.border, model.border))
-        self.own = np.zeros(model.contact_unknowns)
-        self.carried = np.zeros(model.contact_unknowns)
-        self.forces: dict[int, tuple[float, float]] = {}
-        self.pushed: list[tuple[int, Array]] = []
-        self.coupled: list[tuple[PairModel, int, Array]] = []
-        self.closed: dict[int, list[tuple[PairModel, Touch]]] = {}
-        self.stiffest = 0.0
-        self.crowded = False
-
-    def leave_open(self, pair: PairModel) -> None:
-        """Let the unknowns of an open pair stand alone."""
-        if pair.slot >= 0:
-            slots = self._slots(pair)
-            self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
-
-    def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
-        """Enter a closed pair."""
-        model, e = self.model, touch.element
-        self.forces[k] = (float(gradient[6]), float(gradient[7]))
-        if pair.node >= 0:
-            self.pushed.append((3 * pair.node, gradient[6:8]))
-        others = self.closed.setdefault(e, [])
-        if pair.slot < 0:
-            self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
-            self.crowded |= len(others) > 0
-            if pair.node >= 0:
-                self.coupled.append((pair, e, block))
-        else:
-            slots, eq = self._slots(pair), model.element_equations[:, e]
-            self.right[eq, slots], self.below[slots, eq] = block[:6, 8:], block[8:, :6]
-            if pair.node >= 0:
-                eq = model.equation[3 * pair.node : 3 * pair.node + 2]
-                self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
-            self.corner[slots, slots] += block[8:, 8:]
-            self.own[pair.slots] += gradient[8:]
-            for other, earlier in others:
-                self._share(model.element[e], (other, earlier), (pair, touch))
-        others.append((pair, touch))
-
-    def balance(self, rods: RodBalance, state: State) -> None:
-        """Enter the residuals and forces of contacts on exact elements."""
-        for k, rows in rods.contacts.items():
-            pair, touch = self.model.pairs[k], state.touches[k]
-            assert touch is not None, "a cut is a closed contact"
-            self.own[pair.slots] = rows
-            self.forces[k] = touch.force
-            if pair.node >= 0:
-                self.pushed.append((3 * pair.node, np.array(touch.force)))
-
-    def cut(self, part: CutElement) -> None:
-        """Enter the contacts of an exact element."""
-        model, tangent = self.model, part.tangent
-        eq = model.equation[model.exact_dofs[:, part.element]]
-        own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
-        for pair, rows in own:
-            slots = self._slots(pair)
-            self.right[eq, slots], self.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
-            self.carried[pair.slots] = tangent[rows, -1]
-            for other, columns in own:
-                self.corner[slots, self._slots(other)] = tangent[rows, columns]
-            if pair.node >= 0:
-                for i in range(2):
-                    equation = model.equation[3 * pair.node + i]
-                    self.right[equation, slots.start + i] += 1
-                    self.below[slots.start + i, equation] -= 1
-
-    def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
-        """Let two contacts on one element feel each other's dent."""
-        (one, a), (two, b) = first, second
-        gradient, block = mixed_contact.crossing(p, (a.xi, b.xi), a.force, b.force)
-        rows = (one.slots, two.slots)
-        parts = (slice(0, 3), slice(3, 6))
-        for own, part in zip(rows, parts, strict=True):
-            self.own[own] += gradient[part]
-        for pair_i, part_i in zip((one, two), parts, strict=True):
-            for pair_j, part_j in zip((one, two), parts, strict=True):
-                self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]
-
-    def _slots(self, pair: PairModel) -> slice:
-        start = pair.slot + self.model.border_dofs
-        return slice(start, start + pair.element_type.contact_unknowns)
 
 
 def _pairs(equations: Array) -> tuple[Array, Array]:

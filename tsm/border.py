@@ -1,0 +1,168 @@
+"""The border of the system: the unknowns of the contacts, and the plain numbers that exact elements are solved in."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tsm.elements import mixed_contact
+from tsm.elements.properties import Array
+from tsm.model import Model, PairModel
+from tsm.rods.assembly import CutElement, RodBalance, RodTangent
+from tsm.rods.layout import CUT, OWN
+from tsm.state import State, Touch
+
+
+class Bordered(NamedTuple):
+    """Tangent, a band with a border.
+
+    Attributes
+    ----------
+    band : ndarray, shape (banded, ldab)
+        LAPACK band storage, one row per column of the matrix.
+    right, below : ndarray, shapes (equations + 1, border), (border, equations + 1)
+        Border columns and rows.
+    corner : ndarray, shape (border, border)
+        Where they meet; the unknowns of open contacts stand alone in it.
+    carried : ndarray, shape (equations + contact unknowns,) or None
+        What the residual inside exact elements adds to the residual once it is eliminated.
+    rods : RodTangent or None
+        The exact elements.
+    """
+
+    band: Array
+    right: Array
+    below: Array
+    corner: Array
+    carried: Array | None
+    rods: RodTangent | None
+
+
+class Units:
+    """Units of the equations and unknowns: exact elements put lengths, forces and angles into one matrix.
+
+    Parameters
+    ----------
+    model : Model
+        Its longest beam and largest ``EI/L^2`` are the units.
+    k : int
+        Bandwidth.
+    """
+
+    def __init__(self, model: Model, k: int) -> None:
+        L, F = model.length, model.force_scale
+        counts = [pair.element_type.contact_unknowns for pair in model.pairs]
+        own_columns = [[F, F, L, 1.0][:count] for count in counts]
+        own_rows = [[L, L, F, 1.0][:count] for count in counts]
+        self.columns = np.concatenate([np.array([L, L, 1.0, F, F, F * L])[model.kind], *own_columns])
+        self.rows = 1 / np.concatenate([np.array([F, F, F * L, L, L, 1.0])[model.kind], *own_rows])
+        banded, last = model.banded, model.equations
+        column, entry = np.indices((banded, 3 * k + 1))
+        row = column + entry - 2 * k
+        inside = (row >= 0) & (row < banded)
+        self.band = np.where(inside, self.columns[column] * self.rows[np.where(inside, row, 0)], 0.0)
+        self.right = np.append(self.rows[:last], 0.0)[:, None] * self.columns[banded:]
+        self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
+        self.corner = self.rows[banded:, None] * self.columns[banded:]
+
+    def without(self, tangent: Bordered, given: Array) -> tuple[Bordered, Array]:
+        """Tangent and right-hand sides as plain numbers."""
+        plain = tangent._replace(
+            band=tangent.band * self.band,
+            right=tangent.right * self.right,
+            below=tangent.below * self.below,
+            corner=tangent.corner * self.corner,
+        )
+        return plain, given * self.rows[:, None]
+
+
+class Border:
+    """Border of the system while its contacts are entered."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.right = np.zeros((model.equations + 1, model.border))
+        self.below = np.zeros((model.border, model.equations + 1))
+        self.corner = np.zeros((model.border, model.border))
+        self.own = np.zeros(model.contact_unknowns)
+        self.carried = np.zeros(model.contact_unknowns)
+        self.forces: dict[int, tuple[float, float]] = {}
+        self.pushed: list[tuple[int, Array]] = []
+        self.coupled: list[tuple[PairModel, int, Array]] = []
+        self.closed: dict[int, list[tuple[PairModel, Touch]]] = {}
+        self.stiffest = 0.0
+        self.crowded = False
+
+    def leave_open(self, pair: PairModel) -> None:
+        """Let the unknowns of an open pair stand alone."""
+        if pair.slot >= 0:
+            slots = self._slots(pair)
+            self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
+
+    def close(self, k: int, pair: PairModel, touch: Touch, gradient: Array, block: Array) -> None:
+        """Enter a closed pair."""
+        model, e = self.model, touch.element
+        self.forces[k] = (float(gradient[6]), float(gradient[7]))
+        if pair.node >= 0:
+            self.pushed.append((3 * pair.node, gradient[6:8]))
+        others = self.closed.setdefault(e, [])
+        if pair.slot < 0:
+            self.stiffest = max(self.stiffest, float(np.abs(block[6:8, 6:8]).max()))
+            self.crowded |= len(others) > 0
+            if pair.node >= 0:
+                self.coupled.append((pair, e, block))
+        else:
+            slots, eq = self._slots(pair), model.element_equations[:, e]
+            self.right[eq, slots], self.below[slots, eq] = block[:6, 8:], block[8:, :6]
+            if pair.node >= 0:
+                eq = model.equation[3 * pair.node : 3 * pair.node + 2]
+                self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
+            self.corner[slots, slots] += block[8:, 8:]
+            self.own[pair.slots] += gradient[8:]
+            for other, earlier in others:
+                self._share(model.element[e], (other, earlier), (pair, touch))
+        others.append((pair, touch))
+
+    def balance(self, rods: RodBalance, state: State) -> None:
+        """Enter the residuals and forces of contacts on exact elements."""
+        for k, rows in rods.contacts.items():
+            pair, touch = self.model.pairs[k], state.touches[k]
+            assert touch is not None, "a cut is a closed contact"
+            self.own[pair.slots] = rows
+            self.forces[k] = touch.force
+            if pair.node >= 0:
+                self.pushed.append((3 * pair.node, np.array(touch.force)))
+
+    def cut(self, part: CutElement) -> None:
+        """Enter the contacts of an exact element."""
+        model, tangent = self.model, part.tangent
+        eq = model.equation[model.exact_dofs[:, part.element]]
+        own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
+        for pair, rows in own:
+            slots = self._slots(pair)
+            self.right[eq, slots], self.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
+            self.carried[pair.slots] = tangent[rows, -1]
+            for other, columns in own:
+                self.corner[slots, self._slots(other)] = tangent[rows, columns]
+            if pair.node >= 0:
+                for i in range(2):
+                    equation = model.equation[3 * pair.node + i]
+                    self.right[equation, slots.start + i] += 1
+                    self.below[slots.start + i, equation] -= 1
+
+    def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
+        """Let two contacts on one element feel each other's dent."""
+        (one, a), (two, b) = first, second
+        gradient, block = mixed_contact.crossing(p, (a.xi, b.xi), a.force, b.force)
+        rows = (one.slots, two.slots)
+        parts = (slice(0, 3), slice(3, 6))
+        for own, part in zip(rows, parts, strict=True):
+            self.own[own] += gradient[part]
+        for pair_i, part_i in zip((one, two), parts, strict=True):
+            for pair_j, part_j in zip((one, two), parts, strict=True):
+                self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]
+
+    def _slots(self, pair: PairModel) -> slice:
+        start = pair.slot + self.model.border_dofs
+        return slice(start, start + pair.element_type.contact_unknowns)
