@@ -111,7 +111,8 @@ def test_slip_off_leaves_a_straight_beam(model: str) -> None:
     response = solve(replace(KS, pins=(pin,), load_parameters=6), model, coarse(model))
     contact = response.contacts[PAIR]
     assert response.completed, response.message
-    assert 0.3947 / 0.6 < contact.slip_off <= 4 / 6 + 1e-12
+    earliest = 0.3947 if model == "solid" else 0.39486
+    assert earliest / 0.6 < contact.slip_off <= 4 / 6 + 1e-12
     assert list(contact.force[-3:]) == pytest.approx([0.0, 0.0, 0.0])
     assert np.all(np.isnan(contact.arc_position[-3:]))
     assert response.tips["cantilever"][-1] == pytest.approx([1.0, 0.0], abs=1e-9)
