@@ -31,6 +31,8 @@ _MEMORY_WHOLE = 8
 """The same where nothing is passed."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
+_FAR = 1.0
+"""Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
 _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
 _COINCIDENT = 1e-6
@@ -180,23 +182,31 @@ class Stepper:
         if equilibrium.status is not Status.CONVERGED:
             self.failure = equilibrium.status
             return None
-        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(equilibrium):
+        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(start, equilibrium):
             self.failure = Status.ITERATION_LIMIT
             return None
         return equilibrium
 
-    def _strays(self, found: Equilibrium) -> bool:
-        """Whether a long step ended beyond a singular tangent: on another branch, which the path does not lead to.
+    def _strays(self, predicted: State, found: Equilibrium) -> bool:
+        """Whether a step that pins drive may have ended on another branch, which the path does not lead to.
 
-        Along a path that pins drive, the determinant of the tangent keeps its sign up to a fold, where the path ends. A short step may
-        pass a bifurcation.
+        Along the path the determinant of the tangent keeps its sign up to a fold, where the path ends; a short step may pass a
+        bifurcation. The sign does not tell of two singular points, and elements that a contact passes need not come to the nearest
+        equilibrium: theirs is to lie near its prediction.
         """
-        first, last = found.orientation
-        if self.driven or not self.mixed or (self.orientation or first) == last:
+        if self.driven:
             return False
-        model = self.model
-        moved = (found.state.q - self.accepted.state.q)[model.free] * self.newton.per_limit
-        return bool(np.abs(moved).max(initial=0.0) > SHORT)
+        if not self.model.whole and self._apart(predicted, found.state) > _FAR:
+            return True
+        first, last = found.orientation
+        if not self.mixed or (self.orientation or first) == last:
+            return False
+        return self._apart(self.accepted.state, found.state) > SHORT
+
+    def _apart(self, one: State, other: State) -> float:
+        """Largest difference of two states, in largest Newton steps."""
+        moved = (other.q - one.q)[self.model.free] * self.newton.per_limit
+        return float(np.abs(moved).max(initial=0.0))
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
