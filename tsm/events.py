@@ -103,7 +103,7 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
     found: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if touch is not None:
-            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             inside = min(arc, pair.target.beam.length - arc) / model.length
             force = normal_force(model, equilibrium, k) / model.force_scale
             found.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))

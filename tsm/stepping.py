@@ -252,7 +252,7 @@ class Stepper:
                 continue
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens"
-            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
@@ -274,7 +274,7 @@ class Stepper:
             return changed(self.model, state, k, None, armed=False)
         seen = project(self.model, pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
-        self._note(EventKind.TOUCH, k, element, arc_position(self.model, pair.target, element, xi), 0.0)
+        self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
     def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
@@ -297,7 +297,7 @@ class Stepper:
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
             before = normal_force(self.model, at, k) if at.state.touches[k] is not None else 0.0
-            arc = arc_position(self.model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
                 return Status.LOST_CONTACT
@@ -387,11 +387,11 @@ class Stepper:
             if old is None or new is None or old.element == new.element:
                 continue
             pair = model.pairs[k]
-            arcs = [arc_position(model, pair.target, touch.element, touch.xi) for touch in (old, new)]
+            arcs = [arc_position(pair.target, touch.element, touch.xi) for touch in (old, new)]
             forces = [normal_force(model, at, k) for at in (before, after)]
             ahead = 1 if new.element > old.element else -1
             for element in range(old.element + ahead, new.element + ahead, ahead):
-                arc = arc_position(model, pair.target, element, 0.0 if ahead > 0 else 1.0)
+                arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
                 moved = arcs[1] - arcs[0]
                 part = (arc - arcs[0]) / moved if moved else 1.0
                 t0, t1 = before.state.load_parameter, after.state.load_parameter
