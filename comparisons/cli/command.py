@@ -10,7 +10,7 @@ from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPE
 from comparisons.files import OutputError
 from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
-from comparisons.scene import SceneError
+from comparisons.scene import InputError
 
 COMMANDS = (solve, compare, reproduce, study)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
@@ -21,7 +21,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     try:
         status: int = given.run(given)
-    except (SceneError, ModelError, OutputError) as error:
+    except (InputError, ModelError, OutputError) as error:
         print(f"crossval: {error}", file=sys.stderr)
         return BAD_INPUT
     except CalculixError as error:
