@@ -43,6 +43,7 @@ def solve_tsm(scene: Scene, options: Options) -> Response:
         supports=_beam_supports(scene, result),
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
+        integration_error=result.integration_error,
     )
 
 

@@ -138,6 +138,8 @@ class Response:
         ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k.
     grid : callable
         ``grid(k)``: the model's mesh and fields at load parameter k.
+    integration_error : float
+        Estimated error of the integration inside exact elements, in positions over the longest beam's length, angles and forces over ``EI/L^2``.
     """
 
     model: str
@@ -156,3 +158,4 @@ class Response:
     axis_line: Callable[[str, int], tuple[Array, Array]] = field(repr=False)
     grid: Callable[[int], Grid] = field(repr=False)
     events: tuple[ContactEvent, ...] | None = None
+    integration_error: float = 0.0

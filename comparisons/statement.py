@@ -22,9 +22,9 @@ def versions() -> dict[str, str]:
     return {"python": ".".join(map(str, sys.version_info[:3])), **found}
 
 
-def as_json(response: Response) -> str:
-    """Return the response as JSON text; a value that is not a number is null."""
-    return json.dumps(plain(as_dict(response)), allow_nan=False, indent=1) + "\n"
+def as_json(response: Response, **more: Any) -> str:
+    """Return the response, and what else is to be stated, as JSON text; a value that is not a number is null."""
+    return json.dumps(plain({**as_dict(response), **more}), allow_nan=False, indent=1) + "\n"
 
 
 def as_dict(response: Response) -> dict[str, Any]:
@@ -70,8 +70,8 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def summary(response: Response, units: str) -> str:
-    """Return a few lines for a reader: how the run ended and the last state reached."""
+def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()) -> str:
+    """Return a few lines for a reader: how the run ended and the last state reached, and `more` of them."""
     force, length = (unit.strip() for unit in units.split(","))
     rows = [("status", f"{response.status}: {response.message}")]
     if len(response.load_parameter):
@@ -94,6 +94,7 @@ def summary(response: Response, units: str) -> str:
         ("unknowns", f"{response.unknowns}"),
         ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
         ("seconds", f"{response.wall_seconds:.3f}"),
+        *more,
     ]
     width = max(len(label) for label, _ in rows)
     return "\n".join(

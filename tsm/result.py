@@ -14,7 +14,7 @@ from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.rods.accuracy import deflected
+from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces
 from tsm.status import Status
 from tsm.stepping import Step
@@ -106,6 +106,15 @@ class Result:
         """Strain energy of beams and contact dents, shape (s,)."""
         assembler = Assembler(self.model)
         return np.array([assembler.energy(equilibrium.state) for equilibrium in self.equilibria])
+
+    @cached_property
+    def integration_error(self) -> float:
+        """Largest estimated error of the integration inside exact elements, see `Settings.accuracy`; 0 without such elements."""
+        rods = self.model.rods
+        balances = [equilibrium.system.rods for equilibrium in self.equilibria]
+        if rods is None:
+            return 0.0
+        return max((truncation(rods, own.entry) for own in balances if own is not None), default=0.0)
 
     def shape(self, beam: str, k: int) -> Array:
         """Deformed nodes of a beam at accepted load parameter k: x, y, rotation; shape (elements + 1, 3)."""

@@ -5,15 +5,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
-from comparisons.cli.outcome import DONE, EPILOG, exit_status
+from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.options import OPTIONS, Options
+from comparisons.options import OPTIONS, QUANTITIES, ModelError, Options
 from comparisons.scene import built_in_scenes, load_scene
 
 if TYPE_CHECKING:
     import argparse
 
+    from comparisons.accuracy import Answer
     from comparisons.cli.outcome import Commands
+    from comparisons.scene import Scene
 
 
 def add_to(commands: "Commands") -> None:
@@ -23,7 +25,17 @@ def add_to(commands: "Commands") -> None:
 
     solve = commands.add_parser("solve", help="solve a scene with one model", epilog=EPILOG)
     solve.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    solve.add_argument("--model", required=True, choices=OPTIONS)
+    solve.add_argument("--model", choices=OPTIONS, help="left to the scene with --accuracy, else needed")
+    solve.add_argument(
+        "--accuracy",
+        type=values.part,
+        metavar="X",
+        help="choose model and resolution for this relative error, in place of elements and meshes",
+    )
+    solve.add_argument(
+        "--quantity", choices=QUANTITIES, help="what the accuracy is that of: " + ", ".join(QUANTITIES)
+    )
+    solve.add_argument("--explain", action="store_true", help="with --accuracy: say what was decided and why")
     solve.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
     solve.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
     solve.add_argument(
@@ -54,18 +66,54 @@ def run(given: "argparse.Namespace") -> int:
     from comparisons.models import solve
     from comparisons.statement import as_json, summary
 
-    options = Options(
-        elements=given.elements, element=given.element, tolerance=given.tolerance, mesh=given.mesh
-    )
-    response = solve(scene, given.model, options)
+    answer = _answer(scene, given)
+    if answer is None:
+        response = solve(scene, given.model, _options(given))
+        stated = as_json(response)
+    else:
+        response, scene = answer.response, answer.found.scene
+        stated = as_json(response, accuracy=answer.as_dict())
     if given.json == "-":
-        sys.stdout.write(as_json(response))
+        sys.stdout.write(stated)
     elif file is not None:
-        write_text(file, as_json(response))
+        write_text(file, stated)
     if given.vtk is not None:
         from comparisons.export import write_series
 
         write_series(given.vtk, response, scene)
     if given.json != "-":
-        print(summary(response, scene.units))
-    return exit_status(scene, [("", response)])
+        print(summary(response, scene.units, answer.lines() if answer else ()))
+    status = exit_status(scene, [("", response)])
+    if answer is None or answer.reached or status != DONE:
+        return status
+    report(
+        f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.found.estimate:.2g}, asked {answer.accuracy:g}"
+    )
+    return STOPPED
+
+
+def _options(given: "argparse.Namespace") -> Options:
+    return Options(elements=given.elements, element=given.element, tolerance=given.tolerance, mesh=given.mesh)
+
+
+def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":
+    """Return the answer to an accuracy, explained if asked for; None where a model was chosen by hand."""
+    if given.accuracy is None:
+        for option in ("quantity", "explain"):
+            if getattr(given, option):
+                raise ModelError(f"--{option}: belongs to --accuracy")
+        if given.model is None:
+            raise ModelError("--model: must be given without --accuracy")
+        return None
+    for option in ("elements", "tolerance", "mesh"):
+        if getattr(given, option) is not None:
+            raise ModelError(f"--{option}: is what --accuracy chooses, give one of the two")
+    from comparisons.accuracy import solve_to
+
+    answer = solve_to(
+        scene, given.accuracy, given.quantity or "force", model=given.model, element=given.element
+    )
+    if given.explain:
+        for line in answer.decisions:
+            report(line)
+    return answer

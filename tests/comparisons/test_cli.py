@@ -200,3 +200,39 @@ def test_a_reader_that_stops_early_is_no_error() -> None:
     )
     assert run.stdout.strip() == "{"
     assert run.stderr == ""
+
+
+def test_solve_to_an_accuracy(scene: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("solve", scene, "--accuracy", "1e-3", "--explain") == 0
+    out, err = capsys.readouterr()
+    assert "tsm: exact elements, one a beam, 10 unknowns" in out
+    assert "beam theory itself" in out
+    assert "the exact rod suffices" in err
+    assert (
+        run("solve", scene, "--accuracy", "1e-4", "--quantity", "arc", "--element", "mixed", "--json", "-")
+        == 0
+    )
+    data = json.loads(capsys.readouterr().out)
+    assert data["accuracy"]["quantity"] == "arc"
+    assert data["accuracy"]["reached"]
+    assert 0 < data["accuracy"]["estimate"] <= 1e-4
+    assert data["unknowns"] > 10
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "sentence"),
+    [
+        (["--accuracy", "1e-12"], 3, "ACCURACY_NOT_REACHED: estimated error"),
+        (["--accuracy", "1e-3", "--mesh", "5x2"], 2, "--mesh: is what --accuracy chooses"),
+        (["--accuracy", "1e-3", "--model", "rod"], 2, "model = rod: has no resolution to choose"),
+        (["--model", "tsm", "--quantity", "force"], 2, "--quantity: belongs to --accuracy"),
+        (["--model", "tsm", "--explain"], 2, "--explain: belongs to --accuracy"),
+        ([], 2, "--model: must be given without --accuracy"),
+        (["--accuracy", "0"], 2, "must lie between 0 and 1"),
+    ],
+)
+def test_what_an_accuracy_refuses(
+    scene: str, options: list[str], status: int, sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("solve", scene, *options) == status
+    assert sentence in capsys.readouterr().err

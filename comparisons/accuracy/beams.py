@@ -1,0 +1,183 @@
+"""TSM beams to a stated accuracy: exact elements by their own error estimate, closed-form elements on meshes graded for the scene."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from comparisons.accuracy.answer import Discretised
+from comparisons.accuracy.pilot import SAFETY, pilot
+from comparisons.accuracy.quantities import difference
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.response import Array, Response
+from comparisons.scene import BeamSpec, Scene
+
+NEWTON = 1e-10
+"""Tolerance of Newton's method, in forces over ``EI/L^2`` (`tsm.Settings`)."""
+SHARPEST = 1e-14
+FIRST = 4
+"""Elements of a beam to start with."""
+MOST = 4000
+ROUNDS = 10
+LEAST_GROWTH, MOST_GROWTH = 1.1, 4.0
+"""Elements of the next mesh over those of the last."""
+LEAST = 0.05
+"""Least density of elements, over the largest: what carries nothing still takes an element."""
+SHEAR = {"mixed": (5.0, 4)}
+"""Error that no number of elements removes: factor and power of the shear strain; else its square."""
+
+
+def exact_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
+    """Solve with one exact element a beam, to the accuracy that its error estimate needs.
+
+    The estimate is that of the integration inside the elements and Newton's tolerance, both over the size of the quantity:
+    a small load needs a sharper integration for the same relative error.
+    """
+    tolerance, said = 1e-9, []
+    while True:
+        response = solve(scene, "tsm", Options(element="exact", tolerance=tolerance))
+        size = _size(response, scene, quantity)
+        estimate = (response.integration_error + NEWTON) / size if size else np.inf
+        said.append(
+            f"exact, one element a beam: integration error {response.integration_error:.1e}, "
+            f"estimate {estimate:.1e} of {quantity}"
+        )
+        sharper = max(SHARPEST * 1.01, accuracy * size / 4)
+        if estimate <= accuracy or not response.completed or sharper >= tolerance:
+            break
+        tolerance = sharper
+    return Discretised(
+        response=response,
+        scene=scene,
+        resolution=f"exact elements, one a beam, {response.unknowns} unknowns",
+        estimate=float(estimate) if response.completed else np.inf,
+        decisions=tuple(said),
+    )
+
+
+def _size(response: Response, scene: Scene, quantity: str) -> float:
+    """Return the size of a quantity in the units of the error estimate: EI/L^2, EI/L, 1."""
+    longest = max(beam.length for beam in scene.beams)
+    stiffest = max(beam.EI / beam.length**2 for beam in scene.beams)
+    forces = [contact.force for contact in response.contacts.values()]
+    forces += [] if forces else [support.force for support in response.supports.values()]
+    moments = [support.moment for support in response.supports.values()]
+    if quantity == "force":
+        return min(1.0, _largest(forces) / stiffest)
+    if quantity == "moment":
+        return min(1.0, _largest(moments) / (stiffest * longest))
+    return 1.0
+
+
+def _largest(histories: list[Array]) -> float:
+    return max((float(np.abs(values).max(initial=0.0)) for values in histories), default=0.0)
+
+
+def graded_to(scene: Scene, accuracy: float, quantity: str, element: str) -> Discretised:
+    """Solve with elements in closed form, refined where the solution is curved and where forces act.
+
+    A mesh and the one with every element halved are compared at a few load parameters; their difference gives the error of the former.
+    Where it is too large, the next mesh has as many elements as the order promises, with the density
+    ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))``, the largest over the load parameters: equal shares of the error of the order p.
+    """
+    order = 4 if element == "mixed" else 2
+    short, said = pilot(scene), []
+    mesh = _with(scene, {beam.name: _equal(FIRST) for beam in scene.beams})
+    for _ in range(ROUNDS):
+        coarse, fine = (_solve(short, one, element) for one in (mesh, _halved(mesh)))
+        apart = difference(coarse, fine, scene, quantity)
+        stuck = _shear_limit(fine, scene, element)
+        estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
+        total = _count(mesh)
+        said.append(f"{element}, {total} elements: estimate {estimate:.1e} of {quantity}")
+        if estimate <= accuracy or total >= MOST:
+            break
+        if stuck > accuracy / 2:
+            said.append(f"{element}: its strain measures leave {stuck:.1e}, whatever the elements")
+            break
+        growth = (estimate / (accuracy - stuck)) ** (1 / order) if np.isfinite(estimate) else 2.0
+        wanted = min(MOST, math.ceil(total * min(max(growth, LEAST_GROWTH), MOST_GROWTH)))
+        mesh = _graded(mesh, fine, wanted, order) if len(fine.load_parameter) else _halved(mesh)
+    response = _solve(scene, mesh, element)
+    counts = " + ".join(str(len(beam.nodes) + 1) for beam in mesh.beams)
+    return Discretised(
+        response=response,
+        scene=mesh,
+        resolution=f"{element} elements, {counts}, graded, {response.unknowns} unknowns",
+        estimate=float(estimate),
+        decisions=tuple(said),
+    )
+
+
+def _solve(scene: Scene, mesh: Scene, element: str) -> Response:
+    return solve(replace(mesh, load_parameters=scene.load_parameters), "tsm", Options(element=element))
+
+
+def _shear_limit(response: Response, scene: Scene, element: str) -> float:
+    """Return what a closed-form element leaves however small it is."""
+    factor, power = SHEAR.get(element, (1.0, 2))
+    strains = [
+        float(np.abs(response.contacts[contact.pair].force).max(initial=0.0)) / scene.beam(contact.beam).GA
+        for contact in scene.contacts
+    ]
+    return float(factor * max(strains, default=0.0) ** power)
+
+
+def _equal(count: int) -> tuple[float, ...]:
+    return tuple(k / count for k in range(1, count))
+
+
+def _with(scene: Scene, nodes: dict[str, tuple[float, ...]]) -> Scene:
+    beams = (_divided(beam, nodes[beam.name]) for beam in scene.beams)
+    return replace(scene, beams=tuple(beams))
+
+
+def _divided(beam: BeamSpec, nodes: tuple[float, ...]) -> BeamSpec:
+    return replace(beam, nodes=nodes, elements=len(nodes) + 1)
+
+
+def _halved(mesh: Scene) -> Scene:
+    found = {}
+    for beam in mesh.beams:
+        ends = np.array([0.0, *beam.nodes, 1.0])
+        both = np.sort(np.concatenate([ends, (ends[1:] + ends[:-1]) / 2]))
+        found[beam.name] = tuple(both[1:-1].tolist())
+    return _with(mesh, found)
+
+
+def _count(mesh: Scene) -> int:
+    return sum(len(beam.nodes) + 1 for beam in mesh.beams)
+
+
+def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
+    """Return a mesh of about `wanted` elements whose density follows the response."""
+    grids = [response.grid(k).point_data for k in range(len(response.load_parameter))]
+    arcs, densities = {}, {}
+    for number, beam in enumerate(mesh.beams):
+        own = [
+            {name: data[name][data["beam"] == number] for name in ("arc", "N", "V", "M")} for data in grids
+        ]
+        arcs[beam.name] = np.append(own[0]["arc"][::2], beam.length)
+        densities[beam.name] = np.max([_density(data, beam.EI, order) for data in own], axis=0)
+    least = LEAST * max(float(values.max()) for values in densities.values())
+    sums = {
+        name: np.append(0.0, np.cumsum(np.maximum(values, least) * np.diff(arcs[name])))
+        for name, values in densities.items()
+    }
+    whole = sum(float(total[-1]) for total in sums.values())
+    nodes = {}
+    for beam in mesh.beams:
+        total = sums[beam.name]
+        count = max(1, round(wanted * float(total[-1]) / whole))
+        inner = np.interp(np.arange(1, count) / count * total[-1], total, arcs[beam.name] / beam.length)
+        nodes[beam.name] = tuple(inner.tolist())
+    return _with(mesh, nodes)
+
+
+def _density(data: dict[str, Any], EI: float, order: int) -> Array:
+    """Return the elements per length that a state asks for, up to a factor."""
+    kappa, N, V = (data[name].reshape(-1, 2).mean(axis=1) / EI for name in ("M", "N", "V"))
+    density: Array = (kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))
+    return density

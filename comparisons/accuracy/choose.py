@@ -1,0 +1,72 @@
+"""From a scene and an accuracy to a model, a resolution and an answer."""
+
+from time import perf_counter
+
+from comparisons.accuracy.answer import Answer, Discretised
+from comparisons.accuracy.beams import exact_to, graded_to
+from comparisons.accuracy.require import Requirement, required
+from comparisons.accuracy.solid import solid_to
+from comparisons.accuracy.theory import beam_theory
+from comparisons.options import QUANTITIES, ModelError
+from comparisons.scene import Scene
+
+
+def solve_to(
+    scene: Scene,
+    accuracy: float,
+    quantity: str = "force",
+    *,
+    model: str | None = None,
+    element: str | None = None,
+) -> Answer:
+    """Solve `scene` to an accuracy with the cheapest model that the scene allows.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is to be solved.
+    accuracy : float
+        Largest error over all load parameters, of the discretisation: against the exact rod for beams, against the limit of fine
+        meshes for the solid. What beam theory itself leaves out is estimated besides.
+    quantity : str
+        Key of `QUANTITIES`.
+    model : {"tsm", "solid"}, optional
+        Model to use, else what the scene requires.
+    element : str, optional
+        Type of TSM elements to use, else ``exact``.
+
+    Raises
+    ------
+    ModelError
+        If the quantity is unknown, or the model cannot state it or the scene.
+    """
+    if quantity not in QUANTITIES:
+        raise ModelError(f"quantity = {quantity}: must be one of {', '.join(QUANTITIES)}")
+    began = perf_counter()
+    needed = required(scene, quantity, model=model, element=element)
+    found, said = _discretised(needed, accuracy, quantity, free=element is None)
+    return Answer(
+        found=found,
+        model=needed.model,
+        accuracy=accuracy,
+        quantity=quantity,
+        theory=beam_theory(found.response, found.scene) if needed.model == "tsm" else None,
+        decisions=(*needed.decisions, *said),
+        seconds=perf_counter() - began,
+    )
+
+
+def _discretised(
+    needed: Requirement, accuracy: float, quantity: str, *, free: bool
+) -> tuple[Discretised, tuple[str, ...]]:
+    if needed.model == "solid":
+        found = solid_to(needed.scene, accuracy, quantity)
+        return found, found.decisions
+    if needed.element != "exact":
+        found = graded_to(needed.scene, accuracy, quantity, needed.element)
+        return found, found.decisions
+    found = exact_to(needed.scene, accuracy, quantity)
+    if found.response.status != "INACCURATE" or not free:
+        return found, found.decisions
+    other = graded_to(needed.scene, accuracy, quantity, "mixed")
+    return other, (*found.decisions, "exact stopped: INACCURATE; mixed instead", *other.decisions)

@@ -1,0 +1,114 @@
+"""What a scene requires: the bodies that carry something, and the model that can state it."""
+
+from dataclasses import dataclass, replace
+
+from comparisons.options import ModelError
+from comparisons.scene import Scene
+from comparisons.translate import to_rod, to_solid
+
+STOCKY = 0.1
+"""Height over length from which a beam is a solid."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Requirement:
+    """What is to be solved, and with what.
+
+    Attributes
+    ----------
+    scene : Scene
+        Without the bodies that carry nothing.
+    model : str
+        ``tsm`` or ``solid``.
+    element : str
+        Type of the TSM elements.
+    decisions : tuple of str
+        Why.
+    """
+
+    scene: Scene
+    model: str
+    element: str
+    decisions: tuple[str, ...]
+
+
+def required(
+    scene: Scene, quantity: str, *, model: str | None = None, element: str | None = None
+) -> Requirement:
+    """Return what `scene` and `quantity` require; `model` and `element` are taken where they are given.
+
+    Raises
+    ------
+    ModelError
+        If the model cannot state the scene, or the quantity.
+    """
+    loaded, said = without_idle(scene)
+    if model is None:
+        model, reason = (
+            _model(loaded, quantity) if element is None else ("tsm", f"{element} elements asked for")
+        )
+        said = (*said, f"{model}: {reason}")
+    if model == "solid":
+        if element is not None:
+            raise ModelError(f"solid: element = {element}: not an option of this model")
+        to_solid(loaded)
+        if quantity == "stress" and len(loaded.beams) > 1:
+            raise ModelError("quantity = stress: is that of one beam, the scene has more")
+        return Requirement(scene=loaded, model=model, element="", decisions=said)
+    if model != "tsm":
+        raise ModelError(f"model = {model}: has no resolution to choose; tsm and solid have")
+    if quantity == "stress":
+        raise ModelError("quantity = stress: beams have section forces; --model solid has stresses")
+    return Requirement(scene=loaded, model=model, element=element or "exact", decisions=said)
+
+
+def _model(scene: Scene, quantity: str) -> tuple[str, str]:
+    if quantity == "stress":
+        return "solid", "stresses through the thickness are asked for"
+    stocky = [beam for beam in scene.beams if beam.height is not None and beam.height > STOCKY * beam.length]
+    if stocky:
+        beam = stocky[0]
+        what = f'beam "{beam.name}" is stocky, h/L = {(beam.height or 0.0) / beam.length:.3g} > {STOCKY:g}'
+        try:
+            to_solid(scene)
+        except ModelError as error:
+            return "tsm", f"{what}, but {error}"
+        return "solid", what
+    try:
+        to_rod(scene)
+    except ModelError:
+        count = len(scene.beams)
+        return "tsm", f"{count} slender beam{'s' if count > 1 else ''}, {len(scene.contacts)} contact pairs"
+    return "tsm", "one clamped slender beam: the exact rod suffices, which one exact element is"
+
+
+def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
+    """Return the scene without beams that no load, moving support or pin can reach, and a sentence for each."""
+    groups = {beam.name: {beam.name} for beam in scene.beams}
+
+    def join(one: str, other: str) -> None:
+        both = groups[one] | groups[other]
+        for name in both:
+            groups[name] = both
+
+    for beam in scene.beams:
+        for other in scene.beams:
+            if {beam.start, beam.end} & {other.start, other.end}:
+                join(beam.name, other.name)
+    pins = {pin.name for pin in scene.pins}
+    for contact in scene.contacts:
+        if contact.node not in pins:
+            join(contact.node.split(".")[0], contact.beam)
+    driven = {contact.beam for contact in scene.contacts if contact.node in pins}
+    driven |= {load.beam for load in scene.loads}
+    driven |= {support.beam for support in scene.all_supports if support.moves}
+    idle = [beam.name for beam in scene.beams if not groups[beam.name] & driven]
+    if not idle:
+        return scene, ()
+    kept = replace(
+        scene,
+        beams=tuple(beam for beam in scene.beams if beam.name not in idle),
+        supports=tuple(support for support in scene.supports if support.beam not in idle),
+        contacts=tuple(contact for contact in scene.contacts if contact.beam not in idle),
+    )
+    return kept, tuple(f'beam "{name}" lies on no load path: left out' for name in idle)
