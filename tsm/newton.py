@@ -14,7 +14,7 @@ from tsm.rods.accuracy import finer, inaccurate
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
-from tsm.system import Assembler, Linearisation, Solved
+from tsm.system import Assembler, Drag, Linearisation, Solved
 
 _ROUND_OFF = 4 * float(np.finfo(float).eps)
 _SHARP = 1e-3
@@ -111,15 +111,15 @@ class Newton:
         largest = float(np.abs(system.residual * self.scale).max())
         return largest if system.rods is None else max(largest, system.rods.inside / _SHARP)
 
-    def solve(self, start: State, load: Array | None = None) -> Equilibrium:
-        """Iterate from a start to equilibrium at the start's load parameter, under nodal forces if given."""
+    def solve(self, start: State, load: Array | None = None, drag: Drag | None = None) -> Equilibrium:
+        """Iterate from a start to equilibrium at the start's load parameter, under nodal forces and against a drag if given."""
         state = start
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
         solved: list[Solved] = []
         taken: _Taken | None = None
         for iteration in range(self.max_iterations + 1):
-            system = self.assembler.linearise(state, load)
+            system = self.assembler.linearise(state, load, drag)
             residual = self.norm(system)
             left = self.max_iterations - iteration
             if taken and taken.to_halve(residual) and left:

@@ -24,6 +24,7 @@ from tsm.predictor import extrapolate
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
+from tsm.system import Drag
 
 _MEMORY = 4
 """States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
@@ -35,6 +36,8 @@ _FAR = 1.0
 """Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
 _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
+_FIRST_PACE = 1e-2
+"""Time of the first step of a fall."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
 
@@ -322,9 +325,7 @@ class Stepper:
             met = self._met(equilibrium) if equilibrium.status is Status.CONVERGED and lost.any() else []
             if equilibrium.status is Status.CONVERGED and not met:
                 state, part, step = equilibrium.state, goal, 2 * step
-                over = {
-                    m.pair for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < 1.0
-                }
+                over = self._facing(equilibrium)
                 if part == 0.0:
                     return equilibrium
                 continue
@@ -333,9 +334,51 @@ class Stepper:
                 for margin in met:
                     state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
                 step = part
-            elif step < 1e-2 * _LAST_PART or not lost.any():
+            elif not lost.any():
                 self.failure = equilibrium.status
                 return None
+            elif step < 1e-2 * _LAST_PART:
+                return self._fall(state)
+
+    def _fall(self, state: State) -> Equilibrium | None:
+        """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; what it falls on, it touches.
+
+        A dead load in place of the lost contact may have no equilibrium nearby where the contact had one; moving against a drag, the
+        structure goes down in energy by steps as short as need be.
+        """
+        pace, over = _FIRST_PACE, set[int]()
+        resistance = self._resistance()
+        while pace > _FIRST_PACE * 1e-9:
+            at_rest = pace > _FIRST_PACE * 1e9
+            drag = None if at_rest else Drag(resistance / pace, state.q)
+            equilibrium = self.newton.solve(state, drag=drag)
+            self.iterations += equilibrium.iterations
+            met = self._met(equilibrium) if equilibrium.status is Status.CONVERGED else []
+            if equilibrium.status is Status.CONVERGED and not met:
+                if at_rest:
+                    return equilibrium
+                state, pace = equilibrium.state, 4 * pace
+                over = self._facing(equilibrium)
+            elif met and self._apart(state, equilibrium.state) < _LAST_PART:
+                for margin in met:
+                    state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
+            else:
+                pace /= 4
+        self.failure = equilibrium.status
+        return None
+
+    def _resistance(self) -> Array:
+        """Drag of the nodes, in proportion to the lengths of their elements; per time that is counted in beams falling under ``EI/L^2``."""
+        model, l0 = self.model, self.model.properties.l0
+        share = np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates)) / model.length
+        per_way = np.zeros(model.dof_count)
+        unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
+        per_way[: 3 * len(share)] = (share[:, None] * unit).ravel()
+        return per_way
+
+    def _facing(self, equilibrium: Equilibrium) -> set[int]:
+        """Open pairs whose node is over its beam."""
+        return {m.pair for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < 1.0}
 
     def _met(self, equilibrium: Equilibrium) -> list[Margin]:
         """Open pairs whose gap has closed."""

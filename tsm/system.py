@@ -92,6 +92,21 @@ class Solved(NamedTuple):
         return -1 if odd % 2 else 1
 
 
+class Drag(NamedTuple):
+    """Viscous resistance to leaving a configuration.
+
+    Attributes
+    ----------
+    per_way : ndarray, shape (dofs,)
+        Force per displacement.
+    start : ndarray, shape (dofs,)
+        Displacements without resistance.
+    """
+
+    per_way: Array
+    start: Array
+
+
 class Assembler:
     """Scatter maps of a model, made once."""
 
@@ -115,8 +130,10 @@ class Assembler:
         self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
         self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
 
-    def linearise(self, state: State, load: Array | None = None) -> Linearisation:
-        """Residual and tangent at a state, under given nodal forces besides the model's own if any."""
+    def linearise(
+        self, state: State, load: Array | None = None, drag: Drag | None = None
+    ) -> Linearisation:
+        """Residual and tangent at a state, under given nodal forces besides the model's own, and against a drag if any."""
         model = self.model
         border = Border(model)
         force, tangent = self._closed_form(state, border)
@@ -130,6 +147,8 @@ class Assembler:
             nodal[dof : dof + 2] += reaction
         if load is not None:
             nodal = nodal - load
+        if drag is not None:
+            nodal = nodal + drag.per_way * (state.q - drag.start)
         if len(model.structure.loads):
             nodal = nodal - state.load_parameter * model.load
         return Linearisation(
@@ -140,10 +159,17 @@ class Assembler:
             noise=4 * _EPS * border.stiffest * model.length,
             crowded=border.crowded,
             rods=rods,
-            assemble=lambda: self._tangent(state, tangent, border, rods),
+            assemble=lambda: self._tangent(state, tangent, border, rods, drag),
         )
 
-    def _tangent(self, state: State, closed: Array, border: Border, balance: RodBalance | None) -> Bordered:
+    def _tangent(
+        self,
+        state: State,
+        closed: Array,
+        border: Border,
+        balance: RodBalance | None,
+        drag: Drag | None = None,
+    ) -> Bordered:
         model = self.model
         values, rods, carried = closed.ravel(), None, None
         if model.rods and balance:
@@ -153,10 +179,16 @@ class Assembler:
             values = np.concatenate([values, rods.tangent.ravel()])
             carried = np.concatenate([self._gather(rods.carried)[model.free], border.carried])
         band = np.bincount(self.scatter, weights=values, minlength=self.band_size + 1)[:-1]
+        band = band.reshape(model.banded, self.ldab)
         if model.border_dofs:
             self._cross(values, border)
+        if drag is not None:
+            resistance = drag.per_way[model.free]
+            band[:, 2 * self.k] += resistance[: model.banded]
+            aside = np.arange(model.border_dofs)
+            border.corner[aside, aside] += resistance[model.banded :]
         return Bordered(
-            band=band.reshape(model.banded, self.ldab),
+            band=band,
             right=border.right,
             below=border.below,
             corner=border.corner,
