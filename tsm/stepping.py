@@ -36,7 +36,7 @@ _FAR = 1.0
 """Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
 _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
-_FIRST_PACE = 1e-2
+_FIRST_PACE = 1e-1
 """Time of the first step of a fall."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
@@ -243,7 +243,7 @@ class Stepper:
         """Accept the events' configuration, then open and close its contacts."""
         if at is not self.accepted:
             self._accept(at)
-        model, state, lost = self.model, at.state, np.zeros(self.model.dof_count)
+        model, state, jump = self.model, at.state, False
         noted = len(self.events)
         for margin in changes:
             k, pair = margin.pair, model.pairs[margin.pair]
@@ -260,12 +260,11 @@ class Stepper:
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
                 return refused
-            if margin.kind is EventKind.SLIP_OFF:
-                lost += self._consistent(at.system.forces[k], touch)
+            jump |= margin.kind is EventKind.SLIP_OFF
             state = changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
         if crowded(model, state):
             return Status.TWO_CONTACTS
-        status = self._resume(at, state, lost)
+        status = self._resume(at, state, jump=jump)
         if status is not Status.CONVERGED and status is self.failure:
             del self.events[noted:]
         return status
@@ -280,11 +279,10 @@ class Stepper:
         self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
-    def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
+    def _resume(self, at: Equilibrium, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
-        jump = bool(lost.any())
         while True:
-            equilibrium = self._unload(state, lost)
+            equilibrium = self._settled(state, jump=jump)
             if equilibrium is None:
                 return self.failure
             state = equilibrium.state
@@ -304,7 +302,6 @@ class Stepper:
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
                 return Status.LOST_CONTACT
-            lost = self._consistent(equilibrium.system.forces[k], touch)
             state = changed(self.model, state, k, None, armed=True)
         if jump:
             energy = self.newton.assembler.energy
@@ -314,31 +311,17 @@ class Stepper:
         self.orientation = 0
         return Status.CONVERGED
 
-    def _unload(self, state: State, lost: Array) -> Equilibrium | None:
-        """Equilibrium without nodal forces that act at first, taken away in parts; what the beam falls on, it touches."""
-        part, step = 1.0, 1.0
-        over: set[int] = set()
-        while True:
-            goal = max(part - step, 0.0)
-            equilibrium = self.newton.solve(state, goal * lost if goal else None)
-            self.iterations += equilibrium.iterations
-            met = self._met(equilibrium) if equilibrium.status is Status.CONVERGED and lost.any() else []
-            if equilibrium.status is Status.CONVERGED and not met:
-                state, part, step = equilibrium.state, goal, 2 * step
-                over = self._facing(equilibrium)
-                if part == 0.0:
-                    return equilibrium
-                continue
-            step /= 2
-            if met and step < _LAST_PART:
-                for margin in met:
-                    state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
-                step = part
-            elif not lost.any():
-                self.failure = equilibrium.status
-                return None
-            elif step < 1e-2 * _LAST_PART:
-                return self._fall(state)
+    def _settled(self, state: State, *, jump: bool) -> Equilibrium | None:
+        """Equilibrium with other contacts: near the state, or, after a jump, where the structure falls to."""
+        equilibrium = self.newton.solve(state)
+        self.iterations += equilibrium.iterations
+        found = equilibrium.status is Status.CONVERGED
+        if jump and not (
+            found and self._apart(state, equilibrium.state) <= _FAR and not self._met(equilibrium)
+        ):
+            return self._fall(state)
+        self.failure = equilibrium.status
+        return equilibrium if found else None
 
     def _fall(self, state: State) -> Equilibrium | None:
         """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; what it falls on, it touches.
@@ -349,7 +332,7 @@ class Stepper:
         pace, over = _FIRST_PACE, set[int]()
         resistance = self._resistance()
         while pace > _FIRST_PACE * 1e-9:
-            at_rest = pace > _FIRST_PACE * 1e9
+            at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
             equilibrium = self.newton.solve(state, drag=drag)
             self.iterations += equilibrium.iterations
@@ -357,7 +340,7 @@ class Stepper:
             if equilibrium.status is Status.CONVERGED and not met:
                 if at_rest:
                     return equilibrium
-                state, pace = equilibrium.state, 4 * pace
+                state, pace = equilibrium.state, 10 * pace
                 over = self._facing(equilibrium)
             elif met and self._apart(state, equilibrium.state) < _LAST_PART:
                 for margin in met:
@@ -370,7 +353,10 @@ class Stepper:
     def _resistance(self) -> Array:
         """Drag of the nodes, in proportion to the lengths of their elements; per time that is counted in beams falling under ``EI/L^2``."""
         model, l0 = self.model, self.model.properties.l0
-        share = np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates)) / model.length
+        share = (
+            np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates))
+            / model.length
+        )
         per_way = np.zeros(model.dof_count)
         unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
         per_way[: 3 * len(share)] = (share[:, None] * unit).ravel()
@@ -383,14 +369,6 @@ class Stepper:
     def _met(self, equilibrium: Equilibrium) -> list[Margin]:
         """Open pairs whose gap has closed."""
         return [m for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < -ROUND_OFF]
-
-    def _consistent(self, force: tuple[float, float], touch: Touch) -> Array:
-        """Nodal forces that stand for the lost contact force; they act for the pair's node too."""
-        i, j = self.model.element_nodes[touch.element]
-        load = np.zeros(self.model.dof_count)
-        for node, part in ((i, 1 - touch.xi), (j, touch.xi)):
-            load[3 * node : 3 * node + 2] = part * np.array(force)
-        return load
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""

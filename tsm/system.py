@@ -130,9 +130,7 @@ class Assembler:
         self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
         self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
 
-    def linearise(
-        self, state: State, load: Array | None = None, drag: Drag | None = None
-    ) -> Linearisation:
+    def linearise(self, state: State, load: Array | None = None, drag: Drag | None = None) -> Linearisation:
         """Residual and tangent at a state, under given nodal forces besides the model's own, and against a drag if any."""
         model = self.model
         border = Border(model)

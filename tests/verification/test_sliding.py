@@ -284,3 +284,26 @@ def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
     few, many = (tsm.solve(structure, np.arange(1, n + 1) / n) for n in (count, 50))
     assert few.strain_energy[-1] == pytest.approx(many.strain_energy[-1], rel=1e-6)
     assert few.contacts["p->b"].force[-1] == pytest.approx(many.contacts["p->b"].force[-1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("height", "path"),
+    [
+        (0.00303014214, ((0.9773519805, 0.0), (-0.3390120922, 0.7057013676))),
+        (0.0854887241, ((0.7927555626, 0.0), (-0.08104586997, 0.6300149440))),
+        (0.01212944359, ((0.5395708677, 0.0), (0.06041369545, 0.9213513552))),
+    ],
+)
+def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path):
+    """At the slip-off no dead load in place of the contact has an equilibrium nearby; exact elements jump to the same energy."""
+    section = tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
+    base = cantilever(path, elements=10)
+    beam = replace(base.beams[0], end=(1.0, 0.0), section=section)
+    ours, exact = (
+        tsm.solve(replace(base, beams=(one,)), np.arange(1, 51) / 50)
+        for one in (beam, replace(beam, elements=1, element="exact"))
+    )
+    slips = [next(e for e in r.events if e.kind is tsm.EventKind.SLIP_OFF) for r in (ours, exact)]
+    assert slips[0].load_parameter == pytest.approx(slips[1].load_parameter, abs=1e-5)
+    assert slips[0].released == pytest.approx(slips[1].released, rel=1e-5)
+    assert ours.strain_energy[-1] <= 1e-12 * slips[0].released
