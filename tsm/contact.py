@@ -48,16 +48,22 @@ class Projection(NamedTuple):
     overshoot: float
 
 
-def arc_position(model: Model, target: BeamModel, element: int, xi: float) -> float:
+def arc_position(target: BeamModel, element: int, xi: float) -> float:
     """Distance along the undeformed axis from the beam's start."""
-    return float((element - target.first + xi) * model.element[element].l0)
+    k = element - target.first
+    return (1.0 - xi) * target.arcs[k] + xi * target.arcs[k + 1]
 
 
 def slide(target: BeamModel, element: int, xi: float) -> tuple[int, float]:
     """Hand a position that left its element over to the neighbour."""
-    steps = math.floor(xi) if math.isfinite(xi) and not 0.0 <= xi <= 1.0 else 0
-    owner = min(max(element + steps, target.first), target.last)
-    return owner, xi - (owner - element)
+    if not math.isfinite(xi):
+        return element, xi
+    k, l0 = element - target.first, target.lengths
+    while xi > 1.0 and k < len(l0) - 1:
+        xi, k = (xi - 1.0) * (l0[k] / l0[k + 1]), k + 1
+    while xi < 0.0 and k > 0:
+        xi, k = 1.0 + xi * (l0[k] / l0[k - 1]), k - 1
+    return target.first + k, xi
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
@@ -121,9 +127,13 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
             dent = cross_compliance(model.element[element], xi, touch.xi)[0]
             px, py = px + dent * touch.force[0], py + dent * touch.force[1]
     height = (py * tx - px * ty) / math.hypot(tx, ty)
-    local = element - pair.target.first + xi
-    beyond = max(local - pair.target.beam.elements, -local, 0.0) * model.element[element].l0
+    beyond = _beyond(pair.target, arc_position(pair.target, element, xi))
     return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
+
+
+def _beyond(target: BeamModel, arc: float) -> float:
+    """How far an arc position lies outside the beam."""
+    return max(arc - target.beam.length, -arc, 0.0)
 
 
 def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShape) -> Projection:
@@ -131,15 +141,13 @@ def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShap
     assert model.rods is not None, "the pair touches an exact element"
     target = pair.target
     node = np.array(model.node_position(pair, state.q, state.load_parameter))
-    l0 = model.element[target.first].l0
-    samples = np.linspace(0, l0, _SAMPLES)
-    first = int(model.place[target.first])
-    count = target.beam.elements
-    points = np.array([shape.at(first + e, samples).position for e in range(count)]) - node
+    first, xi = int(model.place[target.first]), np.linspace(0, 1, _SAMPLES)
+    points = np.array([shape.at(first + e, xi * l0).position for e, l0 in enumerate(target.lengths)]) - node
     nearest = np.argmin(np.einsum("emi,emi->em", points, points))
     e, sample = divmod(int(nearest), _SAMPLES)
-    arc = float(samples[sample])
+    arc = float(xi[sample]) * target.lengths[e]
     for _ in range(30):
+        l0 = target.lengths[e]
         inside = min(max(arc, 0.0), l0)
         at = shape.at(first + e, np.array([inside]))
         tangent, bend = tangent_at(model.rods, first + e, at)
@@ -147,13 +155,14 @@ def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShap
         slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
         step = float(apart @ tangent) / slope if slope > 0 else 0.0
         arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
-        element, xi = slide(target, target.first + e, arc / l0)
-        e, arc = element - target.first, xi * l0
+        element, at_xi = slide(target, target.first + e, arc / l0)
+        e = element - target.first
+        arc = at_xi * target.lengths[e]
         if abs(step) < 1e-14 * l0:
             break
     height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
-    beyond = max(e * l0 + arc - target.beam.length, -(e * l0 + arc), 0.0)
-    return Projection(target.first + e, arc / l0, pair.side * height - pair.pair.offset, beyond)
+    beyond = _beyond(target, arc_position(target, element, at_xi))
+    return Projection(element, at_xi, pair.side * height - pair.pair.offset, beyond)
 
 
 def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:

@@ -124,7 +124,7 @@ def passed(model: Model, passage: Passage) -> list[Event]:
     ahead = 1 if new > old else -1
     events = []
     for element in range(old + ahead, new + ahead, ahead):
-        arc = arc_position(model, pair.target, element, 0.0 if ahead > 0 else 1.0)
+        arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
         part = (arc - start) / (end - start) if end != start else 1.0
         events.append(
             Event(
@@ -145,7 +145,7 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
     found: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if touch is not None:
-            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             inside = min(arc, pair.target.beam.length - arc) / model.length
             force = normal_force(model, equilibrium, k) / model.force_scale
             found.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,11 +31,17 @@ class BeamModel:
         Global number of its first element; its elements follow one another.
     nodes : ndarray of int, shape (elements + 1,)
         Global node numbers from start to end.
+    lengths : list of float
+        Undeformed lengths of its elements.
+    arcs : list of float
+        Arc positions of its nodes.
     """
 
     beam: Beam
     first: int
     nodes: Array
+    lengths: list[float]
+    arcs: list[float]
 
     @property
     def last(self) -> int:
@@ -132,8 +139,7 @@ class Model:
         elements = 0
         for beam in beams:
             nodes = []
-            for k in range(beam.elements + 1):
-                part = k / beam.elements
+            for k, part in enumerate(beam.parts):
                 x, y = ((1 - part) * a + part * b for a, b in zip(beam.start, beam.end, strict=True))
                 at_end = k in {0, beam.elements}
                 node = ends.get((x, y), len(coordinates)) if at_end else len(coordinates)
@@ -142,7 +148,10 @@ class Model:
                 if node == len(coordinates):
                     coordinates.append((x, y))
                 nodes.append(node)
-            self.beams[beam.name] = BeamModel(beam=beam, first=elements, nodes=np.array(nodes))
+            arcs = [part * beam.length for part in beam.parts]
+            self.beams[beam.name] = BeamModel(
+                beam=beam, first=elements, nodes=np.array(nodes), lengths=_lengths(beam, arcs), arcs=arcs
+            )
             elements += beam.elements
         self.coordinates = np.array(coordinates)
         self.element_nodes = np.concatenate(
@@ -275,7 +284,7 @@ class Model:
     def _properties(self) -> Properties:
         d = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0]
         repeats = [beam.beam.elements for beam in self.beams.values()]
-        l0 = np.repeat([b.beam.length / b.beam.elements for b in self.beams.values()], repeats)
+        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
         EA, GA, EI = (
             np.repeat([getattr(b.beam.section, name) for b in self.beams.values()], repeats)
             for name in ("EA", "GA", "EI")
@@ -309,3 +318,10 @@ class Model:
         return [
             Properties(*row) for row in zip(*(column.tolist() for column in self.properties), strict=True)
         ]
+
+
+def _lengths(beam: Beam, arcs: list[float]) -> list[float]:
+    """Lengths of the elements, of equal ones to the last digit."""
+    if not beam.nodes:
+        return [beam.length / beam.elements] * beam.elements
+    return [b - a for a, b in pairwise(arcs)]

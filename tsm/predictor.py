@@ -31,15 +31,16 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
     for k, pair in enumerate(model.pairs):
         trail = [state.touches[k] for state in history]
         known = [touch for touch in trail if touch is not None]
-        touches.append(_touch(model, pair, weights, known) if len(known) == len(trail) else None)
+        touches.append(_touch(pair, weights, known) if len(known) == len(trail) else None)
     return owned(model, handed_over(model, moved, tuple(touches)))
 
 
-def _touch(model: Model, pair: PairModel, weights: list[float], trail: list[Touch]) -> Touch:
+def _touch(pair: PairModel, weights: list[float], trail: list[Touch]) -> Touch:
     """Extrapolated contact, on the element that owned it last."""
     last = trail[-1]
-    arc = _sum(weights, [arc_position(model, pair.target, touch.element, touch.xi) for touch in trail])
-    xi = arc / model.element[last.element].l0 - (last.element - pair.target.first)
+    arc = _sum(weights, [arc_position(pair.target, touch.element, touch.xi) for touch in trail])
+    place = last.element - pair.target.first
+    xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
     x, y = (_sum(weights, [touch.force[c] for touch in trail]) for c in range(2))
     return Touch(
         element=last.element, xi=xi, force=(x, y), angle=_sum(weights, [touch.angle for touch in trail])

@@ -141,7 +141,7 @@ class Result:
             xy = self._exact_axis(e, k, xi) if exact else self._curve(e, k, xi)
             keep = slice(None) if e == place.last else slice(-1)
             points.append(xy[keep])
-            arcs.append((e - place.first + xi[keep]) * self.model.element[e].l0)
+            arcs.append(place.arcs[e - place.first] + xi[keep] * place.lengths[e - place.first])
         return np.concatenate(arcs), np.concatenate(points)
 
     def _exact(self, beam: str) -> bool:
@@ -168,16 +168,15 @@ class Result:
         if not self._exact(beam):
             shape, forces = self.shape(beam, k), self.section_forces(beam, k)
             pairs = np.arange(len(forces))[:, None] + np.arange(2)
-            arc = np.linspace(0, place.beam.length, len(shape))
-            return Stations(arc[pairs], shape[pairs, :2], shape[pairs, 2], forces)
+            return Stations(np.array(place.arcs)[pairs], shape[pairs, :2], shape[pairs, 2], forces)
         rods = self.model.rods
         assert rods is not None, "an exact element has rods"
         count = max(4, math.ceil(60 / place.beam.elements))
-        axis, l0 = deflected(rods, state), self.model.element[place.first].l0
+        axis = deflected(rods, state)
         parts = [
             pieces(rods, axis, int(self.model.place[e]), count) for e in range(place.first, place.last + 1)
         ]
-        parts = [part._replace(arc=part.arc + n * l0) for n, part in enumerate(parts)]
+        parts = [part._replace(arc=part.arc + arc) for arc, part in zip(place.arcs, parts, strict=False)]
         return Stations(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def section_forces(self, beam: str, k: int) -> Array:
@@ -265,7 +264,7 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
         if pair.slot >= 0:
             own = equilibrium.system.residual[model.equations + pair.slot :]
             left = float(np.hypot(own[0], own[1]))
-        arc = arc_position(model, pair.target, touch.element, touch.xi)
+        arc = arc_position(pair.target, touch.element, touch.xi)
         return normal_force(model, equilibrium, k), arc, left
     seen = project(model, pair, state)
     over = state.armed[k] and seen.overshoot <= 0

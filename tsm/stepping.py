@@ -42,6 +42,8 @@ _MEMORY_WHOLE = 8
 """The same where nothing is passed."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
+FAR = 1.0
+"""Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
 _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
 _COINCIDENT = 1e-6
@@ -216,23 +218,31 @@ class Stepper:
         if equilibrium.status is not Status.CONVERGED:
             self.failure = equilibrium.status
             return None
-        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(equilibrium):
+        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(start, equilibrium):
             self.failure = Status.ITERATION_LIMIT
             return None
         return equilibrium
 
-    def _strays(self, found: Equilibrium) -> bool:
-        """Whether a long step ended beyond a singular tangent: on another branch, which the path does not lead to.
+    def _strays(self, predicted: State, found: Equilibrium) -> bool:
+        """Whether a step that pins drive may have ended on another branch, which the path does not lead to.
 
-        Along a path that pins drive, the determinant of the tangent keeps its sign up to a fold, where the path ends. A short step may
-        pass a bifurcation.
+        Along the path the determinant of the tangent keeps its sign up to a fold, where the path ends; a short step may pass a
+        bifurcation. The sign does not tell of two singular points, and elements that a contact passes need not come to the nearest
+        equilibrium: theirs is to lie near its prediction.
         """
-        first, last = found.orientation
-        if self.driven or not self.mixed or (self.orientation or first) == last:
+        if self.driven:
             return False
-        model = self.model
-        moved = (found.state.q - self.accepted.state.q)[model.free] * self.newton.per_limit
-        return bool(np.abs(moved).max(initial=0.0) > SHORT)
+        if not self.model.whole and self._apart(predicted, found.state) > FAR:
+            return True
+        first, last = found.orientation
+        if not self.mixed or (self.orientation or first) == last:
+            return False
+        return self._apart(self.accepted.state, found.state) > SHORT
+
+    def _apart(self, one: State, other: State) -> float:
+        """Largest difference of two states, in largest Newton steps."""
+        moved = (other.q - one.q)[self.model.free] * self.newton.per_limit
+        return float(np.abs(moved).max(initial=0.0))
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -278,7 +288,7 @@ class Stepper:
                 continue
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens"
-            arc = arc_position(model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
@@ -300,7 +310,7 @@ class Stepper:
             return changed(self.model, state, k, None, armed=False)
         seen = project(self.model, pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
-        self._note(EventKind.TOUCH, k, element, arc_position(self.model, pair.target, element, xi), 0.0)
+        self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
     def _resume(self, at: Equilibrium, state: State, lost: Array) -> Status:
@@ -323,7 +333,7 @@ class Stepper:
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
             before = normal_force(self.model, at, k) if at.state.touches[k] is not None else 0.0
-            arc = arc_position(self.model, pair.target, touch.element, touch.xi)
+            arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
                 return Status.LOST_CONTACT
@@ -412,7 +422,7 @@ class Stepper:
         for k, (old, new) in enumerate(zip(before.state.touches, after.state.touches, strict=True)):
             if old is None or new is None or old.element == new.element:
                 continue
-            arcs = [arc_position(model, model.pairs[k].target, touch.element, touch.xi) for touch in (old, new)]
+            arcs = [arc_position(model.pairs[k].target, touch.element, touch.xi) for touch in (old, new)]
             passage = Passage(
                 pair=k,
                 t=(before.state.load_parameter, after.state.load_parameter),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from tsm.elements import ELEMENTS
@@ -77,7 +78,7 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A straight, initially stress-free beam divided into equal elements.
+    """A straight, initially stress-free beam divided into elements, equal ones unless `nodes` says where.
 
     Parameters
     ----------
@@ -91,6 +92,8 @@ class Beam:
         Number of elements.
     element : str
         Element type, a key of `tsm.ELEMENTS`.
+    nodes : tuple of float
+        Where the elements meet, as parts of the length: one value less than elements; equal elements if empty.
     """
 
     name: str
@@ -99,6 +102,7 @@ class Beam:
     section: Section
     elements: int = 20
     element: str = "mixed"
+    nodes: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         owner = f"Beam({self.name})"
@@ -116,6 +120,17 @@ class Beam:
         _check(
             self.element in ELEMENTS, owner, "element", self.element, f"must be one of {', '.join(ELEMENTS)}"
         )
+        ends = (0.0, *self.nodes, 1.0)
+        rising = all(a < b for a, b in pairwise(ends))
+        _check(rising, owner, "nodes", self.nodes, "must rise between 0 and 1")
+        fits = not self.nodes or len(self.nodes) == self.elements - 1
+        _check(fits, owner, "nodes", self.nodes, f"must be one less than elements = {self.elements}")
+
+    @property
+    def parts(self) -> tuple[float, ...]:
+        """Ends of the elements from 0 to 1, as parts of the length."""
+        equal = (k / self.elements for k in range(1, self.elements))
+        return (0.0, *(self.nodes or equal), 1.0)
 
     @property
     def length(self) -> float:

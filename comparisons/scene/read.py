@@ -1,17 +1,15 @@
 """Scene files: TOML in, `Scene` out, one line for everything that is wrong."""
 
-import difflib
-import tomllib
 from dataclasses import MISSING as NO_DEFAULT
 from dataclasses import fields
 from importlib import resources
-from pathlib import Path
 from typing import Any, TypeVar
 
 from comparisons.scene.conditions import LoadSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.records import BeamSpec, Scene
-from comparisons.scene.rules import MISSING, FieldError
+from comparisons.scene.rules import FieldError
+from comparisons.scene.tables import SceneError, check_keys, read_tables, read_text
 
 Record = TypeVar("Record")
 LISTS: dict[str, type[BeamSpec | SupportSpec | LoadSpec | PinSpec | ContactSpec]] = {
@@ -21,13 +19,6 @@ LISTS: dict[str, type[BeamSpec | SupportSpec | LoadSpec | PinSpec | ContactSpec]
     "pin": PinSpec,
     "contact": ContactSpec,
 }
-
-
-class SceneError(ValueError):
-    """A scene that cannot be read: exactly one line, ``FILE: KEY = VALUE: RULE``."""
-
-    def __init__(self, source: str, reason: str) -> None:
-        super().__init__(" ".join(f"{source}: {reason}".split()))
 
 
 def built_in_scenes() -> dict[str, str]:
@@ -57,17 +48,8 @@ def load_scene(scene: str) -> Scene:
         return read_scene(built_in[scene], scene)
     if not scene:
         raise SceneError('""', "must name a scene")
-    path = Path(scene)
-    try:
-        text = path.read_bytes().decode("utf-8")
-    except FileNotFoundError:
-        raise SceneError(scene, f"no such file or built-in scene ({', '.join(built_in)})") from None
-    except UnicodeDecodeError as error:
-        raise SceneError(scene, f"must be UTF-8 text, byte {error.start} is not") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise SceneError(scene, f"cannot be read: {reason}") from None
-    return read_scene(text, scene)
+    absent = f"no such file or built-in scene ({', '.join(built_in)})"
+    return read_scene(read_text(scene, absent, SceneError), scene)
 
 
 def read_scene(text: str, source: str) -> Scene:
@@ -78,10 +60,7 @@ def read_scene(text: str, source: str) -> Scene:
     SceneError
         One line: file, key, value and rule.
     """
-    try:
-        tables = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise SceneError(source, f"must be valid TOML: {error}") from None
+    tables = read_tables(text, source, SceneError)
     try:
         return _scene(tables)
     except FieldError as error:
@@ -89,13 +68,13 @@ def read_scene(text: str, source: str) -> Scene:
 
 
 def _scene(tables: dict[str, Any]) -> Scene:
-    _check_keys(tables, {"scene", *LISTS}, required=("scene", "beam"))
+    check_keys(tables, {"scene", *LISTS}, required=("scene", "beam"))
     if not isinstance(tables["scene"], dict):
         raise FieldError("scene", tables["scene"], "must be a table, [scene]")
     lists: dict[str, Any] = {f"{kind}s": _records(kind, tables[kind]) for kind in LISTS if kind in tables}
     own = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
     try:
-        _check_keys(tables["scene"], own, required=("name", "load_parameters"))
+        check_keys(tables["scene"], own, required=("name", "load_parameters"))
     except FieldError as error:
         raise error.within("scene.") from None
     try:
@@ -114,18 +93,7 @@ def _record(kind: type[Record], table: dict[str, Any], prefix: str) -> Record:
     known = fields(kind)  # type: ignore[arg-type]  # every kind is a dataclass
     try:
         required = tuple(item.name for item in known if item.default is NO_DEFAULT)
-        _check_keys(table, {item.name for item in known}, required)
+        check_keys(table, {item.name for item in known}, required)
         return kind(**table)
     except FieldError as error:
         raise error.within(prefix) from None
-
-
-def _check_keys(table: dict[str, Any], known: set[str], required: tuple[str, ...]) -> None:
-    for key, value in table.items():
-        if key not in known:
-            near = difflib.get_close_matches(key, sorted(known), n=1, cutoff=0.5)
-            hint = f"did you mean {near[0]}?" if near else "known are " + ", ".join(sorted(known))
-            raise FieldError(key if key.isprintable() else repr(key), value, f"unknown key, {hint}")
-    for key in required:
-        if key not in table:
-            raise FieldError(key, MISSING, "must be given")

@@ -44,7 +44,9 @@ class BeamSpec:
     clamped : tuple of {"start", "end"}
         Clamped ends, none by default: the short form of a `SupportSpec`.
     elements : int
-        Number of TSM elements.
+        Number of TSM elements, all of one length.
+    nodes : tuple of float
+        Where TSM elements meet, as parts of the length, in place of `elements`.
     mesh : (int, int)
         Elements of the solid along and across.
     solid_clamp : {"rod", "full"}
@@ -76,6 +78,7 @@ class BeamSpec:
     shear_area: Positive | None = None
     clamped: Annotated[tuple[str, ...], rules.ends] = ()
     elements: Count = 20
+    nodes: Annotated[tuple[float, ...], rules.parts] = ()
     mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
     solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
     solid_mesh_file: Annotated[str, rules.text] | None = None

@@ -129,6 +129,14 @@ def sequence(value: object) -> tuple[object, ...]:
     return tuple(value)
 
 
+def parts(value: object) -> tuple[float, ...]:
+    """Accept numbers that rise between 0 and 1."""
+    items = tuple(number(item) for item in sequence(value))
+    if not all(a < b for a, b in pairwise((0.0, *items, 1.0))):
+        raise RuleError("must rise between 0 and 1, both excluded")
+    return items
+
+
 def mesh(value: object) -> tuple[int, int]:
     """Accept the numbers of elements along and across a solid strip."""
     items = sequence(value)

@@ -91,7 +91,7 @@ class _Contact:
         """Arc position of the contact."""
         touch = state.touches[0]
         assert touch is not None, "this march opens no contact"
-        return arc_position(self.model, self.model.pairs[0].target, touch.element, touch.xi)
+        return arc_position(self.model.pairs[0].target, touch.element, touch.xi)
 
     def equilibrium(self, state: State) -> State | None:
         """Newton's method from a start, None unless the residual falls below the tolerance.

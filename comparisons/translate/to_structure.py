@@ -69,11 +69,13 @@ def _beam(spec: BeamSpec, elements: int | None, element: str) -> "Beam":
     from tsm import Beam, Section
 
     section = Section(EA=spec.EA, GA=spec.GA, EI=spec.EI)
+    nodes = () if elements or element == "exact" else spec.nodes
     return Beam(
         name=spec.name,
         start=spec.start,
         end=spec.end,
         section=section,
-        elements=elements or (1 if element == "exact" else spec.elements),
+        elements=elements or (1 if element == "exact" else len(nodes) + 1 if nodes else spec.elements),
         element=element,
+        nodes=nodes,
     )

@@ -263,3 +263,24 @@ def test_shear_turns_the_force_at_a_node_by_less_than_the_kink():
         across.append(abs(gradient[10]) / np.hypot(*force))
     assert across[0] <= 1e-9
     assert across[1] <= np.hypot(*force) / GA
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+@pytest.mark.parametrize(
+    ("height", "path"),
+    [
+        (0.00109276204, ((0.8002917381, 0.0), (0.3961529698, 0.3642406329))),
+        (0.00311845574, ((0.8719052168, 0.0), (0.1307965578, 0.5431853847))),
+        (0.00118650847, ((0.8262083743, 0.0), (0.1649604223, 0.1302268067))),
+        (0.00354333426, ((0.2847369884, 0.0), (-0.0375565618, 0.4527845067))),
+    ],
+)
+def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
+    """Slender beams and random pins, whose whole way in one step once ended on equilibria with a hundred times the energy."""
+    section = tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
+    structure = cantilever(path, elements=10)
+    beam = replace(structure.beams[0], end=(1.0, 0.0), section=section)
+    structure = replace(structure, beams=(beam,))
+    few, many = (tsm.solve(structure, np.arange(1, n + 1) / n) for n in (count, 50))
+    assert few.strain_energy[-1] == pytest.approx(many.strain_energy[-1], rel=1e-6)
+    assert few.contacts["p->b"].force[-1] == pytest.approx(many.contacts["p->b"].force[-1], rel=1e-6)

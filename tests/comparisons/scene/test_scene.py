@@ -105,6 +105,7 @@ BAD = {
     "float as count": (("elements = 20", "elements = 20.0"), "beam[0].elements = 20.0: must be a whole number"),
     "no elements": (("elements = 20", "elements = 0"), "beam[0].elements = 0: must lie between 1 and 100000"),
     "no load parameters": (("load_parameters = 50", "load_parameters = 0"), "scene.load_parameters = 0: must lie between"),
+    "nodes that fall": (("elements = 20", "nodes = [0.5, 0.2]"), "beam[0].nodes = [0.5, 0.2]: must rise between 0 and 1"),
     "three coordinates": (("end = [1.0, 0.0]", "end = [1.0, 0.0, 0.0]"), "beam[0].end = [1.0, 0.0, 0.0]: must be two numbers"),
     "zero length": (("end = [1.0, 0.0]", "end = [0.0, 0.0]"), "beam[0].end = [0.0, 0.0]: must differ from start"),
     "nu": (("poissons_ratio = 0.3", "poissons_ratio = 0.5"), "beam[0].poissons_ratio = 0.5: must lie between -1 and 0.5"),

@@ -1,0 +1,29 @@
+"""How a command ends: exit statuses, and the solutions that stopped, by name."""
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]  # noqa: SLF001 - it has no public name
+
+DONE, BAD_INPUT, STOPPED, INTERRUPTED = 0, 2, 3, 130
+EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution stopped (the reason is named)"""
+
+
+def report(line: str) -> None:
+    """Tell of progress on standard error."""
+    print(line, file=sys.stderr, flush=True)
+
+
+def exit_status(scene: "Scene", responses: "list[tuple[str, Response]]") -> int:
+    """Name every solution that stopped and what was reached; return the exit status."""
+    stopped = [(label, response) for label, response in responses if not response.completed]
+    for label, response in stopped:
+        reached = f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
+        report(f"crossval: {label}{response.status}: {response.message}; {reached}")
+    return STOPPED if stopped else DONE

@@ -1,0 +1,60 @@
+"""Input files of TOML tables: read them, check their keys, and say in one line what is wrong."""
+
+import difflib
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from comparisons.scene.rules import MISSING, FieldError
+
+
+class InputError(ValueError):
+    """An input file that cannot be read: exactly one line, ``FILE: KEY = VALUE: RULE``."""
+
+    def __init__(self, source: str, reason: str) -> None:
+        super().__init__(" ".join(f"{source}: {reason}".split()))
+
+
+class SceneError(InputError):
+    """A scene that cannot be read."""
+
+
+def read_text(path: str, absent: str, kind: type[InputError]) -> str:
+    """Return the text of the file `path`.
+
+    Raises
+    ------
+    InputError
+        Of the given kind; it says `absent` where there is no such file.
+    """
+    try:
+        return Path(path).read_bytes().decode("utf-8")
+    except FileNotFoundError:
+        raise kind(path, absent) from None
+    except UnicodeDecodeError as error:
+        raise kind(path, f"must be UTF-8 text, byte {error.start} is not") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise kind(path, f"cannot be read: {reason}") from None
+
+
+def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any]:
+    """Return the tables of the TOML `text`; `source` names it in errors of the given kind."""
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise kind(source, f"must be valid TOML: {error}") from None
+
+
+def check_keys(table: dict[str, Any], known: Iterable[str], required: Iterable[str] = ()) -> None:
+    """Raise `FieldError` for the first key of `table` that is not known, or that is required and not there."""
+    names = sorted(known)
+    for key, value in table.items():
+        if key not in names:
+            near = difflib.get_close_matches(key, names, n=1, cutoff=0.5)
+            hint = f"did you mean {near[0]}?" if near else "known are " + ", ".join(names)
+            raise FieldError(key if key.isprintable() else repr(key), value, f"unknown key, {hint}")
+    for key in required:
+        if key not in table:
+            raise FieldError(key, MISSING, "must be given")
