@@ -97,8 +97,7 @@ class Newton:
         sharp = 1 / (SHARP * length)
         scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / SHARP])
         own = [
-            [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns]
-            for pair in model.pairs
+            [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns] for pair in model.pairs
         ]
         self.scale = np.concatenate([scale[model.kind], *own])
         per_limit = np.array([1 / (0.3 * length), 1 / (0.3 * length), 1 / 0.7])

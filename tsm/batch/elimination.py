@@ -13,7 +13,6 @@ those of the determinant.
 from __future__ import annotations
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
 
 from tsm.elements.properties import Array
 
@@ -23,15 +22,33 @@ def row_length(k: int) -> int:
     return max(2 * k, 1)
 
 
-def eliminate(band: Array, k: int, right: Array, corner: Array, given: Array) -> tuple[Array, Array, Array]:
+def reach(rows: Array, columns: Array, n: int) -> list[int]:
+    """Last equation that each of n is coupled with once those before it are eliminated.
+
+    Parameters
+    ----------
+    rows, columns : ndarray of int
+        Entries of the matrix, lower half.
+    n : int
+        Number of equations.
+    """
+    last = np.arange(n)
+    np.maximum.at(last, columns, rows)
+    widened: list[int] = np.maximum.accumulate(last).tolist()
+    return widened
+
+
+def eliminate(
+    band: Array, last: list[int], right: Array, corner: Array, given: Array
+) -> tuple[Array, Array, Array]:
     """Solve all systems; those that break down have entries that are not finite.
 
     Parameters
     ----------
     band : ndarray, shape (n, row_length(k), N)
-        ``band[j, i - j]`` is the entry i, j, lower half; overwritten.
-    k : int
-        Bandwidth.
+        ``band[j, i - j]`` is the entry i, j, lower half; contiguous, overwritten.
+    last : list of int
+        See `reach`.
     right : ndarray, shape (1 + b, n, N)
         r, then the columns of B; overwritten.
     corner : ndarray, shape (b, b, N)
@@ -51,17 +68,19 @@ def eliminate(band: Array, k: int, right: Array, corner: Array, given: Array) ->
     n, length, count = band.shape
     step = band.strides[1]
     inverse = np.empty((n, count))
+    k = max(end - j for j, end in enumerate(last))
     room = np.empty((k, k, count))
     wide = np.empty((len(right), k, count))
     for j in range(n):
-        near = min(k, n - 1 - j)
+        near = last[j] - j
         np.divide(1.0, band[j, 0], out=inverse[j])
         if not near:
             continue
         column = band[j, 1 : near + 1]
         lower = column * inverse[j]
         # entry a, b of the rest of the band, its lower half; the upper falls into the room of the row before
-        rest = as_strided(band[j + 1 :], (near, near, count), (step, (length - 1) * step, band.strides[2]))
+        strides = (step, (length - 1) * step, band.itemsize)
+        rest = np.ndarray((near, near, count), float, band, (j + 1) * length * step, strides)
         rest -= np.multiply(lower[:, None], column, out=room[:near, :near])
         part = right[:, j + 1 : j + near + 1]
         part -= np.multiply(right[:, j, None], lower, out=wide[:, :near])
@@ -76,7 +95,7 @@ def eliminate(band: Array, k: int, right: Array, corner: Array, given: Array) ->
     for a in range(len(corner)):
         x -= scaled[a] * z[a]
     for j in range(n - 2, -1, -1):
-        near = min(k, n - 1 - j)
+        near = last[j] - j
         x[j] -= np.einsum("mn,mn->n", band[j, 1 : near + 1], x[j + 1 : j + near + 1])
     odd = (inverse < 0).sum(axis=0) % 2
     return x, z, np.where(odd, -sign, sign)

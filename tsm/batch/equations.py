@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.batch.elimination import eliminate, row_length
+from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.batch.numbers import Numbers
 from tsm.elements import beam, mixed_contact
 from tsm.elements.properties import Array, Properties
@@ -106,23 +106,18 @@ class Equations:
         from scipy.sparse import csr_array
 
         self.model = model
-        self.k = model.bandwidth
+        self.turning = model.kind == 2
         elements = len(model.element_nodes)
-        element, entry, dof = np.meshgrid(np.arange(elements), np.arange(4), np.arange(6), indexing="ij")
-        values = np.broadcast_to(beam.GATHER.T, element.shape)
-        where = (model.dofs[dof, element].ravel(), (entry * elements + element).ravel())
-        self.gather = csr_array((values.ravel(), where), shape=(model.dof_count, 4 * elements))
+        element, entry, i = _everything(elements, 4, 6)
+        where = (model.dofs[i, element], entry * elements + element)
+        self.gather = csr_array((beam.GATHER[i, entry], where), shape=(model.dof_count, 4 * elements))
         self.gather.eliminate_zeros()
-        element, entry, i, j = (
-            part.ravel()
-            for part in np.meshgrid(
-                np.arange(elements), np.arange(10), np.arange(6), np.arange(6), indexing="ij"
-            )
-        )
+        element, entry, i, j = _everything(elements, 10, 6, 6)
         values = beam.SPREAD.reshape(6, 6, 10)[i, j, entry]
         rows, columns = model.element_equations[i, element], model.element_equations[j, element]
         keep = (columns <= rows) & (rows < model.banded) & (values != 0)
-        length = row_length(self.k)
+        self.last = reach(rows[keep], columns[keep], model.banded)
+        length = row_length(model.bandwidth)
         where = ((columns * length + rows - columns)[keep], (entry * elements + element)[keep])
         shape = (model.banded * length, 10 * elements)
         self.spread = csr_array((values[keep], where), shape=shape)
@@ -225,9 +220,11 @@ class Equations:
         """Positions of pair k's contacting node in some structures, shape (2, m)."""
         pair = self.model.pairs[k]
         if pair.pin is not None:
-            return at.node[k][:, which]
-        own = at.q[3 * pair.node : 3 * pair.node + 2]
-        return (numbers.coordinates[pair.node] + own)[:, which]
+            pin: Array = at.node[k][:, which]
+            return pin
+        dof = 3 * pair.node
+        position: Array = numbers.coordinates[pair.node][:, which] + at.q[dof : dof + 2][:, which]
+        return position
 
     def solve(self, system: System) -> tuple[Array, Array, Array]:
         """Newton's step of the equations and of the contact unknowns, and the sign of the determinant."""
@@ -236,7 +233,12 @@ class Equations:
         right = system.right[:, : model.banded]
         np.negative(system.nodal[model.free], out=right[0])
         band = band.reshape(model.banded, -1, count)
-        return eliminate(band, self.k, right, system.corner, -system.own)
+        return eliminate(band, self.last, right, system.corner, -system.own)
+
+
+def _everything(*sizes: int) -> list[Array]:
+    """All combinations of numbers below the sizes, flat."""
+    return [part.ravel() for part in np.indices(sizes)]
 
 
 def properties_of(numbers: Numbers, e: Array, which: Array) -> Properties:

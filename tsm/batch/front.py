@@ -19,15 +19,15 @@ class History(NamedTuple):
 
     Attributes
     ----------
-    count : ndarray of int, shape (N,)
-        How many were entered; the newest is at ``(count - 1) % MEMORY``.
+    entered : ndarray of int, shape (N,)
+        How many were entered; the newest is at ``(entered - 1) % MEMORY``.
     t : ndarray, shape (MEMORY, N)
         Load parameters.
     q, element, xi, force : ndarray, shape (MEMORY, ..., N)
         As in `Points`.
     """
 
-    count: Array
+    entered: Array
     t: Array
     q: Array
     element: Array
@@ -50,6 +50,8 @@ class Front(NamedTuple):
         Displacements that the iterations began with.
     goal : ndarray, shape (N,)
         Load parameters of the iterates.
+    normal, arc : ndarray, shape (p, N)
+        Contact forces and arc positions of the last accepted configurations.
     armed : ndarray of bool, shape (p, N)
         Open pairs that may close.
     history : History
@@ -71,6 +73,8 @@ class Front(NamedTuple):
     at: Points
     predicted: Array
     goal: Array
+    normal: Array
+    arc: Array
     armed: Array
     history: History
     target: Array
@@ -83,9 +87,9 @@ class Front(NamedTuple):
     last: Array
 
 
-def undeformed(equations: Equations, numbers: Numbers, count: int) -> Front:
-    """All structures at rest, their pins at the start of their paths, all contacts open."""
-    model = equations.model
+def undeformed(equations: Equations, numbers: Numbers, structure: Array) -> Front:
+    """Structures at rest, their pins at the start of their paths, all contacts open."""
+    model, count = equations.model, len(structure)
     pairs, everywhere = len(model.pairs), np.arange(count)
     zero = np.zeros(count)
     owners = np.array([pair.target.first for pair in model.pairs])
@@ -99,7 +103,7 @@ def undeformed(equations: Equations, numbers: Numbers, count: int) -> Front:
         node=node,
     )
     history = History(
-        count=np.zeros(count, dtype=int),
+        entered=np.zeros(count, dtype=int),
         t=np.zeros((MEMORY, count)),
         q=np.zeros((MEMORY, *at.q.shape)),
         element=np.zeros((MEMORY, pairs, count), dtype=int),
@@ -107,11 +111,13 @@ def undeformed(equations: Equations, numbers: Numbers, count: int) -> Front:
         force=np.zeros((MEMORY, pairs, 2, count)),
     )
     return Front(
-        structure=everywhere.copy(),
+        structure=structure,
         numbers=numbers,
         at=at,
         predicted=np.zeros_like(at.q),
         goal=zero.copy(),
+        normal=np.zeros((pairs, count)),
+        arc=np.full((pairs, count), np.nan),
         armed=np.ones((pairs, count), dtype=bool),
         history=history,
         target=np.zeros(count, dtype=int),
@@ -127,24 +133,29 @@ def undeformed(equations: Equations, numbers: Numbers, count: int) -> Front:
 
 def newest(history: History, which: Array) -> Array:
     """Places of the newest configurations of some structures in the ring."""
-    place: Array = (history.count[which] - 1) % MEMORY
+    place: Array = (history.entered[which] - 1) % MEMORY
     return place
 
 
 def remember(front: Front, which: Array) -> None:
     """Enter the iterates of some structures into their histories."""
     history, at = front.history, front.at
-    history.count[which] += 1
+    history.entered[which] += 1
     place = newest(history, which)
     history.t[place, which] = front.goal[which]
-    for ring, now in ((history.q, at.q), (history.element, at.element), (history.xi, at.xi), (history.force, at.force)):
+    for ring, now in (
+        (history.q, at.q),
+        (history.element, at.element),
+        (history.xi, at.xi),
+        (history.force, at.force),
+    ):
         ring[place, ..., which] = np.moveaxis(now[..., which], -1, 0)
 
 
 def replace_history(front: Front, n: int, states: list[State]) -> None:
     """Take over the configurations that structure n was brought through alone, the last of them as its iterate."""
     history, at = front.history, front.at
-    history.count[n] = 0
+    history.entered[n] = 0
     for state in states[-MEMORY:]:
         at.q[:, n] = state.q
         for k, touch in enumerate(state.touches):
@@ -159,7 +170,7 @@ def replace_history(front: Front, n: int, states: list[State]) -> None:
 def states_of(front: Front, n: int) -> list[State]:
     """Accepted configurations of structure n, oldest first."""
     history = front.history
-    count = int(history.count[n])
+    count = int(history.entered[n])
     states = []
     for place in (age % MEMORY for age in range(max(count - MEMORY, 0), count)):
         touches = tuple(
@@ -204,7 +215,7 @@ def predict(equations: Equations, front: Front, which: Array) -> None:
 
 def _weights(history: History, t: Array, which: Array) -> Array:
     """Weights of the polynomials at t, shape (MEMORY, m), 0 for places that are not filled."""
-    times, filled = history.t[:, which], history.count[which] > np.arange(MEMORY)[:, None]
+    times, filled = history.t[:, which], history.entered[which] > np.arange(MEMORY)[:, None]
     weights = np.where(filled, 1.0, 0.0)
     for n in range(MEMORY):
         for k in range(MEMORY):

@@ -58,21 +58,24 @@ def slide(l0: Array, target: BeamModel, element: Array, xi: Array, which: Array)
     return element, xi
 
 
-def chord(equations: Equations, numbers: Numbers, at: Points, e: Array, which: Array) -> Array:
-    """Deformed chords of one element of each of some structures, shape (2, m)."""
-    dofs = equations.model.dofs[:, e]
-    p = numbers.properties
-    shift = at.q[dofs[3:5], which] - at.q[dofs[:2], which]
-    return np.stack([p.dx0[e, which], p.dy0[e, which]]) + shift
+def measure(equations: Equations, numbers: Numbers, at: Points, which: Array) -> tuple[Array, Array]:
+    """Contact forces and arc positions of all pairs in some structures, shapes (p, m); 0 and nan where a pair is open.
 
-
-def normal_force(equations: Equations, numbers: Numbers, at: Points, k: int, which: Array) -> Array:
-    """Contact forces of closed pair k, positive where they push."""
-    dx, dy = chord(equations, numbers, at, at.element[k, which], which)
-    fx, fy = at.force[k][:, which]
-    push = numbers.side[k, which] * (fy * dx - fx * dy)
-    size = np.sqrt(fx * fx + fy * fy)
-    return np.where(push >= 0, size, -size)
+    Forces are positive where they push.
+    """
+    p, dofs = numbers.properties, equations.model.dofs
+    normal, arc = np.zeros((2, len(at.closed), len(which)))
+    arc[:] = np.nan
+    for k, closed in enumerate(at.closed[:, which]):
+        here = which[closed]
+        e = at.element[k, here]
+        shift = at.q[dofs[3:5, e], here] - at.q[dofs[:2, e], here]
+        fx, fy = at.force[k][:, here]
+        push = numbers.side[k, here] * (fy * (p.dx0[e, here] + shift[0]) - fx * (p.dy0[e, here] + shift[1]))
+        size = np.sqrt(fx * fx + fy * fy)
+        normal[k, closed] = np.where(push >= 0, size, -size)
+        arc[k, closed] = numbers.arc[e, here] + at.xi[k, here] * p.l0[e, here]
+    return normal, arc
 
 
 def project(equations: Equations, numbers: Numbers, at: Points, k: int, which: Array) -> Seen:
@@ -80,7 +83,7 @@ def project(equations: Equations, numbers: Numbers, at: Points, k: int, which: A
     model = equations.model
     pair = model.pairs[k]
     node = equations.node(numbers, at, k, which)
-    element, xi = _nearest_chord(equations, numbers, at, pair.target, node, which)
+    element, xi = _nearest_chord(numbers, at, pair.target, node, which)
     l0 = numbers.properties.l0
     for _ in range(_STEPS):
         p, x = properties_of(numbers, element, which), at.q[model.dofs[:, element], which]
@@ -111,7 +114,7 @@ def project(equations: Equations, numbers: Numbers, at: Points, k: int, which: A
 
 
 def _nearest_chord(
-    equations: Equations, numbers: Numbers, at: Points, target: BeamModel, node: Array, which: Array
+    numbers: Numbers, at: Points, target: BeamModel, node: Array, which: Array
 ) -> tuple[Array, Array]:
     """Owner by projection on the chords."""
     nodes = target.nodes

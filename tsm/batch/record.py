@@ -11,8 +11,7 @@ from tsm.events import Event, Passage
 from tsm.model import Model
 from tsm.state import State, Touch
 from tsm.status import Status
-
-_ARRAYS = ("q", "closed", "armed", "element", "xi", "force", "iterations")
+from tsm.stepping import Step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +28,10 @@ class Record:
         Owners and positions on them.
     force : ndarray, shape (N, s, p, 2)
         Forces on the beam.
+    normal, arc : ndarray, shape (N, s, p)
+        Contact forces and arc positions; nan where nothing was reached, or the pair is open and has no position.
+    reaction : ndarray, shape (N, s, fixed)
+        What the supports exert.
     iterations : ndarray of int, shape (N, s)
         Newton iterations since the load parameter before.
     reached : ndarray of int, shape (N,)
@@ -37,8 +40,8 @@ class Record:
         Steps given up.
     status : list of Status
         Of each.
-    stopped : ndarray, shape (N,)
-        Load parameter of the last configuration.
+    end : dict of Step
+        Where structures stopped that did not reach the last load parameter.
     events : list of list
         Events in order; pass-throughs as what they are interpolated between.
     """
@@ -49,11 +52,14 @@ class Record:
     element: Array
     xi: Array
     force: Array
+    normal: Array
+    arc: Array
+    reaction: Array
     iterations: Array
     reached: Array
     cutbacks: Array
     status: list[Status]
-    stopped: Array
+    end: dict[int, Step]
     events: list[list[Event | Passage]] = field(repr=False)
 
     def state(self, n: int, k: int, t: float) -> State:
@@ -78,10 +84,13 @@ def empty(model: Model, count: int, steps: int) -> Record:
         element=np.zeros(pairs, dtype=int),
         xi=np.zeros(pairs),
         force=np.zeros((*pairs, 2)),
+        normal=np.full(pairs, np.nan),
+        arc=np.full(pairs, np.nan),
+        reaction=np.zeros((*shape, len(model.fixed))),
         iterations=np.zeros(shape, dtype=int),
         reached=np.zeros(count, dtype=int),
         cutbacks=np.zeros(count, dtype=int),
         status=[Status.COMPLETED] * count,
-        stopped=np.zeros(count),
+        end={},
         events=[[] for _ in range(count)],
     )

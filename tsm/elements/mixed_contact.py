@@ -90,9 +90,7 @@ def response(
     return full, tangent
 
 
-def jet(
-    p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any
-) -> tuple[Array, Array]:
+def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> tuple[Array, Array]:
     """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in what it depends on.
 
     Parameters
