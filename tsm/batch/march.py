@@ -39,8 +39,8 @@ from tsm.structure import Structure
 
 _ENTRIES = 20_000
 """Elements that are iterated at once: so many that a pass is not all calls, so few that its arrays stay near."""
-_SOON = 8
-"""Iterations after which a structure is left to the stepper: a path that is followed closely takes three or four."""
+_SOON = 12
+"""Iterations after which a structure is left to the stepper: a path that is followed closely takes three or four of them."""
 
 
 class March:
