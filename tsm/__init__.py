@@ -1,6 +1,7 @@
 """Planar beams by the tangent stiffness method with frictionless node-element contact."""
 
 from tsm.arc_length import trace
+from tsm.batch import BatchResult, solve_batch
 from tsm.elements import ELEMENTS
 from tsm.events import Event, EventKind
 from tsm.result import ContactHistory, Result, SupportHistory
@@ -11,6 +12,7 @@ from tsm.structure import Beam, ContactPair, Load, Pin, Section, Structure, Supp
 
 __all__ = [
     "ELEMENTS",
+    "BatchResult",
     "Beam",
     "ContactHistory",
     "ContactPair",
@@ -28,5 +30,6 @@ __all__ = [
     "SupportHistory",
     "march",
     "solve",
+    "solve_batch",
     "trace",
 ]

@@ -73,6 +73,25 @@ class Event:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Passage:
+    """Two configurations between which a closed contact changed its owner.
+
+    Attributes
+    ----------
+    pair : int
+        Number of the pair.
+    t, element, arc, force : tuple
+        Load parameters, owners, arc positions and contact forces, before and after.
+    """
+
+    pair: int
+    t: tuple[float, float]
+    element: tuple[int, int]
+    arc: tuple[float, float]
+    force: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Margin:
     """A dimensionless quantity that is positive until its event happens."""
 
@@ -95,6 +114,29 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     push = model.pairs[k].side * (fy * dx - fx * dy)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if push >= 0 else -size
+
+
+def passed(model: Model, passage: Passage) -> list[Event]:
+    """Pass-throughs of a passage, one per beam node, at linearly interpolated load parameters."""
+    pair = model.pairs[passage.pair]
+    (old, new), (start, end) = passage.element, passage.arc
+    (t0, t1), (before, after) = passage.t, passage.force
+    ahead = 1 if new > old else -1
+    events = []
+    for element in range(old + ahead, new + ahead, ahead):
+        arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
+        part = (arc - start) / (end - start) if end != start else 1.0
+        events.append(
+            Event(
+                kind=EventKind.PASS_THROUGH,
+                load_parameter=t0 + part * (t1 - t0),
+                pair=pair.pair.name,
+                element=element - pair.target.first,
+                arc_position=arc,
+                force=before + part * (after - before),
+            )
+        )
+    return events
 
 
 def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:

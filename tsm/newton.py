@@ -16,10 +16,10 @@ from tsm.state import Profile, State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation, Solved
 
-_ROUND_OFF = 4 * float(np.finfo(float).eps)
-_SHARP = 1e-3
+ROUND_OFF = 4 * float(np.finfo(float).eps)
+SHARP = 1e-3
 """Positions are held this much sharper than forces: they cost nothing, and a stiff contact needs them."""
-_LONGEST, _LONGEST_WHOLE = 1.0, 1.4
+LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Longest iteration, in parts of 0.3 L and 0.7 rad; more where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
 """Merit test of exact elements: an iteration that raises the residual tenfold is halved, three times at most. A stricter test stops good ones."""
@@ -88,17 +88,16 @@ class Newton:
         EA, EI, l0 = (
             value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
         )
-        noise = _ROUND_OFF * (EA * model.length / l0 + EI / l0**2).max(initial=0.0) / model.force_scale
+        noise = ROUND_OFF * (EA * model.length / l0 + EI / l0**2).max(initial=0.0) / model.force_scale
         self.tolerance = tolerance
-        blur = _ROUND_OFF * np.abs(model.coordinates).max() / (_SHARP * model.length)
+        blur = ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length)
         self.noise = float(max(noise, blur if model.contact_unknowns or model.rods else 0.0))
         force, length = model.force_scale, model.length
-        self.longest = _LONGEST_WHOLE if model.whole else _LONGEST
-        sharp = 1 / (_SHARP * length)
-        scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / _SHARP])
+        self.longest = _LONGEST_WHOLE if model.whole else LONGEST
+        sharp = 1 / (SHARP * length)
+        scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / SHARP])
         own = [
-            [sharp, sharp, 1 / force, 1 / _SHARP][: pair.element_type.contact_unknowns]
-            for pair in model.pairs
+            [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns] for pair in model.pairs
         ]
         self.scale = np.concatenate([scale[model.kind], *own])
         per_limit = np.array([1 / (0.3 * length), 1 / (0.3 * length), 1 / 0.7])
@@ -109,7 +108,7 @@ class Newton:
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
         largest = float(np.abs(system.residual * self.scale).max())
-        return largest if system.rods is None else max(largest, system.rods.inside / _SHARP)
+        return largest if system.rods is None else max(largest, system.rods.inside / SHARP)
 
     def solve(self, start: State, load: Array | None = None, drag: Drag | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium at the start's load parameter, under nodal forces and against a drag if given."""

@@ -47,7 +47,7 @@ def march(structure: Structure, load_parameters: Array, settings: Settings | Non
     ValueError
         If the load parameters are not increasing in (0, 1], or a node starts behind the surface it touches.
     """
-    yield from Stepper(Model(structure), settings or Settings()).march(_checked(load_parameters))
+    yield from Stepper(Model(structure), settings or Settings()).march(checked(load_parameters))
 
 
 def solve(
@@ -92,7 +92,7 @@ def solve(
     >>> f"{result.contacts['pin->cantilever'].force[-1]:.6f} N"
     '0.002288 N'
     """
-    targets = _checked(load_parameters)
+    targets = checked(load_parameters)
     begin = time.perf_counter()
     model = Model(structure)
     steps = list(Stepper(model, settings or Settings()).march(targets))
@@ -105,7 +105,8 @@ def solve(
     return result
 
 
-def _checked(load_parameters: Array) -> Array:
+def checked(load_parameters: Array) -> Array:
+    """Load parameters as an array, if they increase within (0, 1]."""
     targets = np.asarray(load_parameters, dtype=float)
     ok = targets.ndim == 1 and targets.size > 0 and bool(np.isfinite(targets).all())
     if not (ok and targets[0] > 0 and targets[-1] <= 1 and bool((np.diff(targets) > 0).all())):

@@ -16,7 +16,18 @@ import numpy as np
 from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.elements.properties import Array
-from tsm.events import ROUND_OFF, Event, EventKind, Margin, broken, locate, margins, normal_force
+from tsm.events import (
+    ROUND_OFF,
+    Event,
+    EventKind,
+    Margin,
+    Passage,
+    broken,
+    locate,
+    margins,
+    normal_force,
+    passed,
+)
 from tsm.guard import SHORT, PathGuard
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
@@ -26,13 +37,13 @@ from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Drag
 
-_MEMORY = 4
+MEMORY = 4
 """States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
 _MEMORY_WHOLE = 8
 """The same where nothing is passed."""
 _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
-_FAR = 1.0
+FAR = 1.0
 """Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
 _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
@@ -87,10 +98,35 @@ class Stepper:
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.step = 1.0
         self.failure = start.status
-        self.memory = _MEMORY_WHOLE if model.whole else _MEMORY
+        self.memory = _MEMORY_WHOLE if model.whole else MEMORY
         self.orientation = 0
         self.mixed = all(pair.slot >= 0 for pair in model.pairs)
         self.driven = bool(model.load.any() or model.fixed_values.any())
+        self.guard = self._guard()
+
+    def resume(self, accepted: list[State], step: float, orientation: int) -> None:
+        """Go on from configurations that were accepted elsewhere, oldest first, instead of from the start.
+
+        Parameters
+        ----------
+        accepted : list of State
+            In equilibrium, all with the same closed contacts.
+        step : float
+            Longest next step.
+        orientation : int
+            Sign of the determinant of the tangent, 0 if unknown.
+        """
+        state = accepted[-1]
+        self.accepted = Equilibrium(
+            state=state,
+            status=Status.CONVERGED,
+            iterations=0,
+            residuals=(),
+            system=self.newton.assembler.linearise(state),
+        )
+        self.history = accepted
+        self.margins = self._measure(self.accepted)
+        self.step, self.orientation = step, orientation
         self.guard = self._guard()
 
     def _guard(self) -> PathGuard | None:
@@ -199,7 +235,7 @@ class Stepper:
         """
         if self.driven:
             return False
-        if not self.model.whole and self._apart(predicted, found.state) > _FAR:
+        if not self.model.whole and self._apart(predicted, found.state) > FAR:
             return True
         first, last = found.orientation
         if not self.mixed or (self.orientation or first) == last:
@@ -407,22 +443,12 @@ class Stepper:
         for k, (old, new) in enumerate(zip(before.state.touches, after.state.touches, strict=True)):
             if old is None or new is None or old.element == new.element:
                 continue
-            pair = model.pairs[k]
-            arcs = [arc_position(pair.target, touch.element, touch.xi) for touch in (old, new)]
-            forces = [normal_force(model, at, k) for at in (before, after)]
-            ahead = 1 if new.element > old.element else -1
-            for element in range(old.element + ahead, new.element + ahead, ahead):
-                arc = arc_position(pair.target, element, 0.0 if ahead > 0 else 1.0)
-                moved = arcs[1] - arcs[0]
-                part = (arc - arcs[0]) / moved if moved else 1.0
-                t0, t1 = before.state.load_parameter, after.state.load_parameter
-                self.events.append(
-                    Event(
-                        kind=EventKind.PASS_THROUGH,
-                        load_parameter=t0 + part * (t1 - t0),
-                        pair=pair.pair.name,
-                        element=element - pair.target.first,
-                        arc_position=arc,
-                        force=forces[0] + part * (forces[1] - forces[0]),
-                    )
-                )
+            arcs = [arc_position(model.pairs[k].target, touch.element, touch.xi) for touch in (old, new)]
+            passage = Passage(
+                pair=k,
+                t=(before.state.load_parameter, after.state.load_parameter),
+                element=(old.element, new.element),
+                arc=(arcs[0], arcs[1]),
+                force=(normal_force(model, before, k), normal_force(model, after, k)),
+            )
+            self.events.extend(passed(model, passage))

@@ -220,6 +220,69 @@ def assembly(gates: list[Gate], times: dict[str, float]) -> None:
             gates.append(Gate(f"assembly over factorisation, {name}", ours / factor, 1, False))
 
 
+def variants(count: int) -> list[tsm.Structure]:
+    """KS cantilevers of other lengths, slendernesses, stiffnesses and paths of the pin, 10 `mixed` elements each."""
+    rng = np.random.default_rng(0)
+    ks = to_structure(load_scene("ks-cantilever"), elements=10)
+    (beam,), (pin,), found = ks.beams, ks.pins, []
+    for _ in range(count):
+        size, slender, stiff = rng.uniform(0.5, 2), rng.uniform(0.5, 1.5), 10 ** rng.uniform(-1, 1)
+        (x, y), (dx, dy) = pin.path[0], np.subtract(pin.path[1], pin.path[0]) * rng.uniform(0.95, 1, 2)
+        EI = stiff * slender**2 * size**2 * beam.section.EI
+        section = tsm.Section(EA=stiff * beam.section.EA, GA=stiff * beam.section.GA, EI=EI)
+        start, end = ((size * a, size * b) for a, b in (beam.start, beam.end))
+        path = ((size * x, size * y), (size * (x + dx), size * (y + dy)))
+        found.append(
+            replace(
+                ks,
+                beams=(replace(beam, start=start, end=end, section=section),),
+                pins=(replace(pin, path=path),),
+            )
+        )
+    return found
+
+
+def apart(batch: tsm.BatchResult, alone: list[tsm.Result]) -> float:
+    """Largest difference of a batch from results one by one, forces over the largest force, positions over the length."""
+    largest = 0.0
+    for n, one in zip(range(0, len(batch), len(batch) // len(alone)), alone, strict=True):
+        (contact,), (held,), (tip,) = one.contacts.items(), one.supports.items(), one.tips.items()
+        F, L = contact[1].force.max(), one.model.length
+        assert batch.status[n] is one.status
+        for mine, theirs, scale in (
+            (batch.force[contact[0]], contact[1].force, F),
+            (batch.arc_position[contact[0]], contact[1].arc_position, L),
+            (batch.supports[held[0]].moment, held[1].moment, F * L),
+            (batch.tips[tip[0]], tip[1], L),
+        ):
+            reached = mine[n, : len(theirs)]
+            largest = max(largest, float(np.abs(reached - theirs).max()) / scale)
+    return largest
+
+
+def batches(gates: list[Gate], times: dict[str, float]) -> None:
+    """A batch of 1,000 variants of KS against every tenth of them one by one; equal where the tolerance is sharp."""
+    structures, t = variants(1000), np.arange(1, 51) / 50
+    some = structures[::10]
+    found: dict[str, Any] = {}
+    for name, settings, bar in (
+        ("default tolerance", tsm.Settings(), 1e-10),
+        ("tolerance 1e-12", tsm.Settings(tolerance=1e-12), 1e-12),
+    ):
+
+        def together(settings: tsm.Settings = settings) -> None:
+            found["batch"] = tsm.solve_batch(structures, t, settings)
+
+        def alone(settings: tsm.Settings = settings) -> None:
+            found["alone"] = [tsm.solve(structure, t, settings, throw=False) for structure in some]
+
+        batch, one_by_one = seconds(together, alone, repeats=3)
+        times |= {f"1,000 KS at once, {name}": batch, f"100 KS one by one, {name}": one_by_one}
+        gates.append(Gate(f"1,000 KS one by one over at once, {name}", 10 * one_by_one / batch, 20, True))
+        difference = apart(found["batch"], found["alone"])
+        gates.append(Gate(f"largest difference at once from one by one, {name}", difference, bar, False))
+
+
 def _forms() -> Any:
     path = Path(__file__).parents[1] / "fem_reference" / "bilinear_reference.py"
     spec = importlib.util.spec_from_file_location("bilinear_reference", path)
@@ -272,6 +335,7 @@ def main() -> None:
         scenes_and_elements,
         linear_cost,
         exact_element,
+        batches,
         assembly,
         memory,
         import_time,

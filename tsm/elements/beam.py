@@ -29,15 +29,17 @@ _REDUCE = np.zeros((4, 6))
 _REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
 _REDUCE[2, [2, 5]] = 0.5
 _REDUCE[3, [2, 5]] = 0.5, -0.5
-_GATHER = _REDUCE.T.copy()
+GATHER = _REDUCE.T.copy()
+"""Nodal forces (6) from those over ``dx, dy, m, h`` (4)."""
 # the ten distinct entries of the tangent over those four, spread over the displacements
-_PAIRS = [(0, 0), (0, 1), (1, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)]
-_SPREAD = np.array(
+PAIRS = [(0, 0), (0, 1), (1, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)]
+SPREAD = np.array(
     [
         (np.outer(_REDUCE[a], _REDUCE[b]) + (a != b) * np.outer(_REDUCE[b], _REDUCE[a])).ravel()
-        for a, b in _PAIRS
+        for a, b in PAIRS
     ]
 ).T.copy()
+"""Nodal tangent (36) from the entries `PAIRS` (10)."""
 
 
 class Coefficients(NamedTuple):
@@ -138,6 +140,27 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     tangent : ndarray, shape (36, n)
         Its derivative, row by row, symmetric.
     """
+    force, tangent = reduced_response(a, x)
+    return GATHER @ force, SPREAD @ tangent
+
+
+def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
+    """Forces and tangent of beam elements over the four quantities that they depend on, chord (x, y), m and h.
+
+    Parameters
+    ----------
+    a : Coefficients
+        Of the energy.
+    x : ndarray, shape (6, ...)
+        Element displacements, component first; the coefficients have the same axes behind the first.
+
+    Returns
+    -------
+    force : ndarray, shape (4, ...)
+        Gradient of the energy; `GATHER` makes nodal forces of it.
+    tangent : ndarray, shape (10, ...)
+        Upper triangle of its derivative in the order of `PAIRS`; `SPREAD` makes the nodal one of it.
+    """
     shift = x[3:5] - x[:2]
     chord = a.chord + shift
     (x0, y0), (dx, dy) = a.chord, chord
@@ -165,12 +188,12 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
 
     moments = bend * stiffness
     shear = moments[0] / length
-    reduced = np.empty((4, x.shape[1]), dtype=x.dtype)
+    reduced = np.empty((4, *x.shape[1:]), dtype=x.dtype)
     reduced[0] = N * tx + shear * ty
     reduced[1] = N * ty - shear * tx
     reduced[2:] = moments
 
-    entries = np.empty((10, x.shape[1]), dtype=x.dtype)
+    entries = np.empty((10, *x.shape[1:]), dtype=x.dtype)
     own = slope * coupling + stiffness
     entries[7] = own[0] + a.r4 * mm
     entries[8] = slope[0] * coupling[1] + a.r2 * bend[0] * bend[1]
@@ -188,7 +211,7 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     entries[2] = tt * yy + nn * xx + turned
     entries[3:5] = tx * coupling + ty * across
     entries[5:7] = ty * coupling - tx * across
-    return _GATHER @ reduced, _SPREAD @ entries
+    return reduced, entries
 
 
 def axial_force(a: Coefficients, x: Array) -> Array:

@@ -30,12 +30,13 @@ from tsm.elements.properties import Array, Properties
 _REDUCE = np.zeros((7, 11))
 _REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
 _REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
-# the 28 entries of the upper triangle over those seven, spread over the eleven
+UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
+"""The 28 entries of the upper triangle over those seven."""
+# the same spread over the eleven
 _SPREAD = np.array(
     [
         (np.outer(_REDUCE[a], _REDUCE[b]) + (a != b) * np.outer(_REDUCE[b], _REDUCE[a])).ravel()
-        for a in range(7)
-        for b in range(a, 7)
+        for a, b in UPPER
     ]
 )
 # second derivatives of F . (x_i - x_c)
@@ -73,6 +74,37 @@ def response(
     tangent : ndarray, shape (11, 11)
         Its derivative, symmetric.
     """
+    gradient, hessian = jet(p, x, xi, force, side, offset)
+    full = -(gradient @ _REDUCE)
+    Fx, Fy = force
+    full[0] -= Fx
+    full[1] -= Fy
+    full[6] += Fx
+    full[7] += Fy
+    full[8] -= lever[0]
+    full[9] -= lever[1]
+    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
+    full[10] /= p.l0
+    tangent[10] /= p.l0
+    tangent[:, 10] /= p.l0
+    return full, tangent
+
+
+def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> tuple[Array, Array]:
+    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in what it depends on.
+
+    Parameters
+    ----------
+    p, x, xi, force, side, offset
+        As for `response`; or arrays over many contacts of what are plain numbers there, one entry per contact.
+
+    Returns
+    -------
+    gradient : ndarray, shape (7, ...)
+        With respect to ``dx, dy, theta_i, theta_j`` of the element, force (2) and xi.
+    hessian : ndarray, shape (28, ...)
+        Upper triangle of its derivative, row by row.
+    """
     curve = Curve(p, x)
     dx, dy, (Fx, Fy) = curve.dx, curve.dy, force
     C, dC, ddC, dddC = compliance(p, xi)
@@ -98,28 +130,16 @@ def response(
             -w - wy * dy, xi + wy * dx, Fy + a * hys - ws * Fx,
             a * hii, a * hij, -wi * dy, wi * dx, a * his,
             a * hjj, -wj * dy, wj * dx, a * hjs,
-            C, 0.0, dx - ws * dy + dC * Fx,
+            C, 0.0 * C, dx - ws * dy + dC * Fx,
             C, dy + ws * dx + dC * Fy,
             a * hss + ddC * half,
         ]
     )  # fmt: skip
-    if offset:
+    if isinstance(offset, np.ndarray) or offset:
         on_surface = _surface(curve, xi, force, (dC, ddC, dddC), p.l0)
         gradient = gradient - side * offset * on_surface[0]
         hessian = hessian - side * offset * on_surface[1]
-
-    full = -(gradient @ _REDUCE)
-    full[0] -= Fx
-    full[1] -= Fy
-    full[6] += Fx
-    full[7] += Fy
-    full[8] -= lever[0]
-    full[9] -= lever[1]
-    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
-    full[10] /= p.l0
-    tangent[10] /= p.l0
-    tangent[:, 10] /= p.l0
-    return full, tangent
+    return gradient, hessian
 
 
 def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: Any) -> tuple[Array, Array]:
@@ -174,15 +194,15 @@ def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tup
     p : Properties
         Constants of the element.
     xi : tuple of numbers
-        Positions of both contacts.
+        Positions of both contacts; or arrays over many elements, as all the others, with the contacts in the same order on each.
     first, second : sequence of 2 numbers
         Forces on the beam.
 
     Returns
     -------
-    gradient : ndarray, shape (6,)
+    gradient : ndarray, shape (6, ...)
         With respect to force (2) and arc position of the first, then of the second contact.
-    tangent : ndarray, shape (6, 6)
+    tangent : ndarray, shape (6, 6, ...)
         Its derivative.
     """
     C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
@@ -190,7 +210,7 @@ def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tup
     (ax, ay), (bx, by) = first, second
     dot = ax * bx + ay * by
     gradient = -np.array([C * bx, C * by, dx * dot / l0, C * ax, C * ay, de * dot / l0])
-    upper = np.zeros((6, 6), dtype=gradient.dtype)
+    upper = np.zeros((6, *gradient.shape), dtype=gradient.dtype)
     upper[[0, 1], [3, 4]] = C
     upper[:2, 2] = np.array([bx, by]) * dx / l0
     upper[:2, 5] = np.array([bx, by]) * de / l0
@@ -198,7 +218,7 @@ def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tup
     upper[3:5, 5] = np.array([ax, ay]) * de / l0
     upper[2, 5] = dxe * dot / l0**2
     upper[2, 2], upper[5, 5] = dxx * dot / (2 * l0**2), dee * dot / (2 * l0**2)
-    return gradient, -(upper + upper.T)
+    return gradient, -(upper + upper.swapaxes(0, 1))
 
 
 def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
@@ -214,7 +234,7 @@ def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, A
     tuple
         Value, derivatives in xi and eta, and the second ones xi-xi, xi-eta, eta-eta.
     """
-    if np.real(xi) > np.real(eta):
+    if np.any(np.real(xi) > np.real(eta)):
         C, d_eta, d_xi, second, both, first = cross_compliance(p, eta, xi)
         return C, d_xi, d_eta, first, both, second
     x, b, h, k = xi, 1 - eta, 1 + p.Phi / 2, 1 / (1 + p.Phi)

@@ -1,0 +1,246 @@
+"""Residual and tangent of many structures: `Assembler` with the structure as last axis.
+
+The element forces and tangents come in the reduced variables of `beam` and `mixed_contact`, contacts are added to those of
+their element, and one sparse product spreads them over the equations.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.batch.elimination import eliminate, reach, row_length
+from tsm.batch.numbers import Numbers
+from tsm.elements import beam, mixed_contact
+from tsm.elements.properties import Array, Properties
+from tsm.model import Model
+
+OWN = 3
+"""Unknowns of a contact: force (x, y) and arc position."""
+
+
+class Points(NamedTuple):
+    """Configurations of N structures with p pairs.
+
+    Attributes
+    ----------
+    q : ndarray, shape (dofs, N)
+        Displacements of the nodes.
+    closed : ndarray of bool, shape (p, N)
+        Whether the pairs are closed; where they are not, what follows says nothing.
+    element : ndarray of int, shape (p, N)
+        Owners.
+    xi : ndarray, shape (p, N)
+        Positions on them.
+    force : ndarray, shape (p, 2, N)
+        Forces on the beam.
+    node : ndarray, shape (p, 2, N)
+        Positions of the pins; of pairs of beam ends unused.
+    """
+
+    q: Array
+    closed: Array
+    element: Array
+    xi: Array
+    force: Array
+    node: Array
+
+
+class System(NamedTuple):
+    """Residual and tangent.
+
+    Attributes
+    ----------
+    nodal : ndarray, shape (dofs, N)
+        Forces on the nodes.
+    own : ndarray, shape (contact unknowns, N)
+        Residuals of the contacts.
+    entries : ndarray, shape (10, e, N)
+        Tangents of the elements, `beam.PAIRS`.
+    right : ndarray, shape (1 + contact unknowns, equations + 1, N)
+        Room for the residual, then the columns of the border.
+    corner : ndarray, shape (contact unknowns, contact unknowns, N)
+        Where border and border meet.
+    """
+
+    nodal: Array
+    own: Array
+    entries: Array
+    right: Array
+    corner: Array
+
+
+def _over(a: int, b: int, columns: Array) -> Array:
+    """Coefficients of the 28 entries of `mixed_contact.UPPER` in entry a, b of ``columns^T H columns``."""
+    row = np.zeros(len(mixed_contact.UPPER))
+    for n, (i, j) in enumerate(mixed_contact.UPPER):
+        row[n] = columns[i, a] * columns[j, b] + (i != j) * columns[j, a] * columns[i, b]
+    return row
+
+
+# dx, dy, theta_i, theta_j, F_x, F_y, xi by dx, dy, m, h, and by element (6) and contact (3)
+_BENT = np.zeros((7, 4))
+_BENT[[0, 1, 2, 2, 3, 3], [0, 1, 2, 3, 2, 3]] = 1, 1, 1, 1, 1, -1
+_MOVED = np.zeros((7, 9))
+_MOVED[[0, 0, 1, 1, 2, 3, 4, 5, 6], [0, 3, 1, 4, 2, 5, 6, 7, 8]] = -1, 1, -1, 1, 1, 1, 1, 1, 1
+# minus the Hessian, as in the Lagrangian: of the beam, of element and contact, of the contact
+_TANGENT = -np.array(
+    [_over(a, b, _BENT) for a, b in beam.PAIRS]
+    + [_over(6 + c, a, _MOVED) for c in range(OWN) for a in range(6)]
+    + [_over(6 + c, 6 + d, _MOVED) for c in range(OWN) for d in range(OWN)]
+)
+_FORCE = -np.concatenate([_BENT.T, np.eye(7)[4:]])
+
+
+class Equations:
+    """Scatter maps of a topology, made once.
+
+    Parameters
+    ----------
+    model : Model
+        Of any of the structures.
+    """
+
+    def __init__(self, model: Model) -> None:
+        from scipy.sparse import csr_array
+
+        self.model = model
+        self.turning = model.kind == 2
+        elements = len(model.element_nodes)
+        element, entry, i = _everything(elements, 4, 6)
+        where = (model.dofs[i, element], entry * elements + element)
+        self.gather = csr_array((beam.GATHER[i, entry], where), shape=(model.dof_count, 4 * elements))
+        self.gather.eliminate_zeros()
+        element, entry, i, j = _everything(elements, 10, 6, 6)
+        values = beam.SPREAD.reshape(6, 6, 10)[i, j, entry]
+        rows, columns = model.element_equations[i, element], model.element_equations[j, element]
+        keep = (columns <= rows) & (rows < model.banded) & (values != 0)
+        self.last = reach(rows[keep], columns[keep], model.banded)
+        length = row_length(model.bandwidth)
+        where = ((columns * length + rows - columns)[keep], (entry * elements + element)[keep])
+        shape = (model.banded * length, 10 * elements)
+        self.spread = csr_array((values[keep], where), shape=shape)
+
+    def linearise(self, numbers: Numbers, at: Points) -> System:
+        """Residual and tangent at some configurations."""
+        model, count = self.model, at.q.shape[-1]
+        force, entries = beam.reduced_response(numbers.coefficients, at.q[model.dofs])
+        unknowns = model.contact_unknowns
+        own = np.zeros((unknowns, count))
+        right = np.zeros((1 + unknowns, model.equations + 1, count))
+        corner = np.zeros((unknowns, unknowns, count))
+        closings = [self._contact(numbers, at, k) for k in range(len(model.pairs))]
+        for which, e, gradient, block in closings:
+            force[:, e, which] += gradient[:4]
+            entries[:, e, which] += block[:10]
+        nodal = self.gather @ force.reshape(-1, count)
+        for k, (which, e, gradient, block) in enumerate(closings):
+            self._enter(numbers, at, k, which, (nodal, own, right, corner), e, gradient, block)
+        for k in range(len(closings)):
+            for other in range(k):
+                self._share(numbers, at, (other, k), own, corner)
+        return System(nodal, own, entries, right, corner)
+
+    def _contact(self, numbers: Numbers, at: Points, k: int) -> tuple[Array, Array, Array, Array]:
+        """Structures in which pair k is closed, its owner, gradient (7, m) and tangent (37, m) in reduced variables."""
+        which = np.flatnonzero(at.closed[k])
+        e = at.element[k, which]
+        p = properties_of(numbers, e, which)
+        x = at.q[self.model.dofs[:, e], which]
+        offset = numbers.offset[k, which]
+        gradient, hessian = mixed_contact.jet(
+            p,
+            x,
+            at.xi[k, which],
+            at.force[k][:, which],
+            numbers.side[k, which],
+            offset if offset.any() else 0.0,
+        )
+        gradient, block = _FORCE @ gradient, _TANGENT @ hessian
+        gradient[6] /= p.l0
+        block[[22, 23, 24, 25, 26, 27, 30, 33, 34, 35, 36]] /= p.l0
+        block[36] /= p.l0
+        return which, e, gradient, block
+
+    def _enter(
+        self,
+        numbers: Numbers,
+        at: Points,
+        k: int,
+        which: Array,
+        system: tuple[Array, Array, Array, Array],
+        e: Array,
+        gradient: Array,
+        block: Array,
+    ) -> None:
+        """Enter pair k where it is closed; where it is open, its unknowns stand alone."""
+        model, pair = self.model, self.model.pairs[k]
+        nodal, own, right, corner = system
+        slots = pair.slots
+        for n in range(slots.start, slots.stop):
+            corner[n, n] = ~at.closed[k]
+        if not len(e):
+            return
+        dofs, F = model.dofs[:, e], at.force[k][:, which]
+        start = numbers.coordinates[model.element_nodes[e, 0], :, which].T + at.q[dofs[:2], which]
+        nodal[dofs[:2], which] -= F
+        node = self.node(numbers, at, k, which)
+        own[slots, which] = gradient[4:]
+        own[slots.start : slots.start + 2, which] -= start - node
+        columns = block[10:28].reshape(OWN, 6, -1)
+        columns[0, 0] -= 1
+        columns[1, 1] -= 1
+        equations = model.element_equations[:, e]
+        for c in range(OWN):
+            right[1 + pair.slot + c, equations, which] = columns[c]
+        corner[slots, slots, which] = block[28:].reshape(OWN, OWN, -1)
+        if pair.node >= 0:
+            dof = 3 * pair.node
+            nodal[dof : dof + 2, which] += F
+            for c in range(2):
+                right[1 + pair.slot + c, model.equation[dof + c], which] += 1.0
+
+    def _share(self, numbers: Numbers, at: Points, pairs: tuple[int, int], own: Array, corner: Array) -> None:
+        """Let two contacts feel each other's dent where they are on one element."""
+        together = at.closed[list(pairs)].all(axis=0) & (at.element[pairs[0]] == at.element[pairs[1]])
+        ordered = at.xi[pairs[0]] <= at.xi[pairs[1]]
+        for (one, two), where in ((pairs, ordered), (pairs[::-1], ~ordered)):
+            which = np.flatnonzero(together & where)
+            if not len(which):
+                continue
+            p = properties_of(numbers, at.element[one, which], which)
+            xi = (at.xi[one, which], at.xi[two, which])
+            gradient, block = mixed_contact.crossing(p, xi, at.force[one][:, which], at.force[two][:, which])
+            rows = np.r_[self.model.pairs[one].slots, self.model.pairs[two].slots]
+            own[rows[:, None], which] += gradient
+            corner[rows[:, None, None], rows[:, None], which] += block
+
+    def node(self, numbers: Numbers, at: Points, k: int, which: Array) -> Array:
+        """Positions of pair k's contacting node in some structures, shape (2, m)."""
+        pair = self.model.pairs[k]
+        if pair.pin is not None:
+            pin: Array = at.node[k][:, which]
+            return pin
+        dof = 3 * pair.node
+        position: Array = numbers.coordinates[pair.node][:, which] + at.q[dof : dof + 2][:, which]
+        return position
+
+    def solve(self, system: System) -> tuple[Array, Array, Array]:
+        """Newton's step of the equations and of the contact unknowns, and the sign of the determinant."""
+        model, count = self.model, system.nodal.shape[-1]
+        band = self.spread @ system.entries.reshape(-1, count)
+        right = system.right[:, : model.banded]
+        np.negative(system.nodal[model.free], out=right[0])
+        band = band.reshape(model.banded, -1, count)
+        return eliminate(band, self.last, right, system.corner, -system.own)
+
+
+def _everything(*sizes: int) -> list[Array]:
+    """All combinations of numbers below the sizes, flat."""
+    return [part.ravel() for part in np.indices(sizes)]
+
+
+def properties_of(numbers: Numbers, e: Array, which: Array) -> Properties:
+    """Constants of one element of each of some structures."""
+    return Properties(*(column[e, which] for column in numbers.properties))

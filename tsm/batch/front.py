@@ -1,0 +1,224 @@
+"""Where every structure of a batch stands: its iterate, its accepted configurations, its own step control."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.batch.equations import Equations, Points
+from tsm.batch.geometry import slide
+from tsm.batch.numbers import Numbers
+from tsm.elements.properties import Array
+from tsm.state import State, Touch
+from tsm.stepping import MEMORY
+
+
+class History(NamedTuple):
+    """The last accepted configurations, in a ring.
+
+    Attributes
+    ----------
+    entered : ndarray of int, shape (N,)
+        How many were entered; the newest is at ``(entered - 1) % MEMORY``.
+    t : ndarray, shape (MEMORY, N)
+        Load parameters.
+    q, element, xi, force : ndarray, shape (MEMORY, ..., N)
+        As in `Points`.
+    """
+
+    entered: Array
+    t: Array
+    q: Array
+    element: Array
+    xi: Array
+    force: Array
+
+
+class Front(NamedTuple):
+    """N structures under way; all arrays are changed in place.
+
+    Attributes
+    ----------
+    structure : ndarray of int, shape (N,)
+        Which they are.
+    numbers : Numbers
+        Their constants.
+    at : Points
+        Iterates.
+    predicted : ndarray, shape (dofs, N)
+        Displacements that the iterations began with.
+    goal : ndarray, shape (N,)
+        Load parameters of the iterates.
+    normal, arc : ndarray, shape (p, N)
+        Contact forces and arc positions of the last accepted configurations.
+    armed : ndarray of bool, shape (p, N)
+        Open pairs that may close.
+    history : History
+        Accepted configurations.
+    target : ndarray of int, shape (N,)
+        Next prescribed load parameters.
+    step : ndarray, shape (N,)
+        Longest next steps.
+    iteration, spent : ndarray of int, shape (N,)
+        Iterations of this step, and those before it since the last prescribed load parameter.
+    residual : ndarray, shape (N,)
+        Norms before the last iteration.
+    orientation, first, last : ndarray, shape (N,)
+        Signs of the determinants of the tangent: of the last accepted step, first and last of this one; 0 where there is none.
+    """
+
+    structure: Array
+    numbers: Numbers
+    at: Points
+    predicted: Array
+    goal: Array
+    normal: Array
+    arc: Array
+    armed: Array
+    history: History
+    target: Array
+    step: Array
+    iteration: Array
+    spent: Array
+    residual: Array
+    orientation: Array
+    first: Array
+    last: Array
+
+
+def undeformed(equations: Equations, numbers: Numbers, structure: Array) -> Front:
+    """Structures at rest, their pins at the start of their paths, all contacts open."""
+    model, count = equations.model, len(structure)
+    pairs, everywhere = len(model.pairs), np.arange(count)
+    zero = np.zeros(count)
+    owners = np.array([pair.target.first for pair in model.pairs])
+    node = np.stack([numbers.paths.position(k, zero, everywhere) for k in range(pairs)])
+    at = Points(
+        q=np.zeros((model.dof_count, count)),
+        closed=np.zeros((pairs, count), dtype=bool),
+        element=np.repeat(owners[:, None], count, axis=1),
+        xi=np.zeros((pairs, count)),
+        force=np.zeros((pairs, 2, count)),
+        node=node,
+    )
+    history = History(
+        entered=np.zeros(count, dtype=int),
+        t=np.zeros((MEMORY, count)),
+        q=np.zeros((MEMORY, *at.q.shape)),
+        element=np.zeros((MEMORY, pairs, count), dtype=int),
+        xi=np.zeros((MEMORY, pairs, count)),
+        force=np.zeros((MEMORY, pairs, 2, count)),
+    )
+    return Front(
+        structure=structure,
+        numbers=numbers,
+        at=at,
+        predicted=np.zeros_like(at.q),
+        goal=zero.copy(),
+        normal=np.zeros((pairs, count)),
+        arc=np.full((pairs, count), np.nan),
+        armed=np.ones((pairs, count), dtype=bool),
+        history=history,
+        target=np.zeros(count, dtype=int),
+        step=np.ones(count),
+        iteration=np.zeros(count, dtype=int),
+        spent=np.zeros(count, dtype=int),
+        residual=np.full(count, np.inf),
+        orientation=zero.copy(),
+        first=zero.copy(),
+        last=zero.copy(),
+    )
+
+
+def newest(history: History, which: Array) -> Array:
+    """Places of the newest configurations of some structures in the ring."""
+    place: Array = (history.entered[which] - 1) % MEMORY
+    return place
+
+
+def remember(front: Front, which: Array) -> None:
+    """Enter the iterates of some structures into their histories."""
+    history, at = front.history, front.at
+    history.entered[which] += 1
+    place = newest(history, which)
+    history.t[place, which] = front.goal[which]
+    for ring, now in (
+        (history.q, at.q),
+        (history.element, at.element),
+        (history.xi, at.xi),
+        (history.force, at.force),
+    ):
+        ring[place, ..., which] = np.moveaxis(now[..., which], -1, 0)
+
+
+def replace_history(front: Front, n: int, states: list[State]) -> None:
+    """Take over the configurations that structure n was brought through alone, the last of them as its iterate."""
+    history, at = front.history, front.at
+    history.entered[n] = 0
+    for state in states[-MEMORY:]:
+        at.q[:, n] = state.q
+        for k, touch in enumerate(state.touches):
+            at.closed[k, n] = touch is not None
+            if touch is not None:
+                at.element[k, n], at.xi[k, n], at.force[k, :, n] = touch.element, touch.xi, touch.force
+        front.armed[:, n] = state.armed
+        front.goal[n] = state.load_parameter
+        remember(front, np.array([n]))
+
+
+def states_of(front: Front, n: int) -> list[State]:
+    """Accepted configurations of structure n, oldest first."""
+    history = front.history
+    count = int(history.entered[n])
+    states = []
+    for place in (age % MEMORY for age in range(max(count - MEMORY, 0), count)):
+        touches = tuple(
+            Touch(element=int(e), xi=float(xi), force=(float(F[0]), float(F[1]))) if closed else None
+            for closed, e, xi, F in zip(
+                front.at.closed[:, n],
+                history.element[place, :, n],
+                history.xi[place, :, n],
+                history.force[place, :, :, n],
+                strict=True,
+            )
+        )
+        states.append(
+            State(
+                load_parameter=float(history.t[place, n]),
+                q=history.q[place, :, n].copy(),
+                touches=touches,
+                armed=tuple(front.armed[:, n].tolist()),
+            )
+        )
+    return states
+
+
+def predict(equations: Equations, front: Front, which: Array) -> None:
+    """Set the iterates of some structures to the polynomials through their accepted configurations."""
+    history, at, numbers = front.history, front.at, front.numbers
+    weights = _weights(history, front.goal[which], which)
+    q = sum(weights[n] * history.q[n][:, which] for n in range(MEMORY))
+    at.q[:, which] = front.predicted[:, which] = q
+    l0 = numbers.properties.l0
+    place = newest(history, which)
+    for k, pair in enumerate(equations.model.pairs):
+        elements = history.element[:, k, which]
+        arcs = numbers.arc[elements, which] + history.xi[:, k, which] * l0[elements, which]
+        last = history.element[place, k, which]
+        xi = ((weights * arcs).sum(axis=0) - numbers.arc[last, which]) / l0[last, which]
+        at.element[k, which], at.xi[k, which] = slide(l0, pair.target, last, xi, which)
+        at.force[k][:, which] = (weights[:, None] * history.force[:, k][..., which]).sum(axis=0)
+        if pair.pin is not None:
+            at.node[k][:, which] = numbers.paths.position(k, front.goal[which], which)
+
+
+def _weights(history: History, t: Array, which: Array) -> Array:
+    """Weights of the polynomials at t, shape (MEMORY, m), 0 for places that are not filled."""
+    times, filled = history.t[:, which], history.entered[which] > np.arange(MEMORY)[:, None]
+    weights = np.where(filled, 1.0, 0.0)
+    for n in range(MEMORY):
+        for k in range(MEMORY):
+            if k != n:
+                weights[n] *= np.where(filled[k] & filled[n], (t - times[k]) / (times[n] - times[k]), 1.0)
+    return weights
