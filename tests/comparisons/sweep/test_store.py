@@ -5,6 +5,7 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from time import time
@@ -33,10 +34,9 @@ def measured() -> Measurement:
 
 def intact(path: Path) -> int:
     """Check the whole file; return its number of results."""
-    with sqlite3.connect(path) as connection:
+    with closing(sqlite3.connect(path)) as connection:
         assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         (count,) = connection.execute("SELECT count(*) FROM result").fetchone()
-    connection.close()
     return int(count)
 
 
