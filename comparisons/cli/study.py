@@ -1,40 +1,107 @@
-"""``crossval study``: one question to the solid model."""
+"""``crossval study``: one question to the solid model, or a study file."""
 
+import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.outcome import DONE, EPILOG, report
+from comparisons.cli import values
+from comparisons.cli.outcome import DONE, STOPPED, report
 from comparisons.files import writable_folder
+from comparisons.scene.tables import InputError
 from comparisons.studies.questions import QUESTIONS
 
 if TYPE_CHECKING:
     import argparse
 
     from comparisons.cli.outcome import Commands
+    from comparisons.sweep.run import Tally
+    from comparisons.sweep.workers import Workers
+
+STUDY_EPILOG = """exit status: 0 every case has a result (a solution that stopped is one, and is named), 2 bad input or a place
+that cannot be used, 3 cases are left without a result, 130 interrupted; what is done is kept, and the same command goes on from there"""
 
 
 def add_to(commands: "Commands") -> None:
     """Add the command to the parser."""
+    asked = "; ".join(f"{name}: {what}" for name, what in QUESTIONS.items())
     study = commands.add_parser(
         "study",
-        help="measure how far the solid can be trusted",
-        description="; ".join(f"{name}: {what}" for name, what in QUESTIONS.items()),
-        epilog=EPILOG,
+        help="run the cases of a study file, or measure how far the solid can be trusted",
+        description=f"A study file states a scene and what is varied in it. The questions are: {asked}.",
+        epilog=STUDY_EPILOG,
     )
-    study.add_argument("question", metavar="QUESTION", choices=tuple(QUESTIONS), help=", ".join(QUESTIONS))
+    study.add_argument("study", metavar="FILE|QUESTION", help=f"a TOML file, or {', '.join(QUESTIONS)}")
     study.add_argument(
-        "--out", type=Path, default=Path("out/study"), metavar="DIR", help="folder of the table (out/study)"
+        "--out",
+        type=Path,
+        default=Path("out/study"),
+        metavar="DIR",
+        help="folder of the table, or of the results NAME.sqlite (out/study)",
     )
+    study.add_argument("--results", type=Path, metavar="FILE", help="study file: the results file")
+    where = study.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers", type=values.count, metavar="N", help="study file: processes (one for each core)"
+    )
+    where.add_argument("--cluster", metavar="ADDRESS", help="study file: the scheduler of a Dask cluster")
+    study.add_argument("--quiet", action="store_true", help="study file: no progress bar")
     study.set_defaults(run=run)
 
 
 def run(given: "argparse.Namespace") -> int:
-    """Answer, print the table and write it."""
-    writable_folder(given.out)
-    from comparisons.studies.output import write_rows
-    from comparisons.studies.solid_accuracy import STUDIES, tabulated
+    """Answer the question, or run the study file."""
+    name: str = given.study
+    if name in QUESTIONS:
+        return _answer(given)
+    if name.endswith(".toml") or os.sep in name:
+        return _run_file(given)
+    raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(QUESTIONS)}")
 
-    rows = STUDIES[given.question](report)
+
+def _answer(given: "argparse.Namespace") -> int:
+    for option in ("results", "workers", "cluster"):
+        if getattr(given, option) is not None:
+            raise InputError(f"--{option}", f"belongs to a study file, {given.study} is a question")
+    writable_folder(given.out)
+    from comparisons.studies.output import tabulated, write_rows
+    from comparisons.studies.solid_accuracy import STUDIES
+
+    rows = STUDIES[given.study](report)
     print(tabulated(rows))
-    print("file:", write_rows(given.out / f"{given.question}.csv", rows))
+    print("file:", write_rows(given.out / f"{given.study}.csv", rows))
     return DONE
+
+
+def _run_file(given: "argparse.Namespace") -> int:
+    from comparisons.sweep.progress import line_ended, shown
+    from comparisons.sweep.run import run as run_cases
+    from comparisons.sweep.store import Store
+    from comparisons.sweep.study import read_study
+
+    study = read_study(Path(given.study))
+    file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
+    where = workers(given)
+    with line_ended(), Store(file) as store:
+        tally = run_cases(study.cases, store, where, repeats=study.repeats, progress=shown(quiet=given.quiet))
+    return _concluded(study.name, tally, file)
+
+
+def workers(given: "argparse.Namespace") -> "Workers":
+    """Return where the cases run: ``--cluster``, or ``--workers`` processes."""
+    from comparisons.sweep.workers import cluster, local
+
+    return local(given.workers) if given.cluster is None else cluster(given.cluster)
+
+
+def _concluded(name: str, tally: "Tally", file: Path) -> int:
+    """Say how the cases ended; a case without a result makes the exit status."""
+    from comparisons.sweep.store import UNSETTLED
+
+    ends = ", ".join(f"{status} {number}" for status, number in tally.statuses.items())
+    print(f"{name}: {tally.done} cases: {ends}")
+    print(f"file: {file}", f"crossval results {file} shows them", sep="\n")
+    left = sum(tally.statuses.get(status, 0) for status in UNSETTLED)
+    if left:
+        print(f"crossval: {left} cases have no result; the same command tries them again", file=sys.stderr)
+    return STOPPED if left else DONE

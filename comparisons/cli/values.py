@@ -1,32 +1,34 @@
-"""Values of the arguments, checked where they are read."""
+"""Values of the arguments, checked by the rules of the scene where they are read."""
 
 import argparse
+from collections.abc import Callable
+from typing import TypeVar
 
-from comparisons.scene.rules import RuleError, whole_number
+from comparisons.scene import rules
+from comparisons.scene.rules import RuleError
+
+Value = TypeVar("Value")
 
 
 def count(text: str) -> int:
     """Read a whole number above zero."""
-    try:
-        return whole_number(int(text))
-    except RuleError as error:
-        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
+    return _checked(lambda value: rules.whole_number(int(value)), text)
 
 
 def part(text: str) -> float:
     """Read a number between 0 and 1."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 < value < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must lie between 0 and 1")
-    return value
+    return _checked(lambda value: rules.fraction(float(value)), text)
 
 
 def mesh(text: str) -> tuple[int, int]:
     """Read the numbers of elements along and across, as ``50x2``."""
-    along, separator, across = text.partition("x")
-    if not separator:
-        raise argparse.ArgumentTypeError(f"{text}: must be NXxNY, as 50x2")
-    return count(along), count(across)
+    return _checked(rules.mesh_text, text)
+
+
+def _checked(read: Callable[[str], Value], text: str) -> Value:
+    try:
+        return read(text)
+    except RuleError as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}") from None
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text}: must be a number") from None

@@ -105,6 +105,14 @@ def positive(value: object) -> float:
     return result
 
 
+def fraction(value: object) -> float:
+    """Accept a number between zero and one."""
+    result = number(value)
+    if not 0.0 < result < 1.0:
+        raise RuleError("must lie between 0 and 1")
+    return result
+
+
 def poissons_ratio(value: object) -> float:
     """Accept Poisson's ratio of an isotropic solid, between -1 and 1/2."""
     result = number(value)
@@ -144,6 +152,14 @@ def mesh(value: object) -> tuple[int, int]:
         raise RuleError("must be [elements along, elements across]")
     along, across = (whole_number(item, 100_000) for item in items)
     return along, across
+
+
+def mesh_text(value: object) -> tuple[int, int]:
+    """Accept the numbers of elements along and across as ``50x2``."""
+    along, separator, across = value.partition("x") if isinstance(value, str) else ("", "", "")
+    if not separator or not (along + across).isdecimal():
+        raise RuleError("must be NXxNY, as 50x2")
+    return mesh((int(along), int(across)))
 
 
 def point(value: object) -> Point:

@@ -20,14 +20,33 @@ Report = Callable[[str], None]
 """Told of progress."""
 
 
-def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
-    """Write rows of equal keys as CSV; a number that is not finite is an empty cell."""
+def csv_text(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return rows of equal keys as CSV; a number that is not finite is an empty cell."""
     text = io.StringIO()
     writer = csv.DictWriter(text, rows[0], lineterminator="\n")
     writer.writeheader()
     writer.writerows({key: plain(value) for key, value in row.items()} for row in rows)
-    write_text(path, text.getvalue())
+    return text.getvalue()
+
+
+def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
+    """Write rows as `csv_text`."""
+    write_text(path, csv_text(rows))
     return path
+
+
+def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return rows of equal keys as aligned text; a number in three digits, what is not there as a dash."""
+    cells = [list(rows[0]), *([_cell(value) for value in row.values()] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return "\n".join(
+        "  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)).rstrip()
+        for line in cells
+    )
+
+
+def _cell(value: Any) -> str:
+    return "-" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
 
 
 def write_numbers(path: Path, numbers: Mapping[str, Any]) -> Path:

@@ -137,20 +137,6 @@ STUDIES: dict[str, Callable[[Report], list[Row]]] = {
 """The studies by name; `comparisons.studies.questions` says what they answer."""
 
 
-def tabulated(rows: list[Row]) -> str:
-    """Return rows as aligned text; a number in three digits, what is not there as a dash."""
-    cells = [list(rows[0]), *([_cell(value) for value in row.values()] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    return "\n".join(
-        "  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)).rstrip()
-        for line in cells
-    )
-
-
-def _cell(value: Any) -> str:
-    return "-" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
-
-
 def _slender(slenderness: float, nu: float) -> Scene:
     """Return the KS cantilever with another height over length and Poisson's ratio."""
     scene = load_scene("ks-cantilever")

@@ -103,7 +103,7 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
     try:
         (response, first), peak = with_peak_memory(lambda: _timed(case))
     except ModelError as error:
-        return _refused(str(error))
+        return unmeasured(REFUSED, str(error))
     seconds = [first] if first > SLOW else [_timed(case)[1] for _ in range(repeats)]
     return Measurement(
         status=response.status,
@@ -160,13 +160,14 @@ def _axis(response: Response, beam: str, k: int) -> Array:
     return np.asarray(CubicSpline(arc, line)(stations))
 
 
-def _refused(message: str) -> Measurement:
+def unmeasured(status: str, message: str) -> Measurement:
+    """Return the measurement of a case that gave neither answer nor cost, and why."""
     empty: dict[str, Any] = {
         **dict.fromkeys(("repeats", "iterations", "cutbacks", "unknowns", "peak_memory"), 0),
         **{item.name: np.empty(0) for item in fields(Measurement) if item.type == Array},
         **{item.name: {} for item in fields(Measurement) if item.type == dict[str, Array]},
     }
-    return Measurement(status=REFUSED, message=message, completed=False, seconds=np.nan, **empty)
+    return Measurement(status=status, message=message, completed=False, seconds=np.nan, **empty)
 
 
 def _restored(kind: Any, value: Any) -> Any:

@@ -1,0 +1,71 @@
+"""The values that a key of a study takes: one, a list, or a range."""
+
+import math
+from typing import Any
+
+from comparisons.scene import rules
+from comparisons.scene.rules import FieldError, RuleError
+from comparisons.scene.tables import check_keys
+
+LARGEST_COUNT = 10_000
+SPACING = rules.choice("linear", "log")
+
+
+def values(key: str, given: object) -> tuple[object, ...]:
+    """Return the values that `given` states for `key`: itself, the items of a list, or a range.
+
+    A range is ``{ from = 1, to = 100, count = 3, spacing = "log" }``, with both ends; ``"linear"`` is the default spacing. Between
+    whole ends, a value that is whole but for round-off is made so.
+
+    Raises
+    ------
+    FieldError
+        If a list is empty, or a range is not one.
+
+    Examples
+    --------
+    >>> values("elements", {"from": 5, "to": 40, "count": 4, "spacing": "log"})
+    (5, 10, 20, 40)
+    """
+    if isinstance(given, dict):
+        try:
+            return _range(given)
+        except FieldError as error:
+            raise error.within(f"{key}.") from None
+    if isinstance(given, list):
+        if not given:
+            raise FieldError(key, given, "must not be empty")
+        return tuple(given)
+    return (given,)
+
+
+def _range(given: dict[str, Any]) -> tuple[float, ...]:
+    check_keys(given, ("from", "to", "count", "spacing"), required=("from", "to", "count"))
+    checks: dict[str, rules.Rule] = {
+        "from": rules.number,
+        "to": rules.number,
+        "count": lambda value: rules.whole_number(value, LARGEST_COUNT),
+        "spacing": SPACING,
+    }
+    for name, value in given.items():
+        try:
+            checks[name](value)
+        except RuleError as error:
+            raise FieldError(name, value, str(error)) from None
+    first, last, count = given["from"], given["to"], given["count"]
+    logarithmic = given.get("spacing") == "log"
+    if count < 2:
+        raise FieldError("count", count, "must be at least 2, a range has two ends")
+    if first == last:
+        raise FieldError("to", last, "must differ from the range's start")
+    if logarithmic and min(first, last) <= 0:
+        name = "from" if first <= 0 else "to"
+        raise FieldError(name, given[name], 'must be positive in a range of spacing = "log"')
+    inner = (_between(first, last, k / (count - 1), logarithmic) for k in range(1, count - 1))
+    return (first, *inner, last)
+
+
+def _between(first: float, last: float, part: float, logarithmic: bool) -> float:
+    value = first * (last / first) ** part if logarithmic else first + (last - first) * part
+    whole = isinstance(first, int) and isinstance(last, int)
+    return round(value) if whole and math.isclose(value, round(value), rel_tol=1e-12) else value

@@ -1,0 +1,88 @@
+"""The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
+
+import json
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from comparisons.scene import Scene
+from comparisons.scene.read import LISTS
+from comparisons.scene.rules import FieldError
+
+Path = tuple[str, ...]
+"""Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
+
+OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
+"""The keys of the table ``[scene]``."""
+
+
+def record_name(kind: str, record: Mapping[str, Any]) -> str:
+    """Return the name of a record of a scene: its own, a contact's pair, the node of a support or load."""
+    if kind == "contact":
+        return f"{record['node']}->{record['beam']}"
+    return f"{record['beam']}.{record['end']}" if kind in ("support", "load") else str(record["name"])
+
+
+def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
+    """Return `scene` with settings changed; one for a record by name goes before one for every record of its kind.
+
+    Raises
+    ------
+    FieldError
+        If a rule of the scene is broken; its key is the setting's.
+    """
+    own: dict[str, Any] = {path[1]: value for path, value in changes.items() if path[0] == "scene"}
+    for kind in LISTS:
+        varied = {path: value for path, value in changes.items() if path[0] == kind}
+        if varied:
+            records = getattr(scene, f"{kind}s")
+            own[f"{kind}s"] = tuple(_changed_record(kind, record, varied) for record in records)
+    try:
+        return replace(scene, **own)
+    except FieldError as error:
+        raise (error.within("scene.") if error.key in OWN else error) from None
+
+
+def _changed_record(kind: str, record: Any, changes: Mapping[Path, object]) -> Any:
+    name = record_name(kind, vars(record))
+    own = {path: changes[path] for path in sorted(changes, key=len) if len(path) == 2 or path[1] == name}
+    places = {path[-1]: ".".join(path[:-1]) for path in own}
+    try:
+        return replace(record, **{path[-1]: value for path, value in own.items()})
+    except FieldError as error:
+        raise error.within(f"{places.get(error.key, kind)}.") from None
+
+
+def settings(definition: str, options: str) -> dict[str, object]:
+    """Return the settings of a recorded case, by name; a record that is the only one of its kind is not named.
+
+    Parameters
+    ----------
+    definition : str
+        The scene as TOML.
+    options : str
+        The options given, as JSON.
+    """
+    tables = tomllib.loads(definition)
+    found: dict[str, object] = dict(json.loads(options))
+    found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
+    for kind in LISTS:
+        records = tables.get(kind, [])
+        for record in records:
+            place = kind if len(records) == 1 else f"{kind}.{record_name(kind, record)}"
+            found |= {f"{place}.{key}": value for key, value in record.items()}
+    return found
+
+
+def in_order(values: Iterable[object]) -> tuple[Any, ...]:
+    """Return a key that sorts values of any kind: what is not there first, numbers by size, lists by their items."""
+    return tuple(_rank(value) for value in values)
+
+
+def _rank(value: object) -> tuple[Any, ...]:
+    if value is None:
+        return (0,)
+    if isinstance(value, int | float):
+        return (1, value)
+    return (3, in_order(value)) if isinstance(value, list) else (2, str(value))

@@ -1,0 +1,164 @@
+"""Where cases run: processes of this machine, or a Dask cluster."""
+
+import logging
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING
+
+from comparisons.scene.tables import InputError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""What the numerical libraries of a worker read when they are loaded: seconds of cases are those of one thread."""
+CLUSTER_PATIENCE = 10.0
+"""Seconds to wait for the cluster."""
+
+
+class WorkersError(InputError):
+    """Workers that cannot be had, or are gone: one line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Workers:
+    """Where cases run.
+
+    Parameters
+    ----------
+    width : int
+        Cases under way at the same time.
+    start : callable
+        ``start()``: a context manager that gives a `concurrent.futures.Executor` and, on leaving after an exception, ends what
+        runs. It is called again after the executor broke.
+    lost : tuple of exception types
+        What a future raises whose worker died for good, while the executor lives on.
+    """
+
+    width: int
+    start: Callable[[], AbstractContextManager[Executor]]
+    lost: tuple[type[BaseException], ...] = ()
+
+
+def local(count: int | None = None) -> Workers:
+    """Return `count` processes of this machine, by default one for each processor core."""
+    width = count or os.cpu_count() or 1
+    return Workers(width=width, start=lambda: _processes(width))
+
+
+@contextmanager
+def _processes(count: int) -> Iterator[Executor]:
+    context = get_context("spawn")
+    # nothing is sent: the workers see the pipe close when this process closes it or dies
+    watched, held = context.Pipe(duplex=False)
+    with _environment(ONE_THREAD):
+        executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
+        try:
+            yield executor
+            executor.shutdown()
+        finally:
+            held.close()
+            executor.shutdown(cancel_futures=True)
+            watched.close()
+
+
+def _end_with(parent: Connection) -> None:
+    """Let this worker end when `parent` closes, in the middle of a case if need be."""
+
+    def watch() -> None:
+        try:
+            parent.recv()
+        except (EOFError, OSError):
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+@contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Hold back Ctrl-C; processes started meanwhile never see it, and leave its handling to this one."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def cluster(address: str) -> Workers:
+    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``.
+
+    They need this package, in the same version. The scheduler itself gives the cases of a worker that died to another one, and
+    gives a case up after `distributed.scheduler.allowed-failures` deaths.
+
+    Raises
+    ------
+    WorkersError
+        If the extra ``cluster`` is not installed or the scheduler does not answer.
+    """
+    try:
+        from distributed import KilledWorker
+    except ImportError:
+        raise WorkersError(f"cluster {address}", "needs distributed: install tsm-crossval[cluster]") from None
+    with _client(address) as client:
+        cores = sum(client.ncores().values())
+    return Workers(width=2 * max(cores, 4), start=lambda: _cluster(address), lost=(KilledWorker,))
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    with _client(address) as client:
+        executor: Executor = client.get_executor(retries=1, pure=False)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(wait=False)
+
+
+@contextmanager
+def _client(address: str) -> "Iterator[Client]":
+    from distributed import Client
+
+    with _silent("distributed", "distributed.client"):
+        try:
+            client = Client(address, timeout=CLUSTER_PATIENCE)
+        except (OSError, ValueError) as error:
+            raise WorkersError(f"cluster {address}", str(error)) from None
+        with client:
+            yield client
+
+
+@contextmanager
+def _silent(*loggers: str) -> Iterator[None]:
+    """Keep loggers from printing tracebacks of what is an exception here anyway."""
+    before = {name: logging.getLogger(name).level for name in loggers}
+    for name in loggers:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for name, level in before.items():
+            logging.getLogger(name).setLevel(level)
