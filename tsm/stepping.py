@@ -353,7 +353,7 @@ class Stepper:
         self.iterations += equilibrium.iterations
         found = equilibrium.status is Status.CONVERGED
         if jump and not (
-            found and self._apart(state, equilibrium.state) <= _FAR and not self._met(equilibrium)
+            found and self._apart(state, equilibrium.state) <= FAR and not self._met(equilibrium)
         ):
             return self._fall(state)
         self.failure = equilibrium.status
