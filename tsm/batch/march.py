@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tsm.batch.checks import balanced, eventless, follows, largest_step, norm
-from tsm.batch.equations import Equations, System
+from tsm.batch.equations import OWN, Equations, System
 from tsm.batch.front import (
     Front,
     newest,
@@ -158,7 +158,7 @@ class March:
             self._move(front, system)
         front.residual[:] = residual
         front.iteration[:] += 1
-        self._depart(front, np.flatnonzero(ended & (front.target < len(self.targets))))
+        self._depart(front, np.flatnonzero(ended))
 
     def _move(self, front: Front, system: System) -> None:
         """Newton's steps, each shortened as by `Newton.update`."""
@@ -166,11 +166,11 @@ class March:
         dq, dz, sign = self.equations.solve(system)
         longest = np.maximum(
             largest_step(self.equations, dq, numbers.length),
-            np.abs(dz[2::3]).max(axis=0) / (0.3 * numbers.length),
+            np.abs(dz[2::OWN]).max(axis=0) / (0.3 * numbers.length),
         )
         factor = np.where(longest > LONGEST, LONGEST / longest, 1.0)
         at.q[self.model.free] += factor * dq
-        own = (factor * dz).reshape(-1, 3, len(factor))
+        own = (factor * dz).reshape(-1, OWN, len(factor))
         everywhere, l0 = np.arange(len(factor)), numbers.properties.l0
         at.force[:] += own[:, :2]
         for k, pair in enumerate(self.model.pairs):
@@ -262,7 +262,8 @@ class March:
         self._enter(front, which, reaction[:, None])
 
     def _depart(self, front: Front, which: Array) -> None:
-        """Set off for the next prescribed load parameters, as far as the steps go."""
+        """Set off for the next prescribed load parameters, as far as the steps go, where there is one."""
+        which = which[front.target[which] < len(self.targets)]
         if not len(which):
             return
         goal = self.targets[front.target[which]]
