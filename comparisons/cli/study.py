@@ -81,10 +81,9 @@ def _run_file(given: "argparse.Namespace") -> int:
 
     study = read_study(Path(given.study))
     file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
+    where = workers(given)
     with Store(file) as store:
-        tally = run_cases(
-            study.cases, store, workers(given), repeats=study.repeats, progress=shown(quiet=given.quiet)
-        )
+        tally = run_cases(study.cases, store, where, repeats=study.repeats, progress=shown(quiet=given.quiet))
     return _concluded(study.name, tally, file)
 
 

@@ -30,7 +30,7 @@ class Tally:
     statuses : dict of int
         Recorded cases by status.
     seconds, left : float
-        Time since the run began, and what is left of it at the pace so far; nan while there is no pace.
+        Time since the run began, and what is left at the pace so far; nan while there is no pace.
     """
 
     total: int
@@ -171,13 +171,14 @@ class _Sweep:
 
     def tally(self) -> Tally:
         seconds, pace = monotonic() - self.began, len(self.statuses) - self.before
+        left = len(self.cases) - len(self.statuses)
         return Tally(
             total=len(self.cases),
             done=len(self.statuses),
             failed=sum(status != COMPLETED for status in self.statuses.values()),
             statuses=dict(sorted(Counter(self.statuses.values()).items())),
             seconds=seconds,
-            left=seconds / pace * (len(self.cases) - len(self.statuses)) if pace else float("nan"),
+            left=seconds / pace * left if pace else float("nan") if left else 0.0,
         )
 
 

@@ -82,7 +82,8 @@ def open_for_reading(path: Path) -> sqlite3.Connection:
         raise OutputError(f"{path}: cannot be read: there is no such file")
     with database_errors(path, "cannot be read"):
         try:
-            connection, ours = _open(path, "mode=ro")
+            # a reader that could not write would leave the files of the WAL behind
+            connection, ours = _open(path, "mode=rw")
         except sqlite3.OperationalError:
             if path.with_name(f"{path.name}-wal").exists():
                 raise
