@@ -73,7 +73,7 @@ def _text(trade: "Trade") -> str:
     head = f"""{trade.scene.name}: {len(trade.points)} settings
 errors against: {trade.reference.sentence}
 the solid's own limit: {limit}
-seconds: from the scene to the checked answer, one thread, median of repeats after a warm-up
+seconds: processor time of one thread from the scene to the checked answer, median of repeats after a warm-up
 -: no setting does it; not told: the limit is known less well than that; [n]: n load steps"""
     fitted = orders_text(list(orders(trade, SHOWN)))
     title = f"orders of convergence and cost exponents, error of {SHOWN} over the path"

@@ -4,7 +4,7 @@ import json
 import statistics
 from dataclasses import dataclass, fields
 from importlib import import_module
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,9 @@ class Measurement:
     completed : bool
         Whether it is complete and checked.
     seconds : float
-        Median over `repeats` runs after a warm-up, from the scene to the checked response, imports left out; nan if refused.
+        Processor time from the scene to the checked response, imports left out, median over `repeats` runs after a warm-up; nan if there is
+        none. On one thread it is the time on the clock of a core that does nothing else, and it is not lengthened by what else
+        the machine does.
     repeats : int
         Runs timed: one, and no warm-up, where the first took more than 10 s.
     iterations, cutbacks, unknowns : int
@@ -120,9 +122,9 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
 
 
 def _timed(case: Case) -> tuple[Response, float]:
-    began = perf_counter()
+    began = process_time()
     response = solve(case.scene, case.model, case.options)
-    return response, perf_counter() - began
+    return response, process_time() - began
 
 
 def _histories(response: Response, case: Case) -> dict[str, Any]:

@@ -26,7 +26,7 @@ STYLES = {
 }
 FRONTS = {"tsm": "#009E73", "solid": "#56B4E9"}
 AXES = {
-    "seconds": "seconds, one thread, scene to checked answer",
+    "seconds": "processor seconds of one thread, scene to checked answer",
     "iterations": "Newton iterations of the whole path",
     "unknowns": "unknowns",
 }

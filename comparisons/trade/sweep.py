@@ -110,7 +110,7 @@ def write_trade(trade: Trade, folder: Path) -> list[Path]:
     tables: dict[str, list[Row]] = {
         "trade.csv": setting_rows(trade),
         "cheapest.csv": cheapest_rows(trade),
-        "orders.csv": [{"quantity": name, **row} for name, rows in numbers["orders"].items() for row in rows],
+        "orders.csv": [{"quantity": name, **row} for name, rows in fitted.items() for row in rows],
     }
     files = [write_rows(folder / name, rows) for name, rows in tables.items() if rows]
     files.append(write_numbers(folder / "trade.json", numbers))
