@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, report
 from comparisons.cli.study import workers
-from comparisons.files import writable_folder
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -33,7 +32,6 @@ def add_to(commands: "Commands") -> None:
     where.add_argument(
         "--workers",
         type=values.count,
-        default=1,
         metavar="N",
         help="processes (1: cases that run side by side slow each other down)",
     )
@@ -45,7 +43,8 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Measure, print the tables and name the files."""
     scene = load_scene(given.scene)
-    folder = writable_folder(given.out or Path("out/trade") / scene.name)
+    folder = given.out or Path("out/trade") / scene.name
+    given.workers = given.workers or 1
     from comparisons.sweep.progress import shown
     from comparisons.trade.references import NoReferenceError
     from comparisons.trade.sweep import trade_off
