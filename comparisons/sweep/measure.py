@@ -22,6 +22,8 @@ SLOW = 10.0
 """Seconds from which one run is both warm-up and measurement."""
 STATIONS = 101
 """Points of a deflected axis, at equal distances along the undeformed one."""
+TAILS = {"support_force": (2,), "other_end_force": (2,), "tip": (2,), "shape": (STATIONS, 2)}
+"""Shape of one row of the tables that are not of numbers, which an empty table has lost in JSON."""
 SHAPES_AT = (0.2, 0.4, 0.6, 0.8)
 """Load parameters, besides the last, whose axes are kept where the case has them."""
 LIBRARIES = {"tsm": ("tsm",), "solid": ("fem_reference", "skfem"), "rod": (), "elastica": ()}
@@ -90,7 +92,7 @@ class Measurement:
     def from_json(cls, text: str) -> "Measurement":
         """Return the measurement that `to_json` wrote, every number the same."""
         data = json.loads(text)
-        return cls(**{item.name: _restored(item.type, data[item.name]) for item in fields(cls)})
+        return cls(**{item.name: _restored(item.name, item.type, data[item.name]) for item in fields(cls)})
 
 
 def measure(case: Case, *, repeats: int = 3) -> Measurement:
@@ -172,10 +174,11 @@ def unmeasured(status: str, message: str) -> Measurement:
     return Measurement(status=status, message=message, completed=False, seconds=np.nan, **empty)
 
 
-def _restored(kind: Any, value: Any) -> Any:
-    """Return a value of JSON as a field of the type `kind` holds it."""
+def _restored(name: str, kind: Any, value: Any) -> Any:
+    """Return a value of JSON as the field `name` of the type `kind` holds it."""
     if kind == Array:
         return np.array(value, dtype=np.float64)
     if kind == dict[str, Array]:
-        return {name: np.array(table, dtype=np.float64) for name, table in value.items()}
+        shape = (-1, *TAILS.get(name, ()))
+        return {key: np.array(table, dtype=np.float64).reshape(shape) for key, table in value.items()}
     return np.nan if value is None else value

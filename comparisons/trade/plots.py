@@ -33,7 +33,7 @@ AXES = {
 APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 ALIKE = 1.2
-"""Errors within this factor of each other have one label."""
+"""Errors within this factor of each other have one label, that of the cheaper setting."""
 
 
 def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) -> None:
@@ -115,15 +115,24 @@ def _draw_front(axes: Any, trade: Trade, model: str, quantity: str, scope: str, 
         color=FRONTS[model], linewidth=1.6, drawstyle="steps-post", zorder=1,
     )  # fmt: skip
     low, high = np.log(axes.get_ylim())
-    last, named = -np.inf, 0.0
-    for one in sorted(points, key=lambda one: one.error):
+    last = -np.inf
+    for one in reversed(_distinct(points)):
         height = float((np.log(one.error) - low) / (high - low))
-        if model == "solid" and one.error > ALIKE * named:
-            last, named = max(height, last + APART), one.error
+        if model == "solid":
+            last = max(height, last + APART)
             _label_at_edge(axes, one, last)
-        elif model == "tsm" and height > last + APART:
+        elif height > last + APART:
             last = height
             _label_beside(axes, one)
+
+
+def _distinct(points: Sequence[OnFront]) -> list[OnFront]:
+    """Return the points of a front without those that are hardly better than a cheaper one."""
+    kept: list[OnFront] = []
+    for one in points:
+        if not kept or ALIKE * one.error < kept[-1].error:
+            kept.append(one)
+    return kept
 
 
 def _label_beside(axes: Any, one: OnFront) -> None:

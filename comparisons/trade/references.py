@@ -23,6 +23,9 @@ Errors = Mapping[str, Mapping[str, float]]
 """Numbers by scope and quantity."""
 Measured = Mapping[Case, Measurement]
 
+ROUND_OFF = 2.0**-52
+"""No answer is known better, even if another one is equal to it."""
+
 
 class NoReferenceError(ValueError):
     """No exact answer of the scene, and none to extrapolate it from: one line."""
@@ -109,8 +112,12 @@ def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: st
     found = answer(best)
     scale, end = scales(found, scene), end_state(found)
     apart = errors(answer(other), found, scale, end)
+    known = {
+        scope: {quantity: max(error, ROUND_OFF) for quantity, error in table.items()}
+        for scope, table in apart.items()
+    }
     sentence = told.format(apart["path"]["force"])
-    return Reference(answer=found, scale=scale, end=end, uncertainty=apart, name=name, sentence=sentence)
+    return Reference(answer=found, scale=scale, end=end, uncertainty=known, name=name, sentence=sentence)
 
 
 def _of_mixed(scene: Scene, measured: Measured) -> Reference:
