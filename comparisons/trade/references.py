@@ -89,15 +89,7 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
     exact, finer = (measured[_exact(scene, elements)] for elements in (1, 2))
     rod = measured.get(Case(scene=scene, model="rod"))
     if rod is not None and rod.completed:
-        told = "the exact Reissner rod, with the beams' stretch and shear, which the elastica leaves out"
-        independent = (
-            "TSM exact, which shares nothing with it, agrees within {:.1e} of the largest force"
-            if exact.completed
-            else ""
-        )
-        return _by_difference(
-            scene, rod, exact if exact.completed else rod, "exact rod", f"{told}; {independent}"
-        )
+        return _rod(scene, rod, exact)
     if exact.completed and finer.completed:
         told = (
             "TSM exact elements, two a beam: they solve the rod's own equations but are not independent of the other TSM "
@@ -105,6 +97,16 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
         )
         return _by_difference(scene, finer, exact, "TSM exact, 2 elements", told)
     return _of_mixed(scene, measured)
+
+
+def _rod(scene: Scene, rod: Measurement, exact: Measurement) -> Reference:
+    confirmed = (
+        "TSM exact, which shares nothing with it, agrees within {:.1e} of the largest force"
+        if exact.completed
+        else "TSM exact, which would confirm it, did not complete"
+    )
+    told = f"the exact Reissner rod, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
+    return _by_difference(scene, rod, exact if exact.completed else rod, "exact rod", told)
 
 
 def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: str, told: str) -> Reference:
@@ -122,24 +124,15 @@ def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: st
 
 def _of_mixed(scene: Scene, measured: Measured) -> Reference:
     sample = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=1))
-    finest = [case for case in refined(sample, measured) if measured[case].completed]
+    completed = [case for case in refined(sample, measured) if measured[case].completed]
     # a constant ratio of refinement: every mesh has twice the elements of the one before
-    chain = [
-        case
-        for case in finest
-        if resolution(case) * 2 ** round(_halvings(finest[-1], case)) == resolution(finest[-1])
-    ]
+    halved = {resolution(completed[-1]) / 2**k for k in range(3)} if completed else set()
+    chain = [case for case in completed if resolution(case) in halved]
     if len(chain) < 3:
         raise NoReferenceError(
             f"{scene.name}: no exact answer and fewer than three `mixed` solutions to extrapolate one from"
         )
-    return _limit(scene, measured, chain[-3:], "TSM mixed, extrapolated")
-
-
-def _halvings(fine: Case, coarse: Case) -> float:
-    from math import log2
-
-    return log2(resolution(fine) / resolution(coarse))
+    return _limit(scene, measured, chain, "TSM mixed, extrapolated")
 
 
 def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:
