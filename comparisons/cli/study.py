@@ -74,7 +74,7 @@ def _answer(given: "argparse.Namespace") -> int:
 
 
 def _run_file(given: "argparse.Namespace") -> int:
-    from comparisons.sweep.progress import shown
+    from comparisons.sweep.progress import line_ended, shown
     from comparisons.sweep.run import run as run_cases
     from comparisons.sweep.store import Store
     from comparisons.sweep.study import read_study
@@ -82,7 +82,7 @@ def _run_file(given: "argparse.Namespace") -> int:
     study = read_study(Path(given.study))
     file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
     where = workers(given)
-    with Store(file) as store:
+    with line_ended(), Store(file) as store:
         tally = run_cases(study.cases, store, where, repeats=study.repeats, progress=shown(quiet=given.quiet))
     return _concluded(study.name, tally, file)
 

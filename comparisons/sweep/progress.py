@@ -2,6 +2,8 @@
 
 import math
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
 from comparisons.sweep.run import Progress, Tally
@@ -16,6 +18,18 @@ def shown(stream: TextIO | None = None, *, quiet: bool = False) -> Progress:
     """Return what shows progress on `stream`, standard error if not given."""
     stream = stream or sys.stderr
     return _bar(stream) if stream.isatty() and not quiet else _milestones(stream)
+
+
+@contextmanager
+def line_ended(stream: TextIO | None = None) -> Iterator[None]:
+    """End the line of a bar that an exception cuts short, for the message that follows."""
+    stream = stream or sys.stderr
+    try:
+        yield
+    except BaseException:
+        if stream.isatty():
+            stream.write("\n")
+        raise
 
 
 def line(tally: Tally) -> str:

@@ -94,6 +94,7 @@ class _Sweep:
         self.cases, self.store, self.repeats, self.progress = cases, store, repeats, progress
         self.again = frozenset(key for key in cases if recorded.get(key) in UNSETTLED)
         self.statuses = {key: recorded[key] for key in cases if key in recorded and key not in self.again}
+        self.counts = Counter(self.statuses.values())
         self.open = deque(key for key in cases if key not in self.statuses)
         self.suspects: deque[str] = deque()
         self.flying: dict[str, Future[Measurement] | None] = {}
@@ -133,9 +134,8 @@ class _Sweep:
         for key in (*claim.mine, *claim.done, *claim.taken):
             self.open.remove(key)
         self.open.extend(claim.taken)
-        if claim.done:
-            self.statuses |= claim.done
-            self.progress(self.tally())
+        for key, status in claim.done.items():
+            self.note(key, status)
         return claim.mine
 
     def collect(self, lost: tuple[type[BaseException], ...]) -> None:
@@ -153,10 +153,14 @@ class _Sweep:
 
     def record(self, key: str, measurement: Measurement) -> None:
         self.store.record(key, self.cases[key], measurement)
-        self.statuses[key] = measurement.status
         self.flying.pop(key, None)
         if self.suspects and self.suspects[0] == key:
             self.suspects.popleft()
+        self.note(key, measurement.status)
+
+    def note(self, key: str, status: str) -> None:
+        self.statuses[key] = status
+        self.counts[status] += 1
         self.progress(self.tally())
 
     def suspect(self) -> None:
@@ -175,8 +179,8 @@ class _Sweep:
         return Tally(
             total=len(self.cases),
             done=len(self.statuses),
-            failed=sum(status != COMPLETED for status in self.statuses.values()),
-            statuses=dict(sorted(Counter(self.statuses.values()).items())),
+            failed=len(self.statuses) - self.counts[COMPLETED],
+            statuses=dict(sorted(self.counts.items())),
             seconds=seconds,
             left=seconds / pace * left if pace else float("nan") if left else 0.0,
         )

@@ -1,5 +1,6 @@
 """Where cases run: processes of this machine, or a Dask cluster."""
 
+import logging
 import os
 import signal
 import threading
@@ -141,9 +142,23 @@ def _cluster(address: str) -> Iterator[Executor]:
 def _client(address: str) -> "Iterator[Client]":
     from distributed import Client
 
+    with _silent("distributed", "distributed.client"):
+        try:
+            client = Client(address, timeout=CLUSTER_PATIENCE)
+        except (OSError, ValueError) as error:
+            raise WorkersError(f"cluster {address}", str(error)) from None
+        with client:
+            yield client
+
+
+@contextmanager
+def _silent(*loggers: str) -> Iterator[None]:
+    """Keep loggers from printing tracebacks of what is an exception here anyway."""
+    before = {name: logging.getLogger(name).level for name in loggers}
+    for name in loggers:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client = Client(address, timeout=CLUSTER_PATIENCE)
-    except (OSError, ValueError) as error:
-        raise WorkersError(f"cluster {address}", str(error)) from None
-    with client:
-        yield client
+        yield
+    finally:
+        for name, level in before.items():
+            logging.getLogger(name).setLevel(level)

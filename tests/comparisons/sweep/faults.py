@@ -1,12 +1,14 @@
-"""What may happen to a worker, in place of `comparisons.sweep.run.solve`."""
+"""What may happen to a worker, in place of `comparisons.sweep.run.solve`; and a writer among several."""
 
 import os
 import signal
 from pathlib import Path
 
+from comparisons.scene import load_scene
 from comparisons.sweep.case import Case
-from comparisons.sweep.measure import Measurement
+from comparisons.sweep.measure import Measurement, unmeasured
 from comparisons.sweep.run import solve
+from comparisons.sweep.store import Store
 
 FATAL = 3
 """Elements of the case that meets its fate."""
@@ -30,3 +32,18 @@ def raising(key: str, case: Case, repeats: int) -> Measurement:
     if case.options.elements == FATAL:
         raise ZeroDivisionError("a bug\nin two lines")
     return solve(key, case, repeats)
+
+
+def write_many(path: str, keys: int) -> list[str]:
+    """Claim and record cases, three at a time, until none is left; return those that this writer recorded."""
+    case = Case(scene=load_scene("ks-cantilever"), model="rod")
+    nothing = unmeasured("COMPLETED", "")
+    own: list[str] = []
+    with Store(Path(path)) as store:
+        while True:
+            claim = store.claim([f"{n:05}" for n in range(keys)], limit=3)
+            for key in claim.mine:
+                store.record(key, case, nothing)
+            own += claim.mine
+            if not claim.mine and not claim.taken:
+                return own

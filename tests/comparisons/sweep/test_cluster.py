@@ -2,7 +2,11 @@
 
 import os
 import signal
+import socket
+import subprocess
+import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -20,7 +24,7 @@ distributed = pytest.importorskip("distributed")
 @pytest.fixture
 def cluster() -> Iterator[Any]:
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as found:
         yield found
 
@@ -61,3 +65,48 @@ def test_no_cluster_there(
     assert status == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
+
+
+@contextmanager
+def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run a program of Dask beside the test."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", f"distributed.cli.dask_{program}", *arguments, "--dashboard-address", ":0"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    study, file, port = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite", free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
+
+        def kill() -> None:
+            wait_for(lambda: recorded(file) >= 3)
+            scheduler.kill()
+
+        with dask("worker", address, "--nthreads", "1", "--no-nanny"):
+            killer = Thread(target=kill)
+            killer.start()
+            status = main(["study", str(study), "--results", str(file), "--cluster", address])
+            killer.join()
+    assert status == 2
+    assert 3 <= recorded(file) < CASES
+    err = capfd.readouterr().err.splitlines()
+    assert err[-1] == "crossval: cluster: is gone; what has been finished is kept"
+    assert all("cases done" in line for line in err[:-1])

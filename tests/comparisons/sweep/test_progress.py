@@ -3,7 +3,9 @@
 import io
 import re
 
-from comparisons.sweep.progress import clock, line, shown
+import pytest
+
+from comparisons.sweep.progress import clock, line, line_ended, shown
 from comparisons.sweep.run import Tally
 
 
@@ -43,3 +45,10 @@ def test_lines_elsewhere_and_where_it_is_quiet() -> None:
         lines = stream.getvalue().splitlines()
         assert len(lines) == 11
         assert all(re.match(r"\d+ of 40 cases done, 0 failed", text) for text in lines)
+
+
+@pytest.mark.parametrize(("stream", "ended"), [(Terminal(), "\n"), (io.StringIO(), "")])
+def test_an_exception_ends_the_line_of_the_bar(stream: io.StringIO, ended: str) -> None:
+    with pytest.raises(KeyboardInterrupt), line_ended(stream):
+        raise KeyboardInterrupt
+    assert stream.getvalue() == ended

@@ -5,8 +5,10 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
 from time import time
 
@@ -21,6 +23,7 @@ from comparisons.sweep.measure import Measurement, measure, unmeasured
 from comparisons.sweep.owner import Owner
 from comparisons.sweep.results import read_results
 from comparisons.sweep.store import WORKER_LOST, Store
+from tests.comparisons.sweep.faults import write_many
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 CASE = Case(scene=KS, model="tsm", options=Options(elements=3))
@@ -60,6 +63,16 @@ def test_two_runs_never_hold_the_same_case(tmp_path: Path, measured: Measurement
         assert other.claim("a", limit=1, again=frozenset("a")).mine == ["a"]
         one.__exit__(None, None, None)
         assert other.claim("b", limit=1).mine == ["b"]
+
+
+@pytest.mark.slow
+def test_four_writers_share_the_cases(tmp_path: Path) -> None:
+    path, keys = tmp_path / "a.sqlite", 600
+    with ProcessPoolExecutor(4, mp_context=get_context("spawn")) as pool:
+        shares = list(pool.map(write_many, [str(path)] * 4, [keys] * 4))
+    assert sorted(key for share in shares for key in share) == [f"{n:05}" for n in range(keys)]
+    assert sum(bool(share) for share in shares) > 1, "one writer was alone"
+    assert intact(path) == keys
 
 
 def dead() -> int:

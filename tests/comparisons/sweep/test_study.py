@@ -1,9 +1,11 @@
 """Study files: what they state, and one line for everything that is wrong."""
 
+import sys
 from pathlib import Path
 
 import pytest
 
+from comparisons.cli import main
 from comparisons.options import Options
 from comparisons.scene import InputError, built_in_scenes, load_scene
 from comparisons.sweep.study import Study, read_study
@@ -151,3 +153,60 @@ def test_a_wrong_head_is_one_line(head: str, reason: str, tmp_path: Path) -> Non
     with pytest.raises(InputError) as caught:
         read(tmp_path, RUN, head)
     assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["nosuch"], "nosuch: must be a study file, NAME.toml, or one of locking"),
+        (["nosuch.toml"], "nosuch.toml: no such file"),
+        (["STUDY", "--workers", "0"], "argument --workers: 0: must lie between 1"),
+        (["STUDY", "--workers", "2", "--cluster", "tcp://a:1"], "not allowed with argument --workers"),
+        (["STUDY", "--results", "DIR/none/a.sqlite"], "there is no folder"),
+        (["STUDY", "--results", "STUDY"], "file is not a database"),
+        (["STUDY", "--out", "STUDY"], "cannot be written"),
+        (["locking", "--workers", "2"], "--workers: belongs to a study file, locking is a question"),
+    ],
+)
+def test_bad_arguments_are_status_2_with_one_reason(
+    arguments: list[str], reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(HEAD + RUN)
+    given = [part.replace("STUDY", str(path)).replace("DIR", str(tmp_path)) for part in arguments]
+    try:
+        status = main(["study", *given])
+    except SystemExit as exit_:
+        status = int(exit_.code or 0)
+    assert status == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert reason in err.splitlines()[-1]
+    assert [item.name for item in tmp_path.iterdir()] == ["study.toml"]
+    assert path.read_text() == HEAD + RUN
+
+
+def test_a_study_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "study.toml"
+    runs = 'elements = [2, 3]\nscene.load_parameters = 2\n[[run]]\nmodel = "rod"\nscene.load_parameters = 2\n'
+    path.write_text(HEAD + "repeats = 1\n" + RUN + runs)
+    for told in ("0 of 3 cases done", ""):
+        assert main(["study", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 0
+        out, err = capsys.readouterr()
+        file = tmp_path / "out" / "mine.sqlite"
+        assert out.splitlines()[:2] == ["mine: 3 cases: COMPLETED 3", f"file: {file}"]
+        assert err.startswith(told)
+    assert [item.name for item in file.parent.iterdir()] == ["mine.sqlite"]
+    assert main(["results", str(file)]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 4
+
+
+def test_a_cluster_without_its_extra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    path = tmp_path / "study.toml"
+    path.write_text(HEAD + RUN)
+    assert main(["study", str(path), "--out", str(tmp_path / "out"), "--cluster", "tcp://a:1"]) == 2
+    expected = "crossval: cluster tcp://a:1: needs distributed: install tsm-crossval[cluster]\n"
+    assert capsys.readouterr().err == expected
