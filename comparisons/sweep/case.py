@@ -70,8 +70,11 @@ class Case:
         meshes = {self.options.mesh or beam.solid_mesh_file or beam.mesh for beam in self.scene.beams}
         names = sorted(mesh if isinstance(mesh, str) else f"{mesh[0]}x{mesh[1]}" for mesh in meshes)
         orders = sorted({beam.solid_element for beam in self.scene.beams})
-        penalties = sorted({item.penalty for item in self.scene.contacts if item.penalty is not None})
-        given = "".join(f" penalty {value:g}" for value in penalties)
+        given = "".join(
+            f" {name} {value:g}"
+            for name in ("penalty", "penetration")
+            for value in sorted({getattr(item, name) for item in self.scene.contacts} - {None})
+        )
         return f"{'+'.join(orders)} {'+'.join(names)}{given}"
 
 

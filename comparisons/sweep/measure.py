@@ -4,7 +4,7 @@ import json
 import statistics
 from dataclasses import dataclass, fields
 from importlib import import_module
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,8 @@ SLOW = 10.0
 """Seconds from which one run is both warm-up and measurement."""
 STATIONS = 101
 """Points of a deflected axis, at equal distances along the undeformed one."""
+TAILS = {"support_force": (2,), "other_end_force": (2,), "tip": (2,), "shape": (STATIONS, 2)}
+"""Shape of one row of the tables that are not of numbers, which an empty table has lost in JSON."""
 SHAPES_AT = (0.2, 0.4, 0.6, 0.8)
 """Load parameters, besides the last, whose axes are kept where the case has them."""
 LIBRARIES = {"tsm": ("tsm",), "solid": ("fem_reference", "skfem"), "rod": (), "elastica": ()}
@@ -38,7 +40,9 @@ class Measurement:
     completed : bool
         Whether it is complete and checked.
     seconds : float
-        Median over `repeats` runs after a warm-up, from the scene to the checked response, imports left out; nan if refused.
+        Processor time from the scene to the checked response, imports left out, median over `repeats` runs after a warm-up; nan if there is
+        none. On one thread it is the time on the clock of a core that does nothing else, and it is not lengthened by what else
+        the machine does.
     repeats : int
         Runs timed: one, and no warm-up, where the first took more than 10 s.
     iterations, cutbacks, unknowns : int
@@ -88,7 +92,7 @@ class Measurement:
     def from_json(cls, text: str) -> "Measurement":
         """Return the measurement that `to_json` wrote, every number the same."""
         data = json.loads(text)
-        return cls(**{item.name: _restored(item.type, data[item.name]) for item in fields(cls)})
+        return cls(**{item.name: _restored(item.name, item.type, data[item.name]) for item in fields(cls)})
 
 
 def measure(case: Case, *, repeats: int = 3) -> Measurement:
@@ -120,9 +124,9 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
 
 
 def _timed(case: Case) -> tuple[Response, float]:
-    began = perf_counter()
+    began = process_time()
     response = solve(case.scene, case.model, case.options)
-    return response, perf_counter() - began
+    return response, process_time() - began
 
 
 def _histories(response: Response, case: Case) -> dict[str, Any]:
@@ -170,10 +174,11 @@ def unmeasured(status: str, message: str) -> Measurement:
     return Measurement(status=status, message=message, completed=False, seconds=np.nan, **empty)
 
 
-def _restored(kind: Any, value: Any) -> Any:
-    """Return a value of JSON as a field of the type `kind` holds it."""
+def _restored(name: str, kind: Any, value: Any) -> Any:
+    """Return a value of JSON as the field `name` of the type `kind` holds it."""
     if kind == Array:
         return np.array(value, dtype=np.float64)
     if kind == dict[str, Array]:
-        return {name: np.array(table, dtype=np.float64) for name, table in value.items()}
+        shape = (-1, *TAILS.get(name, ()))
+        return {key: np.array(table, dtype=np.float64).reshape(shape) for key, table in value.items()}
     return np.nan if value is None else value

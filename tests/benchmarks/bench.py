@@ -19,6 +19,9 @@ import numpy as np
 
 import tsm
 from comparisons.scene import load_scene
+from comparisons.sweep import measure
+from comparisons.trade.points import cheapest
+from comparisons.trade.sweep import measure_trade
 from comparisons.translate import to_solid, to_structure
 from tsm.model import Model
 from tsm.system import Assembler
@@ -78,6 +81,19 @@ def beams_against_solid(gates: list[Gate], times: dict[str, float]) -> None:
         mean = float(np.mean(result.newton_iterations))
         gates.append(Gate(f"Newton iterations per load parameter, {name}", mean, 5, False))
         gates.append(Gate(f"cut-backs, {name}", result.cutbacks, 0, False))
+
+
+def equal_error(gates: list[Gate], times: dict[str, float]) -> None:
+    """The cheapest solid over the cheapest beams at .1 % of the force, each against what it converges to: `crossval trade --quick`."""
+    trade = measure_trade(
+        load_scene("ks-cantilever"), lambda cases: {case: measure(case) for case in cases}, quick=True
+    )
+    for scope, state in (("end", "end state"), ("path", "50 load parameters")):
+        found = cheapest(trade, scope, "force", 1e-3)
+        for point in (found.tsm, found.solid):
+            assert point is not None
+            times[f"{point.case.label}, .1 % of F, {state}"] = point.measured.seconds
+        gates.append(Gate(f"solid over TSM at .1 % of F, {state}, seconds", found.ratio, 100, True))
 
 
 def scenes_and_elements(gates: list[Gate], times: dict[str, float]) -> None:
@@ -332,6 +348,7 @@ def main() -> None:
     times: dict[str, float] = {}
     for part in (
         beams_against_solid,
+        equal_error,
         scenes_and_elements,
         linear_cost,
         exact_element,

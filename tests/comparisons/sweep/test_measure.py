@@ -97,6 +97,14 @@ def test_a_stopped_case_keeps_what_it_reached() -> None:
     assert same(found, Measurement.from_json(found.to_json()))
 
 
+def test_an_empty_history_keeps_its_shape() -> None:
+    found = measure(case(elements=4), repeats=1)
+    tables = ("support_force", "tip", "shape")
+    empty = replace(found, **{name: {"a": getattr(found, name)["cantilever"][:0]} for name in tables})
+    again = Measurement.from_json(empty.to_json())
+    assert all(getattr(again, name)["a"].shape == getattr(empty, name)["a"].shape for name in tables)
+
+
 def test_peak_memory_is_of_the_action_alone() -> None:
     size = 64 * 2**20
     keep = np.ones(size // 8)

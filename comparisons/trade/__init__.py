@@ -1,0 +1,1 @@
+"""What accuracy costs: settings of every model on one scene, their errors and their seconds."""

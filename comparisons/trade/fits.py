@@ -1,0 +1,89 @@
+"""Pareto fronts, orders of convergence and cost exponents."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+FEWEST, MOST = 3, 4
+"""Points of a fit."""
+STEADY = 0.9
+"""A local order below this part of the median is not the order of the family."""
+
+
+def pareto(cost: ArrayLike, error: ArrayLike) -> list[int]:
+    """Return the numbers of the points that no other beats in both, by rising cost; a point with a nan is none of them.
+
+    Examples
+    --------
+    >>> pareto([1, 2, 3, 4], [0.5, 0.7, 0.1, 0.1])
+    [0, 2]
+    """
+    costs, errors = np.asarray(cost, dtype=float), np.asarray(error, dtype=float)
+    best, front = np.inf, []
+    for k in np.lexsort((errors, costs)):
+        if np.isfinite(costs[k]) and errors[k] < best:
+            best = errors[k]
+            front.append(int(k))
+    return front
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fit:
+    """A power law ``y = c x^exponent`` by least squares on the logarithms.
+
+    Attributes
+    ----------
+    exponent, factor : float
+        Exponent and c.
+    first, last : float
+        Range of x fitted.
+    points : int
+        Points fitted.
+    scatter : float
+        Largest ``|ln y - ln y_fit|``.
+    """
+
+    exponent: float
+    factor: float
+    first: float
+    last: float
+    points: int
+    scatter: float
+
+
+def power_law(x: Sequence[float], y: Sequence[float]) -> Fit | None:
+    """Return the power law through the points; None if they are fewer than three or not positive."""
+    if len(x) < FEWEST or not (min(x) > 0.0 and min(y) > 0.0):
+        return None
+    lx, ly = np.log(x), np.log(y)
+    exponent, constant = np.polyfit(lx, ly, 1)
+    return Fit(
+        exponent=float(exponent),
+        factor=float(np.exp(constant)),
+        first=float(min(x)),
+        last=float(max(x)),
+        points=len(x),
+        scatter=float(np.abs(ly - exponent * lx - constant).max()),
+    )
+
+
+def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit | None:
+    """Return the power law of an error over rising resolution, in its asymptotic range: minus the exponent is the order.
+
+    Errors from the first one below `floor` on are left out. The asymptotic range is the longest run of meshes from one to the next of
+    which the error falls with at least nine tenths of the median of the falling local orders: neither chance on coarse meshes nor
+    round-off on fine ones. Its finest four points are fitted; None if they are fewer than three.
+    """
+    x, y = np.asarray(resolution, dtype=float), np.asarray(error, dtype=float)
+    below = np.flatnonzero(~(y > floor))
+    x, y = (values[: below[0] if len(below) else None] for values in (x, y))
+    local = -np.diff(np.log(y)) / np.diff(np.log(x))
+    if not (local > 0.0).any():
+        return None
+    falling = np.flatnonzero(local >= STEADY * np.median(local[local > 0.0]))
+    runs = np.split(falling, np.flatnonzero(np.diff(falling) > 1) + 1)
+    run = max(reversed(runs), key=len)
+    chosen = slice(max(run[0], run[-1] + 2 - MOST), run[-1] + 2)
+    return power_law(list(x[chosen]), list(y[chosen]))
