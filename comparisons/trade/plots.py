@@ -55,7 +55,7 @@ def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) 
     _mark_uncertainty(right, trade, quantity, scope)
     for axes in (left, right):
         axes.set(xscale="log", yscale="log", xlabel=AXES[cost])
-        axes.margins(x=0.22, y=0.06)
+        axes.margins(x=0.3, y=0.06)
         axes.grid(visible=True, linewidth=0.3)
     for model in FRONTS:
         _draw_front(right, trade, model, quantity, scope, cost)
