@@ -62,6 +62,14 @@ def test_scene_snippet(model, tmp_path, capsys):
     assert "beam[0].height = -0.01: must be positive" in capsys.readouterr().err
 
 
+def test_study_snippet(tmp_path, capsys):
+    study, results = tmp_path / "slenderness.toml", tmp_path / "results.sqlite"
+    study.write_text(SCENES[2])
+    assert main(["study", str(study), "--results", str(results), "--quiet"]) == 0
+    assert main(["results", str(results), "--csv"]) == 0
+    assert len(capsys.readouterr().out.strip().splitlines()[1:]) >= 14
+
+
 def test_pictures_are_there():
     for picture in re.findall(r"!\[.*?\]\((.*?)\)", README):
         assert (ROOT / picture).is_file()
