@@ -12,6 +12,9 @@ from comparisons.scene import Scene
 BALANCE = 1e-6
 """Largest unbalanced part of a force, relative to the largest that acts: Newton tolerances are far below."""
 
+LEAST = 1e-4
+"""Smallest force that is to balance to `BALANCE`, over ``EI/L^2``: Newton's methods end at 1e-10."""
+
 
 class Action(NamedTuple):
     """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, a free moment included."""
@@ -50,11 +53,11 @@ def _sum(actions: list[Action], steps: int) -> Action:
 
 
 def _largest(scene: Scene, actions: list[Action]) -> float:
-    """Largest force, or moment over length; not less than a millionth of what bends the beams."""
+    """Largest force, or moment over length; where nothing acts, so much that the solvers' tolerances balance."""
     length = max(beam.length for beam in scene.beams)
     forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
     moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
-    return max(*forces, *moments, 1e-6 * min(beam.EI / beam.length**2 for beam in scene.beams))
+    return max(*forces, *moments, LEAST * min(beam.EI / beam.length**2 for beam in scene.beams))
 
 
 def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.0) -> Action:

@@ -19,7 +19,18 @@ BLOCKS = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
 COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line]
 
 
-@pytest.mark.parametrize("line", [line for line in COMMANDS if line.startswith("crossval")])
+SLOW = ("crossval trade",)
+"""Commands of a minute and more."""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(line, marks=pytest.mark.slow if line.startswith(SLOW) else ())
+        for line in COMMANDS
+        if line.startswith("crossval")
+    ],
+)
 def test_crossval_commands(line, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(line.split()[1:]) == 0

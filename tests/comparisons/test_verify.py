@@ -92,3 +92,12 @@ def test_slip_off_excuses_a_node_on_the_far_side(good: Response) -> None:
 def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
     stopped = replace(good, completed=False, status="CUTBACK_FLOOR", load_parameter=good.load_parameter[:2])
     assert verified(stopped, SCENE) is stopped
+
+
+@pytest.mark.parametrize("options", [Options(element="exact"), Options(elements=3), Options(elements=10)])
+def test_nothing_that_acts_balances(options: Options) -> None:
+    """The double beam's whole path in one step: in the end both beams are free, and what is left is the solver's tolerance."""
+    response = solve(replace(load_scene("double-beam"), load_parameters=1), "tsm", options)
+    assert response.completed, response.message
+    kinds = [event.kind for event in response.events or () if event.kind != "pass-through"]
+    assert kinds == ["touch", "slip-off", "touch", "release", "slip-off"]
