@@ -45,12 +45,13 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     folder = given.out or Path("out/trade") / scene.name
     given.workers = given.workers or 1
-    from comparisons.sweep.progress import shown
+    from comparisons.sweep.progress import line_ended, shown
     from comparisons.trade.references import NoReferenceError
     from comparisons.trade.sweep import trade_off
 
     try:
-        found = trade_off(scene, folder, workers(given), quick=given.quick, progress=shown())
+        with line_ended():
+            found = trade_off(scene, folder, workers(given), quick=given.quick, progress=shown())
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
