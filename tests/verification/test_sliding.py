@@ -54,7 +54,7 @@ def slip_off(x, elements):
 
 @pytest.mark.parametrize(("x", "exact"), list(zip(PINS, SLIP_OFF, strict=True)))
 def test_slip_off_displacements(x, exact):
-    """Within 1e-5, which is the fourth power of the shear strain there, with 18 and with 72 elements."""
+    """Within 1e-5, which is of the third power of the shear strain there, with 18 and with 72 elements."""
     assert slip_off(x, 18) == pytest.approx(exact, rel=1e-5)
     assert slip_off(x, 72) == pytest.approx(exact, rel=1e-5)
 
@@ -307,3 +307,28 @@ def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path):
     assert slips[0].load_parameter == pytest.approx(slips[1].load_parameter, abs=1e-5)
     assert slips[0].released == pytest.approx(slips[1].released, rel=1e-5)
     assert ours.strain_energy[-1] <= 1e-12 * slips[0].released
+
+
+def error_on_ks(elements, *, shear=1.0, stretch=1.0):
+    """Error of the force against the rod, and the largest shear strain."""
+    section, _ = SECTIONS["4.2"]
+    given = {"EA": stretch * section.EA, "GA": shear * section.GA, "EI": section.EI}
+    path = [(1 - t, 2 / np.pi * t) for t in np.linspace(0, 1, 6)]
+    exact = np.hypot(*rod_under_pin(np.array(path), length=1.0, **given).force[1:].T)
+    base = cantilever((path[0], path[-1]), section="4.2", elements=elements)
+    structure = replace(base, beams=(replace(base.beams[0], section=tsm.Section(**given)),))
+    force = tsm.solve(structure, np.arange(1, 6) / 5).contacts["p->b"].force
+    return np.abs(force - exact).max() / exact.max(), exact.max() / given["GA"]
+
+
+@pytest.mark.parametrize("shear", [1 / 30, 0.1])
+def test_many_elements_leave_the_third_power_of_the_shear_strain(shear):
+    error, gamma = error_on_ks(320, shear=shear, stretch=1e4)
+    assert 0.2 * gamma**3 <= error <= 0.4 * gamma**3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("elements", [640, 5000])
+def test_round_off_does_not_grow_with_the_elements(elements):
+    error, gamma = error_on_ks(elements)
+    assert error <= 0.3 * gamma**3
