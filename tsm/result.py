@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from tsm import present
 from tsm.contact import arc_position, project
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array
@@ -57,9 +59,9 @@ class SupportHistory:
     moment: Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Result:
-    """Outcome of a solution.
+    """Outcome of a solution. It prints itself in a few lines and draws itself.
 
     Attributes
     ----------
@@ -98,8 +100,19 @@ class Result:
     events: tuple[Event, ...]
     unknowns: int
     wall_seconds: float
-    model: Model = field(repr=False)
-    equilibria: tuple[Equilibrium, ...] = field(repr=False)
+    model: Model
+    equilibria: tuple[Equilibrium, ...]
+
+    def __repr__(self) -> str:
+        return present.summary(self)
+
+    def arrays(self) -> dict[str, Array]:
+        """Histories by name, see `tsm.present.arrays`: what ``numpy.savez`` and data frames take."""
+        return present.arrays(self)
+
+    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
+        """Draw the deflected axes, see `tsm.present.plot`."""
+        return present.plot(self, axes, shown)
 
     @cached_property
     def strain_energy(self) -> Array:
