@@ -11,10 +11,10 @@ import numpy as np
 
 from tsm import present
 from tsm.contact import arc_position, project
-from tsm.elements.curve import Curve
-from tsm.elements.properties import Array
+from tsm.elements.axis import PointForce, deflected_axes
+from tsm.elements.properties import Array, Properties
 from tsm.events import Event, normal_force
-from tsm.model import Model
+from tsm.model import BeamModel, Model
 from tsm.newton import Equilibrium
 from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces
@@ -153,18 +153,17 @@ class Result:
         arc : ndarray, shape (m,)
             Distance along the undeformed axis.
         xy : ndarray, shape (m, 2)
-            Deformed position, in closed-form elements without the dent of a contact.
+            Deformed position.
         """
         place, exact = self.model.beams[beam], self.model.rods is not None and self._exact(beam)
         default = max(10, math.ceil(100 / place.beam.elements)) if exact else 10
         xi = np.linspace(0, 1, (points_per_element or default) + 1)
-        arcs, points = [], []
-        for e in range(place.first, place.last + 1):
-            xy = self._exact_axis(e, k, xi) if exact else self._curve(e, k, xi)
-            keep = slice(None) if e == place.last else slice(-1)
-            points.append(xy[keep])
-            arcs.append(place.arcs[e - place.first] + xi[keep] * place.lengths[e - place.first])
-        return np.concatenate(arcs), np.concatenate(points)
+        if exact:
+            axes = np.array([self._exact_axis(e, k, xi) for e in range(place.first, place.last + 1)])
+        else:
+            axes = self._closed_axis(place, k, xi)
+        arcs = np.array(place.arcs[:-1])[:, None] + xi * np.array(place.lengths)[:, None]
+        return np.append(arcs[:, :-1], place.beam.length), np.concatenate([*axes[:, :-1], axes[-1, -1:]])
 
     def _exact(self, beam: str) -> bool:
         return bool(np.isin(self.model.beams[beam].first, self.model.exact))
@@ -175,14 +174,20 @@ class Result:
         state = self.equilibria[k].state
         return deflected(rods, state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
 
-    def _curve(self, e: int, k: int, xi: Array) -> Array:
-        x = self.equilibria[k].state.q[self.model.dofs[:, e]]
-        curve = Curve(self.model.element[e], x)
-        w = curve.deflection(xi)[0]
-        d = np.array([curve.dx, curve.dy])
-        xy: Array = self.model.element_start[e] + x[:2] + xi[:, None] * d
-        xy += w[:, None] * np.array([-d[1], d[0]])
-        return xy
+    def _closed_axis(self, place: BeamModel, k: int, xi: Array) -> Array:
+        """Positions on all elements of a beam, shape (elements, m, 2)."""
+        state, system = self.equilibria[k].state, self.equilibria[k].system
+        own = slice(place.first, place.last + 1)
+        x, part = state.q[self.model.dofs[:, own]], self.model.place[own]
+        p = Properties(*(np.asarray(values)[part] for values in self.model.properties))
+        contacts = [
+            PointForce(touch.element - place.first, touch.xi, touch.force)
+            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
+            if touch is not None and pair.target is place and pair.slot >= 0
+        ]
+        axes = deflected_axes(p, x, system.closed_force[:, part], contacts, xi)
+        starts: Array = np.array(self.model.element_start[own]) + x[:2].T
+        return starts[:, None] + axes
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
