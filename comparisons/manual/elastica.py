@@ -14,6 +14,8 @@ from comparisons.exact.elastica import (
 from comparisons.manual.models import (
     ANSWER,
     EXACT,
+    FOURTH,
+    SECOND,
     Model,
     answered,
     mixed,
@@ -33,8 +35,6 @@ KS_END = (0.0, 2.0 / np.pi)
 TIMES = (0.25, 0.5, 0.75, 1.0)
 BEAM = cantilever()
 RIGID = "no mesh error: what is left is F/EA, below 1e-9, and the tolerances of Newton's method and of the integration (1e-9)"
-FOURTH = "fourth order: 10 elements leave 16 times as much"
-SECOND = "second order: 10 elements leave 4 times as much"
 
 
 def ks_elastica() -> Problem:

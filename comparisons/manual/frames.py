@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.manual.models import EXACT, Model, mixed, paper, trial
+from comparisons.manual.models import EXACT, SECOND, Model, mixed, paper, trial
 from comparisons.manual.record import Answer, Curve, Picture, Problem, Quantity, StoppedError, Trial
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from comparisons.translate import to_structure
@@ -59,6 +59,12 @@ class Path:
         return Answer(values=tuple(self.unit * value for value in found[: self.limits]), curves=(curve,))
 
 
+LEE_LIMIT = 18.557
+"""``P L^2/EI`` of Lee's frame at its limit point: Lee, Manuel and Rossow (1968)."""
+TOGGLE_LIMITS = (33.87, 31.28)
+"""Greatest and then least load [lb] of Williams' toggle: Wood and Zienkiewicz (1977)."""
+
+
 def lee() -> Problem:
     """Lee's frame."""
     section: dict[str, Any] = {
@@ -91,12 +97,12 @@ def lee() -> Problem:
         title="Lee's frame snaps through",
         statement="A column and a girder, 120 cm each, rigidly joined, hinged at their far ends; E = 720 kN/cm^2, A = 6 cm^2, I = 2 cm^4, rigid in "
         "shear. A dead load P presses the girder down 24 cm from the corner.",
-        source="Lee, Manuel and Rossow, Journal of the Engineering Mechanics Division, ASCE 94 (1968), 521-547: 18.557",
-        quantities=(Quantity(name="P L^2/EI at the limit point", exact=18.557),),
+        source="Lee, Manuel and Rossow, Journal of the Engineering Mechanics Division, ASCE 94 (1968), 521-547",
+        quantities=(Quantity(name="P L^2/EI at the limit point", exact=LEE_LIMIT),),
         trials=(
             path.trial(EXACT, 5e-5, digits),
             path.trial(mixed(8), 5e-5, f"{digits}; fourth order: 4 elements a beam leave 6e-5"),
-            path.trial(paper(15), 1e-2, "second order"),
+            path.trial(paper(15), 1e-2, SECOND),
         ),
         picture=Picture(axes=("deflection under the load [cm]", "P L^2/EI"), shape=False),
     )
@@ -131,13 +137,13 @@ def toggle() -> Problem:
         source="Williams, Quarterly Journal of Mechanics and Applied Mathematics 17 (1964), 451-469; the values of Wood and Zienkiewicz, "
         "Computers and Structures 7 (1977), 725-735",
         quantities=(
-            Quantity(name="greatest load [lb]", exact=33.87),
-            Quantity(name="least load after it [lb]", exact=31.28),
+            Quantity(name="greatest load [lb]", exact=TOGGLE_LIMITS[0]),
+            Quantity(name="least load after it [lb]", exact=TOGGLE_LIMITS[1]),
         ),
         trials=(
             path.trial(EXACT, 3e-4, digits),
             path.trial(mixed(8), 3e-4, digits),
-            path.trial(paper(15), 1e-2, "second order"),
+            path.trial(paper(15), 1e-2, SECOND),
         ),
         picture=Picture(axes=("deflection of the apex [in]", "load [lb]"), shape=False),
     )

@@ -99,7 +99,7 @@ SAME = {
 }
 CHANGES = (
     Quantity(name="largest change of F, over the largest", exact=0.0, scale=1.0),
-    Quantity(name="largest change of |M| of the clamp, over the largest", exact=0.0, scale=1.0),
+    Quantity(name="largest change of the clamp moment, over the largest", exact=0.0, scale=1.0),
 )
 
 

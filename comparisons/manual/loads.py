@@ -10,7 +10,10 @@ from scipy.special import ellipe, ellipk
 
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.manual.models import (
+    ANSWER,
     EXACT,
+    FOURTH,
+    SECOND,
     Model,
     answered,
     mixed,
@@ -20,11 +23,12 @@ from comparisons.manual.models import (
     trial,
     undeformed,
 )
-from comparisons.manual.record import Answer, Picture, Problem, Quantity, Trial
+from comparisons.manual.record import Answer, Curve, Picture, Problem, Quantity, Trial
 from comparisons.manual.scenes import ELASTICA_TEXT, UNIT, cantilever
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 
+TURNED = (0.25, 0.5, 1.0)
 LOADS = (1.0, 2.0, 5.0, 10.0)
 ROUND_OFF = "no mesh error: what is left is EI/(EA L^2) = 1e-10 and the tolerances of Newton's method and of the integration (1e-9)"
 
@@ -51,9 +55,9 @@ def dead_load() -> Problem:
             for load in LOADS
         ),
         trials=(
-            on_scene(scene, EXACT, 2e-9, ROUND_OFF, deflections),
-            on_scene(scene, mixed(20), 2e-6, "fourth order: 10 elements leave 16 times as much", deflections),
-            on_scene(scene, paper(20), 1e-3, "second order: 10 elements leave 4 times as much", deflections),
+            on_scene(scene, EXACT, 2e-9, ROUND_OFF, deflections, (0.1, 0.2, 0.5, 1.0)),
+            on_scene(scene, mixed(20), 2e-6, FOURTH, deflections, (0.1, 0.2, 0.5, 1.0)),
+            on_scene(scene, paper(20), 1e-3, SECOND, deflections, (0.1, 0.2, 0.5, 1.0)),
         ),
         picture=Picture(curves=undeformed(scene)),
     )
@@ -67,27 +71,27 @@ def roll_up() -> Problem:
         beams=(cantilever(),),
         loads=(LoadSpec(beam="cantilever", end="end", moment=2.0 * np.pi),),
     )
-    half, whole = (tip_under_moment(2.0 * np.pi * t) for t in (0.5, 1.0))
+    quarter, half, whole = (tip_under_moment(2.0 * np.pi * t) for t in TURNED[:3])
 
     def tip(response: Response) -> tuple[float, ...]:
-        (x, y), (x1, y1) = response.tips["cantilever"][[3, 7]]
-        return float(x), float(y), float(x1), float(y1)
+        at_quarter, at_half, at_whole = response.tips["cantilever"][[1, 3, 7]]
+        return float(at_quarter[0]), float(at_half[1]), float(np.hypot(*(at_whole - whole)))
 
-    names = ("x/L, half a circle", "y/L, half a circle", "x/L, a full circle", "y/L, a full circle")
     return Problem(
         name="roll-up",
         title="Roll-up by an end moment",
         statement=f"A cantilever, {ELASTICA_TEXT}, is bent to a full circle by the moment M = 2 pi EI/L at its tip.",
         source="closed form: an arc of the angle t = M L/EI, x/L = sin t / t, y/L = (1 - cos t)/t; Bathe and Bolourchi, "
         "International Journal for Numerical Methods in Engineering 14 (1979), 961-986",
-        quantities=tuple(
-            Quantity(name=name, exact=float(value), scale=1.0)
-            for name, value in zip(names, (*half, *whole), strict=True)
+        quantities=(
+            Quantity(name="x/L of the tip, a quarter of a circle", exact=float(quarter[0])),
+            Quantity(name="y/L of the tip, half a circle", exact=float(half[1])),
+            Quantity(name="distance of the tip from the clamp over L, a full circle", exact=0.0, scale=1.0),
         ),
         trials=(
-            on_scene(scene, EXACT, 2e-9, ROUND_OFF, tip, (0.25, 0.5, 0.75, 1.0)),
-            on_scene(scene, mixed(20), 1e-3, "chords of 18 degrees", tip, (0.25, 0.5, 0.75, 1.0)),
-            on_scene(scene, paper(20), 1e-2, "chords of 18 degrees", tip, (0.25, 0.5, 0.75, 1.0)),
+            on_scene(scene, EXACT, 2e-9, ROUND_OFF, tip, TURNED),
+            on_scene(scene, mixed(20), 1e-6, FOURTH, tip, TURNED),
+            on_scene(scene, paper(20), 3e-3, SECOND, tip, TURNED),
         ),
         picture=Picture(curves=undeformed(scene)),
     )
@@ -140,26 +144,35 @@ def _critical(model: Model, estimate: float, tolerance: float, reason: str, **se
     return trial(model, tolerance, reason, measure)
 
 
-COLUMN_AXES = ("P L^2/EI", "force that holds the head aside, over the distance [EI/L^3]")
+COLUMN_AXES = ("P L^2/EI", "force holding the head aside / distance [EI/L^3]")
+
+
+def _stiffness(highest: float, EA: float = np.inf, GA: float = np.inf) -> Curve:
+    """Return the force that holds the head aside over the distance, for loads up to `highest`, in units of EI and L.
+
+    ``R/d = 1/(c (tan k - k)/(P k) + 1/GA)``, ``c = 1 + P/GA - P/EA``, ``k^2 = P c``: Reissner's rod for small d.
+    """
+    load = np.linspace(0.01, highest, 200)
+    c = 1.0 + load / GA - load / EA
+    k = np.sqrt(load * c)
+    sine, cosine = np.sin(k), np.cos(k)
+    force = load * k * cosine / (c * (sine - k * cosine) + load * k * cosine / GA)
+    return Curve(style=ANSWER, points=np.stack([load, force], axis=1))
 
 
 def euler() -> Problem:
     """Euler's column."""
     exact = np.pi**2 / 4.0
-    loads = np.linspace(0.01, 1.2 * exact, 200)
-    k = np.sqrt(loads)
-    beam_column = np.stack([loads, loads * k / (np.tan(k) - k)], axis=1)
-    beam_column[np.abs(np.tan(k)) > 1e3] = np.nan
     return Problem(
         name="euler-column",
         title="Euler's buckling load of a clamped column",
         statement="A column, L = 1 m, EI = 1 N m^2, EA = GA = 1e6 N, clamped at its foot, carries a dead load P on its head. The head is held L/1000 aside; "
         "the load sought is that under which no force is needed for that.",
-        source="closed form: P = pi^2 EI/(4 L^2), Euler 1744; the curve is P k/(tan k L - k L), k^2 = P/EI (Timoshenko and Gere, "
+        source="closed form: P = pi^2 EI/(4 L^2), Euler 1744; the force that holds the head aside is P k d/(tan k L - k L), k^2 = P/EI (Timoshenko and Gere, "
         "Theory of Elastic Stability, 1961, ch. 1)",
         quantities=(Quantity(name="P L^2/EI", exact=exact),),
         trials=tuple(_critical(model, exact, 1e-6, HELD_ASIDE) for model in (EXACT, mixed(20))),
-        picture=Picture(axes=COLUMN_AXES, curves=(pieces("exact answer", [beam_column]),), shape=False),
+        picture=Picture(axes=COLUMN_AXES, curves=(_stiffness(1.2 * exact),), shape=False),
     )
 
 
@@ -193,7 +206,9 @@ def haringx() -> Problem:
                 **SOFT,
             ),
         ),
-        picture=Picture(axes=COLUMN_AXES, shape=False),
+        picture=Picture(
+            axes=COLUMN_AXES, curves=(_stiffness(1.2 * float(exact), SOFT_EA, SOFT_GA),), shape=False
+        ),
     )
 
 

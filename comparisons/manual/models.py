@@ -11,6 +11,8 @@ from comparisons.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 
+FOURTH = "fourth order: half as many elements leave 16 times as much"
+SECOND = "second order: half as many elements leave 4 times as much"
 BREAK = np.full((1, 2), np.nan)
 """Parts a curve into pieces."""
 ANSWER = "exact answer"

@@ -1,5 +1,6 @@
 """The records of the verification manual: what is asked, what a model answers, how that is judged."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,7 +67,7 @@ class Picture:
         Whether both axes are lengths and have one scale.
     """
 
-    axes: tuple[str, str] = ("x", "y")
+    axes: tuple[str, str] = ("x [m]", "y [m]")
     curves: tuple[Curve, ...] = ()
     logarithmic: bool = False
     shape: bool = True
@@ -174,7 +175,7 @@ class Run:
         """Number of the quantity with the largest error, of the first that is not a number if one is not."""
         return max(
             range(len(self.errors)),
-            key=lambda k: self.errors[k] if self.errors[k] == self.errors[k] else float("inf"),
+            key=lambda k: math.inf if math.isnan(self.errors[k]) else self.errors[k],
         )
 
 

@@ -10,7 +10,9 @@ from comparisons.manual.models import (
     ANSWER,
     ELASTICA,
     EXACT,
+    FOURTH,
     ROD,
+    SECOND,
     answered,
     deflected,
     mixed,
@@ -27,8 +29,6 @@ from comparisons.scene import Scene, load_scene
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
 CLOSED = "no mesh error: what is left are the tolerances of Newton's method and of the integration (1e-9)"
-FOURTH = "fourth order: 10 elements leave 16 times as much"
-SECOND = "second order: 10 elements leave 4 times as much"
 LAW = "its law, St. Venant-Kirchhoff, is softer than the rod's at 3 % strain; the mesh leaves below 1e-4"
 ROD_SOURCE = (
     "Reissner's rod by quadratures of its first integral in two unknowns (comparisons.exact.rod, which shares nothing with the "
@@ -287,9 +287,7 @@ def double_beam() -> Problem:
         quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, exact, strict=True)),
         trials=(
             on_scene(scene, EXACT, 1e-8, CLOSED, read, (52 / 76,)),
-            on_scene(
-                scene, mixed(10), 1e-6, "fourth order: 5 elements leave 16 times as much", read, (52 / 76,)
-            ),
+            on_scene(scene, mixed(10), 1e-6, FOURTH, read, (52 / 76,)),
         ),
         picture=Picture(curves=undeformed(scene)),
     )

@@ -33,7 +33,7 @@ def markdown(cases: Sequence[Case]) -> str:
 
 
 def _overview(cases: Sequence[Case]) -> Iterator[str]:
-    yield "| case | model | quantity of the largest error | exact | ours | error | tolerance | |"
+    yield "| case | model | quantity of the largest error | exact | ours | error | tolerance | verdict |"
     yield RULE
     for case in cases:
         for run in case.runs:
@@ -45,7 +45,7 @@ def _overview(cases: Sequence[Case]) -> Iterator[str]:
                 f"{case.quantities[k].exact:.9g}",
                 run.stopped or f"{run.values[k]:.9g}",
                 f"{run.errors[k]:.1e}",
-                f"{run.tolerance:.0e}",
+                f"{run.tolerance:.2g}",
                 _verdict(run),
             ]
             yield _row(cells)
@@ -76,8 +76,8 @@ def _section(case: Case) -> Iterator[str]:
     for k, quantity in enumerate(case.quantities):
         ours = (f"{run.values[k]:.9g} ({run.errors[k]:.1e})" for run in case.runs)
         yield _row([quantity.name, f"{quantity.exact:.12g}", *ours])
-    yield _row(["tolerance", "", *(f"{run.tolerance:.1e}" for run in case.runs)])
-    yield _row(["", "", *(_verdict(run) for run in case.runs)])
+    yield _row(["tolerance", "", *(f"{run.tolerance:.2g}" for run in case.runs)])
+    yield _row(["verdict", "", *(_verdict(run) for run in case.runs)])
     yield _row(["seconds", "", *(f"{run.seconds:.2f}" for run in case.runs)])
     yield ""
     for run in case.runs:

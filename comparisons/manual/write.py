@@ -13,7 +13,7 @@ from comparisons.studies.output import Report, write_numbers
 
 
 def write_manual(
-    folder: Path, report: Report, problems: Sequence[Callable[[], Problem]] = PROBLEMS
+    folder: Path, report: Report, problems: Sequence[Callable[[], Problem]] | None = None
 ) -> Manual:
     """Solve all problems, judge the answers and write the manual.
 
@@ -23,7 +23,7 @@ def write_manual(
         Made if it is not there.
     report : callable
         Told a line for each case.
-    problems : sequence of callable
+    problems : sequence of callable, optional
         What is solved, all problems if not given.
 
     Returns
@@ -37,7 +37,7 @@ def write_manual(
     """
     writable_folder(folder)
     cases, pictures = [], []
-    for state in problems:
+    for state in PROBLEMS if problems is None else problems:
         problem = state()
         picture = folder / f"{problem.name}.svg"
         case, curves = judge(problem, picture.name)
