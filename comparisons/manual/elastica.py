@@ -27,9 +27,10 @@ from comparisons.manual.models import (
     trial,
     undeformed,
 )
+from comparisons.manual.peaks import summit
 from comparisons.manual.record import Answer, Curve, Picture, Problem, Quantity, Trial
 from comparisons.manual.scenes import ELASTICA_TEXT, PAIR, cantilever, ks, under_pin
-from comparisons.response import Array, Response
+from comparisons.response import Response
 
 KS_END = (0.0, 2.0 / np.pi)
 TIMES = (0.25, 0.5, 0.75, 1.0)
@@ -123,19 +124,9 @@ def _limit(model: Model, tolerance: float, reason: str, force: str) -> Trial:
         assert vector is not None, "it states the force's direction"
         load = 2.0 * vector[:, 1] if force == "vertical" else response.contacts[PAIR].force
         curve = Curve(style=model.name, points=np.stack([height, load], axis=1))
-        return Answer(values=_summit(height, load), curves=(curve,))
+        return Answer(values=summit(height, load), curves=(curve,))
 
     return trial(model, tolerance, reason, measure)
-
-
-def _summit(x: Array, y: Array) -> tuple[float, float]:
-    """Return the greatest value of a smooth history and its place, by the polynomial through eleven samples around it."""
-    k = int(np.clip(np.argmax(y), 5, len(y) - 6))
-    part = slice(k - 5, k + 6)
-    fit = np.polynomial.Polynomial.fit(x[part] - x[k], y[part], 8)
-    turns = [float(root.real) for root in fit.deriv().roots() if abs(root.imag) < 1e-9]
-    place = min(turns, key=abs, default=np.nan)
-    return float(fit(place)), float(place + x[k])
 
 
 def _limit_curve(force: str) -> Curve:

@@ -1,12 +1,16 @@
 """Cases of frames that snap through: limit loads, by arc-length control."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from comparisons.manual.models import EXACT, SECOND, Model, mixed, paper, trial
+from comparisons.exact.chain import Chain, load_path
+from comparisons.manual.models import ANSWER, EXACT, FOURTH, SECOND, Model, mixed, paper, trial
+from comparisons.manual.peaks import summit
 from comparisons.manual.record import Answer, Curve, Picture, Problem, Quantity, StoppedError, Trial
+from comparisons.response import Array
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from comparisons.translate import to_structure
 
@@ -59,10 +63,53 @@ class Path:
         return Answer(values=tuple(self.unit * value for value in found[: self.limits]), curves=(curve,))
 
 
-LEE_LIMIT = 18.557
-"""``P L^2/EI`` of Lee's frame at its limit point: Lee, Manuel and Rossow (1968)."""
-TOGGLE_LIMITS = (33.87, 31.28)
-"""Greatest and then least load [lb] of Williams' toggle: Wood and Zienkiewicz (1977)."""
+CLOSED = "no mesh error: what is left are the tolerances of Newton's method and of the integration (1e-9)"
+COUPLED = (
+    "Reissner rods, rigidly joined, by shooting with spectral collocation at prescribed deflections (comparisons.exact.chain, which "
+    "shares nothing with the models); the limit is read off a polynomial through eleven deflections around it"
+)
+LEE_UNIT = 120.0**2 / 1440.0
+"""L^2/EI [1/kN]."""
+
+
+@cache
+def _lee_path() -> tuple[Array, Array]:
+    """Deflections of the loaded joint of Lee's frame and the loads, as ``P L^2/EI``, by exact rods."""
+    corner, loaded = (0.0, 120.0), (24.0, 120.0)
+    chain = Chain(
+        joints=((0.0, 0.0), corner, loaded, (120.0, 120.0)),
+        loaded=2,
+        clamped=False,
+        EA=4320.0,
+        GA=4.32e9,
+        EI=1440.0,
+    )
+    down = np.append(np.linspace(3.0, 45.0, 15), np.linspace(46.0, 51.5, 12))
+    return down, LEE_UNIT * load_path(chain, down)
+
+
+def _curve(down: Array, load: Array) -> Curve:
+    return Curve(style=ANSWER, points=np.stack([down, load], axis=1))
+
+
+def lee_limit() -> float:
+    """Return ``P L^2/EI`` of Lee's frame at its limit point, by exact rods."""
+    return summit(*_lee_path())[0]
+
+
+@cache
+def _toggle_path() -> tuple[Array, Array]:
+    """Deflections of the apex of Williams' toggle [in] and the loads [lb], by exact rods."""
+    joints = ((0.0, 0.0), (12.94328, 0.386), (25.88656, 0.0))
+    chain = Chain(joints=joints, loaded=1, clamped=True, EA=1.885e6, GA=1.885e10, EI=9274.0)
+    down = np.arange(1, 52) / 100.0
+    return down, load_path(chain, down)
+
+
+def toggle_limits() -> tuple[float, float]:
+    """Return the greatest load of Williams' toggle and the least one after it [lb], by exact rods."""
+    down, load = _toggle_path()
+    return summit(down[:32], load[:32])[0], -summit(down[26:], -load[26:])[0]
 
 
 def lee() -> Problem:
@@ -89,22 +136,22 @@ def lee() -> Problem:
         ),
         loads=(LoadSpec(beam="near", end="end", force=(0.0, -0.1)),),
     )
-    unit = 0.1 * 120.0**2 / 1440.0
-    path = Path(scene=scene, arc_length=0.3, steps=60, limits=1, unit=unit, highest=20.0)
-    digits = "the digits of the source"
+    path = Path(scene=scene, arc_length=0.3, steps=60, limits=1, unit=0.1 * LEE_UNIT, highest=20.0)
     return Problem(
         name="lees-frame",
         title="Lee's frame snaps through",
         statement="A column and a girder, 120 cm each, rigidly joined, hinged at their far ends; E = 720 kN/cm^2, A = 6 cm^2, I = 2 cm^4, rigid in "
         "shear. A dead load P presses the girder down 24 cm from the corner.",
-        source="Lee, Manuel and Rossow, Journal of the Engineering Mechanics Division, ASCE 94 (1968), 521-547",
-        quantities=(Quantity(name="P L^2/EI at the limit point", exact=LEE_LIMIT),),
+        source=f"{COUPLED}; the frame is that of Lee, Manuel and Rossow, Journal of the Engineering Mechanics Division, ASCE 94 (1968), 521-547",
+        quantities=(Quantity(name="P L^2/EI at the limit point", exact=lee_limit()),),
         trials=(
-            path.trial(EXACT, 5e-5, digits),
-            path.trial(mixed(8), 5e-5, f"{digits}; fourth order: 4 elements a beam leave 6e-5"),
+            path.trial(EXACT, 1e-8, CLOSED),
+            path.trial(mixed(8), 1e-5, FOURTH),
             path.trial(paper(15), 1e-2, SECOND),
         ),
-        picture=Picture(axes=("deflection under the load [cm]", "P L^2/EI"), shape=False),
+        picture=Picture(
+            axes=("deflection under the load [cm]", "P L^2/EI"), curves=(_curve(*_lee_path()),), shape=False
+        ),
     )
 
 
@@ -128,22 +175,23 @@ def toggle() -> Problem:
         loads=(LoadSpec(beam="left", end="end", force=(0.0, -1.0)),),
     )
     path = Path(scene=scene, arc_length=0.01, steps=60, limits=2, unit=1.0, highest=70.0)
-    digits = "the digits of the source, by finite elements"
+    greatest, least = toggle_limits()
     return Problem(
         name="williams-toggle",
         title="Williams' toggle: two limit loads",
         statement="Two beams clamped at their outer ends meet at an apex, half span 12.94328 in, rise .386 in; EA = 1.885e6 lb, EI = 9274 lb in^2, "
         "rigid in shear. A dead load presses the apex down.",
-        source="Williams, Quarterly Journal of Mechanics and Applied Mathematics 17 (1964), 451-469; the values of Wood and Zienkiewicz, "
-        "Computers and Structures 7 (1977), 725-735",
+        source=f"{COUPLED}; the frame is that of Williams, Quarterly Journal of Mechanics and Applied Mathematics 17 (1964), 451-469",
         quantities=(
-            Quantity(name="greatest load [lb]", exact=TOGGLE_LIMITS[0]),
-            Quantity(name="least load after it [lb]", exact=TOGGLE_LIMITS[1]),
+            Quantity(name="greatest load [lb]", exact=greatest),
+            Quantity(name="least load after it [lb]", exact=least),
         ),
         trials=(
-            path.trial(EXACT, 3e-4, digits),
-            path.trial(mixed(8), 3e-4, digits),
+            path.trial(EXACT, 1e-8, CLOSED),
+            path.trial(mixed(8), 1e-4, FOURTH),
             path.trial(paper(15), 1e-2, SECOND),
         ),
-        picture=Picture(axes=("deflection of the apex [in]", "load [lb]"), shape=False),
+        picture=Picture(
+            axes=("deflection of the apex [in]", "load [lb]"), curves=(_curve(*_toggle_path()),), shape=False
+        ),
     )
