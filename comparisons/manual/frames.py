@@ -72,48 +72,8 @@ LEE_UNIT = 120.0**2 / 1440.0
 """L^2/EI [1/kN]."""
 
 
-@cache
-def _lee_path() -> tuple[Array, Array]:
-    """Deflections of the loaded joint of Lee's frame and the loads, as ``P L^2/EI``, by exact rods."""
-    corner, loaded = (0.0, 120.0), (24.0, 120.0)
-    chain = Chain(
-        joints=((0.0, 0.0), corner, loaded, (120.0, 120.0)),
-        loaded=2,
-        clamped=False,
-        EA=4320.0,
-        GA=4.32e9,
-        EI=1440.0,
-    )
-    down = np.append(np.linspace(3.0, 45.0, 15), np.linspace(46.0, 51.5, 12))
-    return down, LEE_UNIT * load_path(chain, down)
-
-
-def _curve(down: Array, load: Array) -> Curve:
-    return Curve(style=ANSWER, points=np.stack([down, load], axis=1))
-
-
-def lee_limit() -> float:
-    """Return ``P L^2/EI`` of Lee's frame at its limit point, by exact rods."""
-    return summit(*_lee_path())[0]
-
-
-@cache
-def _toggle_path() -> tuple[Array, Array]:
-    """Deflections of the apex of Williams' toggle [in] and the loads [lb], by exact rods."""
-    joints = ((0.0, 0.0), (12.94328, 0.386), (25.88656, 0.0))
-    chain = Chain(joints=joints, loaded=1, clamped=True, EA=1.885e6, GA=1.885e10, EI=9274.0)
-    down = np.arange(1, 52) / 100.0
-    return down, load_path(chain, down)
-
-
-def toggle_limits() -> tuple[float, float]:
-    """Return the greatest load of Williams' toggle and the least one after it [lb], by exact rods."""
-    down, load = _toggle_path()
-    return summit(down[:32], load[:32])[0], -summit(down[26:], -load[26:])[0]
-
-
-def lee() -> Problem:
-    """Lee's frame."""
+def lee_scene() -> Scene:
+    """Return Lee's frame."""
     section: dict[str, Any] = {
         "area": 6.0,
         "second_moment": 2.0,
@@ -121,7 +81,7 @@ def lee() -> Problem:
         "shear_modulus": 7.2e8,
     }
     corner, loaded = (0.0, 120.0), (24.0, 120.0)
-    scene = Scene(
+    return Scene(
         name="lees-frame",
         units="kN, cm",
         load_parameters=1,
@@ -136,6 +96,65 @@ def lee() -> Problem:
         ),
         loads=(LoadSpec(beam="near", end="end", force=(0.0, -0.1)),),
     )
+
+
+def toggle_scene() -> Scene:
+    """Return Williams' toggle."""
+    section: dict[str, Any] = {
+        "youngs_modulus": 1.03e7,
+        "area": 1.885e6 / 1.03e7,
+        "second_moment": 9274.0 / 1.03e7,
+        "shear_modulus": 1.03e11,
+    }
+    apex = (12.94328, 0.386)
+    return Scene(
+        name="williams-toggle",
+        units="lb, in",
+        load_parameters=1,
+        beams=(
+            BeamSpec(name="left", start=(0.0, 0.0), end=apex, clamped=("start",), **section),
+            BeamSpec(name="right", start=apex, end=(25.88656, 0.0), clamped=("end",), **section),
+        ),
+        loads=(LoadSpec(beam="left", end="end", force=(0.0, -1.0)),),
+    )
+
+
+@cache
+def exact_path(scene: Scene, deflections: tuple[float, ...]) -> Array:
+    """Return deflections of a frame's loaded joint and its load there, columns of one array, by exact rods."""
+    first, loaded = scene.beams[0], scene.loads[0]
+    chain = Chain(
+        joints=(first.start, *(beam.end for beam in scene.beams)),
+        loaded=1 + [beam.name for beam in scene.beams].index(loaded.beam),
+        clamped=bool(first.clamped),
+        EA=first.EA,
+        GA=first.GA,
+        EI=first.EI,
+    )
+    return np.stack([np.array(deflections), load_path(chain, deflections)], axis=1)
+
+
+LEE_DOWN = (*np.linspace(3.0, 45.0, 15).tolist(), *np.linspace(46.0, 51.5, 12).tolist())
+"""Deflections of Lee's frame [cm], closer around its limit point."""
+TOGGLE_DOWN = tuple((np.arange(1, 52) / 100.0).tolist())
+"""Deflections of Williams' toggle [in]."""
+
+
+def lee_limit() -> float:
+    """Return ``P L^2/EI`` of Lee's frame at its limit point, by exact rods."""
+    down, load = exact_path(lee_scene(), LEE_DOWN).T
+    return LEE_UNIT * summit(down, load)[0]
+
+
+def toggle_limits() -> tuple[float, float]:
+    """Return the greatest load of Williams' toggle and the least one after it [lb], by exact rods."""
+    down, load = exact_path(toggle_scene(), TOGGLE_DOWN).T
+    return summit(down[:32], load[:32])[0], -summit(down[26:], -load[26:])[0]
+
+
+def lee() -> Problem:
+    """Lee's frame."""
+    scene = lee_scene()
     path = Path(scene=scene, arc_length=0.3, steps=60, limits=1, unit=0.1 * LEE_UNIT, highest=20.0)
     return Problem(
         name="lees-frame",
@@ -150,30 +169,16 @@ def lee() -> Problem:
             path.trial(paper(15), 1e-2, SECOND),
         ),
         picture=Picture(
-            axes=("deflection under the load [cm]", "P L^2/EI"), curves=(_curve(*_lee_path()),), shape=False
+            axes=("deflection under the load [cm]", "P L^2/EI"),
+            curves=(Curve(style=ANSWER, points=exact_path(scene, LEE_DOWN) * [1.0, LEE_UNIT]),),
+            shape=False,
         ),
     )
 
 
 def toggle() -> Problem:
     """Williams' toggle."""
-    section: dict[str, Any] = {
-        "youngs_modulus": 1.03e7,
-        "area": 1.885e6 / 1.03e7,
-        "second_moment": 9274.0 / 1.03e7,
-        "shear_modulus": 1.03e11,
-    }
-    apex = (12.94328, 0.386)
-    scene = Scene(
-        name="williams-toggle",
-        units="lb, in",
-        load_parameters=1,
-        beams=(
-            BeamSpec(name="left", start=(0.0, 0.0), end=apex, clamped=("start",), **section),
-            BeamSpec(name="right", start=apex, end=(25.88656, 0.0), clamped=("end",), **section),
-        ),
-        loads=(LoadSpec(beam="left", end="end", force=(0.0, -1.0)),),
-    )
+    scene = toggle_scene()
     path = Path(scene=scene, arc_length=0.01, steps=60, limits=2, unit=1.0, highest=70.0)
     greatest, least = toggle_limits()
     return Problem(
@@ -192,6 +197,8 @@ def toggle() -> Problem:
             path.trial(paper(15), 1e-2, SECOND),
         ),
         picture=Picture(
-            axes=("deflection of the apex [in]", "load [lb]"), curves=(_curve(*_toggle_path()),), shape=False
+            axes=("deflection of the apex [in]", "load [lb]"),
+            curves=(Curve(style=ANSWER, points=exact_path(scene, TOGGLE_DOWN)),),
+            shape=False,
         ),
     )
