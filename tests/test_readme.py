@@ -19,7 +19,7 @@ BLOCKS = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
 COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line]
 
 
-SLOW = ("crossval trade",)
+SLOW = ("crossval trade", "crossval manual")
 """Commands of a minute and more."""
 
 
