@@ -116,6 +116,7 @@ def solve_solid(scene: Scene, options: Options) -> Response:
             "displacement": displacement,
             "deformed": result.mesh_points + displacement,
             "cauchy_stress": fem_reference.nodal_stress(result, k),
+            "axial_stress": fem_reference.fibre_stress(result, k),
         }
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
 
@@ -173,7 +174,8 @@ def _response(
 def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
     """Return the TSM elements, each with its own two points: section forces jump at a contact.
 
-    Besides the fields, `beam` is the beam's number in the scene and `arc` the distance along its undeformed axis.
+    Besides the fields, `beam` is the beam's number in the scene, `arc` the distance along its undeformed axis, and the axial stresses
+    are those of the faces to the right and left of its direction; `height` is 0 where the section has none.
     """
     parts = [_one_beam(scene, number, result, k) for number in range(len(scene.beams))]
     data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -188,6 +190,8 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
     fraction = arc[:, None] / beam.length
     reference = (1.0 - fraction) * np.array(beam.start) + fraction * np.array(beam.end)
     N, V, M = stations.forces.reshape(-1, 3).T
+    area, inertia, _ = beam.cross_section
+    height = beam.height or 0.0
     return {
         "reference": reference,
         "displacement": deformed - reference,
@@ -198,6 +202,9 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
         "M": M,
         "beam": np.full(len(arc), float(number)),
         "arc": arc,
+        "height": np.full(len(arc), height),
+        "axial_stress_right": N / area + M * height / (2.0 * inertia),
+        "axial_stress_left": N / area - M * height / (2.0 * inertia),
     }
 
 

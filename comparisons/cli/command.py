@@ -16,6 +16,7 @@ from comparisons.cli import (
     solve,
     study,
     trade,
+    view,
 )
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
 from comparisons.files import OutputError
@@ -23,7 +24,7 @@ from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (scene_files, solve, compare, gate, reproduce, manual, study, results, trade, doctor)
+COMMANDS = (scene_files, solve, compare, view, gate, reproduce, manual, study, results, trade, doctor)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 
 
