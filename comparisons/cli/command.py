@@ -5,19 +5,19 @@ import os
 import sys
 from importlib import metadata
 
-from comparisons.cli import compare, reproduce, results, solve, study, trade
+from comparisons.cli import compare, extremes, reproduce, results, solve, study, trade
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
 from comparisons.files import OutputError
 from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (solve, compare, reproduce, study, results, trade)
+COMMANDS = (solve, compare, reproduce, extremes, study, results, trade)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command and return its exit status: 0 done, 2 bad input, 3 a solution that stopped."""
+    """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
     given = _parser().parse_args(arguments)
     try:
         status: int = given.run(given)

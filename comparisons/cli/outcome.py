@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]  # noqa: SLF001 - it has no public name
 
-DONE, BAD_INPUT, STOPPED, INTERRUPTED = 0, 2, 3, 130
-EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution stopped (the reason is named)"""
+DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
+EPILOG = """exit status: 0 completed and checked, 1 an answer is wrong (extremes), 2 bad input, 3 the solution stopped (the reason is named)"""
 
 
 def report(line: str) -> None:
