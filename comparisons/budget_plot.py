@@ -5,12 +5,15 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.budget import PARTS, QUANTITIES, STEPS, TIMES, Budget, budget_rows
 from comparisons.plot import figure, save
 from comparisons.studies.output import write_numbers
 
-# Okabe and Ito's palette: told apart with every common colour blindness.
-COLOURS = ("#E69F00", "#F0E442", "#56B4E9", "#D55E00", "#009E73", "#CC79A7", "#999999")
+COLOURS = (
+    palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
+)  # fmt: skip
+"""Of the parts, in their order."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:

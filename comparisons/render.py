@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.files import replacing
 from comparisons.plot import plot_panels
 from comparisons.stress import Panel
@@ -107,7 +108,7 @@ def _draw(panels: list[Panel], stress_label: str, picture: Path) -> None:
         plotter.add_mesh(body, clim=(0.0, top), cmap="viridis", lighting=False, scalar_bar_args=bar)
         for pin in panel.pins:
             ball = pyvista.Sphere(radius=radius, center=(*pin, 2.0 * radius))
-            plotter.add_mesh(ball, color="#D55E00", lighting=False)
+            plotter.add_mesh(ball, color=palette.PIN, lighting=False)
         plotter.add_text(panel.title, position="upper_edge", color="black", font_size=12)
         plotter.enable_parallel_projection()
         plotter.view_xy()
