@@ -173,7 +173,7 @@ def test_order_of_mixed_elements(trade: Trade) -> None:
 def test_files_hold_every_setting(trade: Trade, tmp_path: Path) -> None:
     files = write_trade(trade, tmp_path)
     assert all(file.stat().st_size for file in files)
-    assert {file.suffix for file in files} == {".csv", ".json", ".png", ".svg"}
+    assert {file.suffix for file in files} == {".csv", ".html", ".json", ".png", ".svg"}
     with (tmp_path / "trade.csv").open() as text:
         rows = list(csv.DictReader(text))
     assert len(rows) == len(trade.points)
