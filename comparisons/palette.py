@@ -11,7 +11,7 @@ YELLOW = "#F0E442"
 BLUE = "#0072B2"
 VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
-GREY = "#767676"
+GREY = "#444444"
 
 MODELS = {
     "exact rod": BLACK,

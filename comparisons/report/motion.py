@@ -19,6 +19,7 @@ DIGITS = 5
 """Decimals of its coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
 """Of the lines of runs: they tell them apart without colour."""
+INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 SOLID, EXACT, OTHER = 6.0, 1.2, 2.0
 """Widths of lines."""
 
@@ -157,11 +158,11 @@ def _width(label: str) -> float:
 
 
 def _line_style(label: str, number: int) -> dict[str, Any]:
-    """Colour, dashes and width; black is the ink of the page, which is light on a dark screen."""
+    """Colour, dashes and width; the page has its own black and grey, which are light on a dark screen."""
     colour, width = palette.colour(label), _width(label)
     unbroken = width == SOLID or colour == palette.BLACK
     return {
-        "colour": "var(--ink)" if colour == palette.BLACK else colour,
+        "colour": INKS.get(colour, colour),
         "dash": "none" if unbroken else DASHES[number % len(DASHES)],
         "width": width,
     }

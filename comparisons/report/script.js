@@ -1,6 +1,6 @@
 "use strict";
 
-const DATA = JSON.parse(document.getElementById("data").textContent);
+const DATA = JSON.parse(document.getElementById("_data").textContent);
 const PAD = { left: 58, right: 14, top: 12, bottom: 40 };
 const ZOOM = 0.02; // half the width of the enlarged piece, over the length of the beam
 const OTHERS = 5; // load parameters whose shapes stay in grey
@@ -14,7 +14,7 @@ function element(parent, name, attributes = {}) {
 }
 
 function write(parent, text, x, y, anchor) {
-  element(parent, "text", { x, y, "text-anchor": anchor }).textContent = text;
+  if (text) element(parent, "text", { x, y, "text-anchor": anchor }).textContent = text;
 }
 
 // Round numbers between two values, at most `wanted` intervals of them.
