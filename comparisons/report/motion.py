@@ -196,6 +196,7 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
         for number, run in enumerate(data["runs"])
     )
     charts = "\n".join(_chart_markup(number, track) for number, track in enumerate(data["tracks"]))
+    bands = "; bands reach from a model to the reference" if any(t.errors for t in data["tracks"]) else ""
     return f"""<noscript><p>The drawings of this section take a script; the files below hold the same numbers.</p></noscript>
 <div class="controls">
 <label class="slider">load parameter <input type="range" min="0" max="{steps - 1}" step="1" value="{steps - 1}"></label>
@@ -216,7 +217,7 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
 <div class="charts">
 {charts}
 </div>
-<p class="hint">Charts: point at them, or move along them with the arrow keys; bands reach from a model to the reference.</p>"""
+<p class="hint">Charts: point at them, or move along them with the arrow keys{bands}.</p>"""
 
 
 def _swatch(run: Mapping[str, Any]) -> str:

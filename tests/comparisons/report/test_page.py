@@ -1,11 +1,8 @@
 """What pages hold: the numbers of the other files, whole markup, nothing from elsewhere."""
 
 import json
-import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,68 +13,9 @@ from comparisons.models import solve
 from comparisons.palette import MODELS, colour
 from comparisons.report import Section, motion_section, page, picture, table, tracks
 from comparisons.scene import load_scene
+from tests.comparisons.report.markup import block, check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=4)
-VOID = {"meta", "link", "input", "img", "br", "hr"}
-
-
-class Outline(HTMLParser):
-    """Elements, anchors and targets of a page; fails where tags do not match."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.ids: list[str] = []
-        self.targets: list[str] = []
-        self.labels: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag not in VOID:
-            self.open.append(tag)
-        for name, value in attrs:
-            if name == "id":
-                self.ids.append(value or "")
-            if name in {"src", "href", "action", "data", "poster", "srcset"}:
-                self.targets.append(value or "")
-            if name == "aria-labelledby":
-                self.labels.append(value or "")
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.handle_starttag(tag, attrs)
-        if tag not in VOID:
-            self.open.pop()
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag, self.getpos()
-
-
-def outline(html: str) -> Outline:
-    found = Outline()
-    found.feed(html)
-    found.close()
-    assert not found.open
-    return found
-
-
-def block(html: str) -> dict[str, Any]:
-    """The JSON block of a page."""
-    found = re.search(r'<script type="application/json" id="_data">(.*?)</script>', html, re.DOTALL)
-    assert found
-    return json.loads(found[1])
-
-
-def check_alone(html: str, folder: Path) -> None:
-    """The page is whole, and loads nothing: its targets are its own anchors, its own data or files beside it."""
-    found = outline(html)
-    assert len(set(found.ids)) == len(found.ids)
-    assert set(found.labels) <= set(found.ids)
-    for target in found.targets:
-        inside = target.startswith("data:") or (target.startswith("#") and target[1:] in found.ids)
-        assert inside or (folder / target).is_file(), target[:80]
-    assert "://" not in html
-    assert "@import" not in html
-    assert "url(" not in html
-    assert "default-src 'none'" in html
 
 
 def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Path) -> None:
@@ -128,26 +66,6 @@ def test_the_page_of_a_comparison_is_alone(compared: Path) -> None:
 def test_the_page_of_ks_is_small(tmp_path: Path) -> None:
     assert main(["compare", "ks-cantilever", "--out", str(tmp_path)]) == 0
     assert 3e5 < (tmp_path / "report.html").stat().st_size < 3e6
-
-
-@pytest.mark.parametrize("figure", ["fig8", "fig9"])
-def test_the_page_of_the_paper(figure: str, tmp_path: Path) -> None:
-    assert main(["reproduce", figure, "--quick", "--out", str(tmp_path)]) == 0
-    html = (tmp_path / "report.html").read_text()
-    check_alone(html, tmp_path)
-    claims = (tmp_path / f"claims-{figure}.md").read_text()
-    assert html.count(f"({figure})</td>") == claims.count(f"({figure}) |") > 0
-    assert html.count("data:image/svg+xml") == 2
-    data = block(html)
-    if figure == "fig8":
-        assert len(data) == 3
-    else:
-        (double,) = data.values()
-        assert [track["title"] for track in double["tracks"][:2]] == [
-            "force, pin on upper",
-            "arc position, pin on upper",
-        ]
-        assert all(len(lines) == 2 for lines in double["runs"][0]["lines"])
 
 
 def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
