@@ -198,7 +198,7 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
     charts = "\n".join(_chart_markup(number, track) for number, track in enumerate(data["tracks"]))
     bands = "; bands reach from a model to the reference" if any(t.errors for t in data["tracks"]) else ""
     return f"""<noscript><p>The drawings of this section take a script; the files below hold the same numbers.</p></noscript>
-<div class="controls">
+<div class="controls" data-moving>
 <label class="slider">load parameter <input type="range" min="0" max="{steps - 1}" step="1" value="{steps - 1}"></label>
 <output aria-live="polite"></output>
 <button type="button" class="play" aria-pressed="false">play</button>

@@ -27,13 +27,15 @@ class Section:
     html : str
         Markup below the heading.
     data : object
-        What a script shows, in JSON's types, arrays or records; None if nothing moves. A script finds it as
-        ``data[ident]``.
+        What a script shows: JSON's types, arrays or records. A script finds it as ``DATA[ident]``.
+    script : str
+        A script of the section's own, run after the page's; it must not say ``</script``.
     """
 
     title: str
     html: str
     data: Any = None
+    script: str = ""
 
     @property
     def ident(self) -> str:
@@ -66,6 +68,7 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> str:
         style=_part("style.css"),
         script=_part("script.js"),
         data=json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
+        scripts="\n".join(f"<script>\n{{\n{one.script}\n}}\n</script>" for one in sections if one.script),
         links="\n".join(f'<a href="#{one.ident}">{text(one.title)}</a>' for one in sections),
         sections="\n".join(_framed(one) for one in sections),
     )
@@ -76,10 +79,9 @@ def _part(name: str) -> str:
 
 
 def _framed(section: Section) -> str:
-    moving = "" if section.data is None else " data-moving"
     heading = f'<h2 id="{section.ident}-heading">{text(section.title)}</h2>'
     return (
-        f'<section id="{section.ident}" aria-labelledby="{section.ident}-heading"{moving}>\n'
+        f'<section id="{section.ident}" aria-labelledby="{section.ident}-heading">\n'
         f"{heading}\n{section.html}\n</section>"
     )
 

@@ -260,7 +260,10 @@ function moving(section, data) {
   layout();
 }
 
-for (const section of document.querySelectorAll("[data-moving]")) moving(section, DATA[section.id]);
+for (const place of document.querySelectorAll("[data-moving]")) {
+  const section = place.closest("section");
+  moving(section, DATA[section.id]);
+}
 
 // A print has no switch to open what is folded.
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => (one.open = true)));

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons.models import solve
-from comparisons.report import motion_section, page, tracks
+from comparisons.report import Section, motion_section, page, tracks
 from comparisons.scene import load_scene
 from tests.comparisons.report.conftest import STEPS, Browser
 
@@ -167,6 +167,23 @@ def test_light_dark_and_paper(browser: Browser, compared: Path) -> None:
     paper = browser.printed(page).read_bytes()
     assert paper.startswith(b"%PDF")
     assert 3 <= paper.count(b"/Type /Page\n") <= 12
+
+
+def test_a_section_may_bring_a_script_and_data_of_its_own(browser: Browser, tmp_path: Path) -> None:
+    sections = [
+        Section(
+            title=title,
+            html="<p>-</p>",
+            data={"sum": [number, 1]},
+            script=f'const own = document.querySelector("#{title} p"); own.textContent = DATA["{title}"].sum.join("+");',
+        )
+        for title, number in (("first", 2), ("second", 3))
+    ]
+    (tmp_path / "report.html").write_text(page("t", "", sections))
+    script = 'told.texts = [...document.querySelectorAll("section p")].map((p) => p.textContent);'
+    found, console = browser.told(tmp_path / "report.html", script)
+    assert console == []
+    assert found["texts"] == ["2+1", "3+1"]
 
 
 def test_a_run_that_stopped_leaves_no_error(browser: Browser, tmp_path: Path) -> None:

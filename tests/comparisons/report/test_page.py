@@ -79,7 +79,6 @@ def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
     assert "<td>0.123</td>" in html
     assert "<td>-</td>" in html
     assert block(html) == {"data": {"text": "</script><b>", "nan": [None, 1.0]}}
-    assert html.count("data-moving>") == 1
 
 
 def test_sections_of_one_title_are_refused() -> None:
