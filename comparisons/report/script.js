@@ -1,7 +1,7 @@
 "use strict";
 
 const DATA = JSON.parse(document.getElementById("_data").textContent);
-const PAD = { left: 58, right: 14, top: 12, bottom: 40 };
+const PAD = { left: 64, right: 14, top: 12, bottom: 40 };
 const ZOOM = 0.02; // half the width of the enlarged piece, over the length of the beam
 const OTHERS = 5; // load parameters whose shapes stay in grey
 const ROUND_OFF = 1e-16; // smaller errors are drawn as this

@@ -80,7 +80,7 @@ def test_charts_follow_the_keys_and_the_pointer(browser: Browser, compared: Path
     key("End"); told.end = value();
     const frame = chart.getBoundingClientRect();
     const point = (part) => chart.dispatchEvent(new PointerEvent("pointermove", {
-      pointerType: "mouse", clientX: frame.left + 58 + part * (frame.width - 72) }));
+      pointerType: "mouse", clientX: frame.left + 64 + part * (frame.width - 78) }));
     point(0.5); told.half = one("output").textContent; point(0.0); told.first = one("output").textContent;
     """
     found = told(browser, compared, script)
