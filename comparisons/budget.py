@@ -10,7 +10,7 @@ The parts are extrapolated from runs that differ in one thing, so that they do n
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -154,7 +154,7 @@ def _augmented(problem: "SolidProblem") -> "SolidProblem":
     return replace(problem, contacts=(replace(problem.contacts[0], penetration=1e-12),))
 
 
-def budget_rows(budget: Budget) -> Iterator[dict[str, object]]:
+def budget_rows(budget: Budget) -> Iterator[dict[str, Any]]:
     """Yield one row for every quantity and load parameter: total, parts and rest."""
     for quantity in QUANTITIES:
         rest = budget.rest(quantity)

@@ -5,12 +5,16 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.budget import PARTS, QUANTITIES, STEPS, TIMES, Budget, budget_rows
 from comparisons.plot import figure, save
 from comparisons.studies.output import write_numbers
 
-# Okabe and Ito's palette: told apart with every common colour blindness.
-COLOURS = ("#E69F00", "#F0E442", "#56B4E9", "#D55E00", "#009E73", "#CC79A7", "#999999")
+COLOURS = (
+    palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
+)  # fmt: skip
+HATCHES = ("", "//", "..", "", "xx", "\\\\", "++")
+"""Of the parts, in their order; hatches tell neighbours apart in grey."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:
@@ -34,10 +38,20 @@ def plot_budget(budget: Budget, *paths: Path) -> None:
 def _stack(axes: Any, budget: Budget, quantity: str) -> None:
     places = np.arange(len(TIMES))
     above, below = np.zeros(len(TIMES)), np.zeros(len(TIMES))
-    for (name, values), colour in zip(budget.parts[quantity].items(), COLOURS, strict=True):
+    for (name, values), colour, hatch in zip(budget.parts[quantity].items(), COLOURS, HATCHES, strict=True):
         height = 100.0 * values
         bottom = np.where(height >= 0.0, above, below)
-        axes.bar(places, height, bottom=bottom, width=0.6, color=colour, label=name)
+        axes.bar(
+            places,
+            height,
+            bottom=bottom,
+            width=0.6,
+            color=colour,
+            label=name,
+            hatch=hatch,
+            edgecolor="0.25",
+            linewidth=0.0,
+        )
         above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
     axes.plot(
         places, 100.0 * budget.total[quantity], "k_", markersize=34, markeredgewidth=1.6, label="difference"

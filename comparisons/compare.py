@@ -7,6 +7,7 @@ from pathlib import Path
 
 from comparisons.budget import Budget, error_budget
 from comparisons.budget_plot import plot_budget, write_budget
+from comparisons.compare_report import write_comparison_page
 from comparisons.export import write_series
 from comparisons.files import writable_folder, write_text
 from comparisons.metrics import errors
@@ -144,12 +145,15 @@ def _write_all(
         files += [folder / name for name in ("budget.png", "budget.svg", "budget.json")]
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
+    series = {}
     for run in (MIXED, SOLID):
         if run.label in responses:
             write_series(writable_folder(folder / run.model), responses[run.label], scene)
-            files.append(folder / run.model / f"{run.model}.pvd")
+            series[run.label] = folder / run.model / f"{run.model}.pvd"
     write_text(folder / "table.csv", table_csv(rows))
-    files = [folder / "summary.json", folder / "table.csv", *files]
+    files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
+    page = write_comparison_page(scene, rows, budget, files, series, folder, reference=ROD.label)
+    files = [page, *files]
     write_text(folder / "summary.json", _summary(scene, rows, [path.relative_to(folder) for path in files]))
     return files
 

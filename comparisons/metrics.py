@@ -40,15 +40,29 @@ def errors(response: Response, reference: Response, *, pair: str | None, beam: s
     """
     if not np.array_equal(response.load_parameter, reference.load_parameter):
         return Errors(**dict.fromkeys(Errors.__dataclass_fields__, np.nan))
-    (ours, our_arc), (exact, exact_arc) = (_driven(item, pair, beam) for item in (response, reference))
-    differences = {
-        "contact_force": _relative(ours, exact),
-        "arc_position": np.abs(our_arc - exact_arc) / length,
-        "clamp_moment": _relative(response.supports[beam].moment, reference.supports[beam].moment),
-        "tip": np.hypot(*(response.tips[beam] - reference.tips[beam]).T) / length,
-    }
+    differences = error_histories(response, reference, pair=pair, beam=beam, length=length)
     largest = {name: _largest(values) for name, values in differences.items()}
     return Errors(**largest, **{f"{name}_end": float(values[-1]) for name, values in differences.items()})
+
+
+def error_histories(
+    response: Response, reference: Response, *, pair: str | None, beam: str, length: float
+) -> dict[str, Array]:
+    """Return what `errors` takes the largest of, shape (s,) each, over the load parameters that both reached."""
+    ours, exact = (histories(item, pair=pair, beam=beam) for item in (response, reference))
+    s = min(len(response.load_parameter), len(reference.load_parameter))
+    return {
+        "contact_force": _relative(ours["contact_force"][:s], exact["contact_force"]),
+        "arc_position": np.abs(ours["arc_position"][:s] - exact["arc_position"][:s]) / length,
+        "clamp_moment": _relative(ours["clamp_moment"][:s], exact["clamp_moment"]),
+        "tip": np.hypot(*(response.tips[beam][:s] - reference.tips[beam][:s]).T) / length,
+    }
+
+
+def histories(response: Response, *, pair: str | None, beam: str) -> dict[str, Array]:
+    """Return contact force, arc position and clamp moment over the load parameters, as `Errors` names and means them."""
+    force, arc = _driven(response, pair, beam)
+    return {"contact_force": force, "arc_position": arc, "clamp_moment": response.supports[beam].moment}
 
 
 def _driven(response: Response, pair: str | None, beam: str) -> tuple[Array, Array]:
@@ -61,7 +75,7 @@ def _driven(response: Response, pair: str | None, beam: str) -> tuple[Array, Arr
 
 
 def _relative(values: Array, reference: Array) -> Array:
-    return np.asarray(np.abs(values - reference) / np.abs(reference).max())
+    return np.asarray(np.abs(values - reference[: len(values)]) / np.abs(reference).max(initial=0.0))
 
 
 def _largest(values: Array) -> float:

@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.files import replacing
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.stress import Panel, Scale
 
-# Okabe and Ito's palette: told apart with every common colour blindness.
-SOLID = {"color": "#56B4E9", "linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
-EXACT = {"color": "#000000", "linewidth": 1.0}
+SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
+EXACT = {"linewidth": 1.0}
 BEAMS: tuple[dict[str, Any], ...] = (
-    {"color": "#E69F00", "marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
-    {"color": "#009E73", "marker": "s", "markersize": 4.0, "markerfacecolor": "none"},
-    {"color": "#D55E00", "marker": ".", "markersize": 4.0},
-    {"color": "#CC79A7", "marker": "^", "markersize": 4.0},
+    {"marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
+    {"marker": "s", "markersize": 4.0, "markerfacecolor": "none"},
+    {"marker": ".", "markersize": 4.0},
+    {"marker": "^", "markersize": 4.0},
 )
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay; the nearest ones of the scene are drawn."""
@@ -78,6 +78,7 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     for label, response in responses.items():
         exact = response.model in ("rod", "elastica")
         style = EXACT if exact else SOLID if response.model == "solid" else next(beam_styles)
+        style = {"color": palette.colour(label), **style}
         for k in nearest_steps(response.load_parameter) if len(response.load_parameter) else []:
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:
@@ -133,12 +134,12 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
         )
         bodies.set_clim(*scale.stress)
         axes.add_collection(bodies)
-        axes.plot(*panel.pins.T, linestyle="none", marker="o", color=scale.PIN, markersize=6)
+        axes.plot(*panel.pins.T, linestyle="none", marker="o", color=palette.PIN, markersize=6)
         for pin, force in zip(panel.pins, panel.forces, strict=True):
             if force.any():
                 tail = pin - scale.force * force
                 axes.annotate(
-                    "", pin, tail, arrowprops={"arrowstyle": "-|>", "color": scale.PIN, "linewidth": 2}
+                    "", pin, tail, arrowprops={"arrowstyle": "-|>", "color": palette.PIN, "linewidth": 2}
                 )
         axes.set(title=panel.title, aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
     fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)

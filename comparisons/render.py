@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.files import replacing
 from comparisons.plot import plot_panels
 from comparisons.stress import Panel, Scale
@@ -186,7 +187,7 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             plotter.add_mesh(
                 marks.combine().extract_surface(algorithm=None),
                 name="pins",
-                color=scale.PIN,
+                color=palette.PIN,
                 lighting=False,
                 render=False,
             )

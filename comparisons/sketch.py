@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.options import ModelError
 from comparisons.plot import figure, save
 from comparisons.scene import BeamSpec, Scene
 from comparisons.translate import to_rod, to_solid, to_structure
 
-BEAM, PIN, HELD, LOAD = "#0072B2", "#D55E00", "#000000", "#009E73"
+BEAM, PIN, HELD, LOAD = palette.BLUE, palette.PIN, palette.BLACK, palette.GREEN
 MARKS = {3: "s", 2: "^", 1: "o"}
 """Marker of a support by the number of components that it holds."""
 

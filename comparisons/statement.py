@@ -2,11 +2,14 @@
 
 import json
 import math
+import os
+import platform
 import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,24 @@ def versions() -> dict[str, str]:
     """Return the versions of Python and of the distributions behind the numbers."""
     found = {name: metadata.version(name) for name in DISTRIBUTIONS}
     return {"python": ".".join(map(str, sys.version_info[:3])), **found}
+
+
+def machine() -> dict[str, str]:
+    """Return what the wall times belong to: system, processor and the number of its cores."""
+    return {
+        "system": platform.platform(),
+        "processor": _processor() or platform.processor() or platform.machine(),
+        "cores": str(os.cpu_count() or "unknown"),
+    }
+
+
+def _processor() -> str:
+    """Name of the processor, where Linux states it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return ""
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
 
 
 def as_json(response: Response, **more: Any) -> str:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +66,6 @@ class Scale:
     stress: tuple[float, float]
     force: float
     label: str
-    PIN: ClassVar[str] = "#D55E00"
 
     @classmethod
     def of(cls, panels: Sequence[Panel], label: str) -> "Scale":

@@ -23,7 +23,7 @@ SHOWN = ("contact_force", "arc_position", "clamp_moment", "tip")
 
 def table_text(rows: list[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    lines = [HEADER, *(_cells(row) for row in rows)]
+    lines = [HEADER, *(cells(row) for row in rows)]
     widths = [max(len(line[column]) for line in lines) for column in range(len(HEADER))]
     first, *rest = (
         line[0].ljust(widths[0])
@@ -37,7 +37,8 @@ def table_text(rows: list[Row], reference: str) -> str:
     return "\n".join([title, "", first, "-" * len(first), *rest])
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def cells(row: Row) -> tuple[str, ...]:
+    """Return a run as text under `HEADER`."""
     shown = ["-" if row.errors is None else f"{getattr(row.errors, name):.1e}" for name in SHOWN]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"

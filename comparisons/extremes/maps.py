@@ -1,4 +1,4 @@
-"""The maps as one HTML file that needs nothing else: one table for each axis, models down, values across."""
+"""The maps as sections of a page: one table for each axis, models down, values across."""
 
 import math
 from collections import Counter
@@ -8,22 +8,20 @@ from itertools import pairwise
 from typing import Protocol
 
 from comparisons.extremes.cell import Judgement, Verdict
+from comparisons.report import Section
 
 MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WRONG: "✗ "}
 """What tells the verdicts apart without colour."""
 STYLE = """
-:root { color-scheme: light dark; --ground: #fff; --ink: #1a1a1a; --line: #bbb; --stop: #e8e8e8; --wrong: #d55e00; --on-wrong: #fff; }
-@media (prefers-color-scheme: dark) { :root { --ground: #16181b; --ink: #e8e8e8; --line: #4a4d52; --stop: #3a3d42; --wrong: #e8702a; --on-wrong: #000; } }
-body { font: 14px/1.4 system-ui, sans-serif; background: var(--ground); color: var(--ink); margin: 2em; }
-h2 { margin: 2em 0 .2em; } p { margin: .2em 0 .6em; max-width: 60em; }
-.map { overflow-x: auto; } table { border-collapse: separate; border-spacing: 2px; }
-th { font-weight: 600; text-align: left; padding: 3px 6px; } thead th { font-weight: 400; text-align: center; font-size: 12px; vertical-align: bottom; max-width: 7em; }
-tbody th { position: sticky; left: 0; background: var(--ground); white-space: nowrap; }
-td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: 12px; white-space: nowrap; }
-td.stopped { background: repeating-linear-gradient(45deg, var(--stop) 0 6px, transparent 6px 9px) var(--ground); border: 1px solid var(--line); }
-td.wrong { background: var(--wrong); color: var(--on-wrong); font-weight: 700; }
-td.none { color: var(--line); }
-.key td { min-width: 0; }
+<style>
+.map { overflow-x: auto; } .map table, .key { border-collapse: separate; border-spacing: 2px; }
+.map thead th { font-weight: 400; text-align: center; font-size: .75rem; white-space: normal; max-width: 7em; }
+.map tbody th { position: sticky; left: 0; background: var(--paper); }
+.map td, .key td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: .75rem; border: 0; print-color-adjust: exact; }
+td.stopped { background: repeating-linear-gradient(45deg, var(--line) 0 6px, transparent 6px 9px) var(--paper); outline: 1px solid var(--line); }
+td.wrong { background: #d55e00; color: #fff; font-weight: 700; }
+td.none { color: var(--line); } .key td { min-width: 0; }
+</style>
 """
 LEGEND = """A cell shows the largest error of force, arc position, moment and tip over all load parameters reached: of the comparisons that
 must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason. Hover over it to see what it
@@ -54,33 +52,19 @@ class Titled(Protocol):
         """What is solved."""
 
 
-def page(axes: Iterable[Titled], judgements: Sequence[Judgement], *, quick: bool) -> str:
-    """Return the page with one map for each axis that has cells."""
-    parts = []
+def sections(axes: Iterable[Titled], judgements: Sequence[Judgement]) -> list[Section]:
+    """Return the key and one map for each axis that has cells."""
+    parts = [Section(title="How to read the maps", html=f"{STYLE}<p>{LEGEND}</p>{_key()}")]
     for axis in axes:
         own = [item for item in judgements if item.cell.axis == axis.name]
         if own:
-            parts += [
-                f"<h2>{escape(axis.title)}</h2>",
-                f"<p>{escape(axis.scene)}. {_counted(own)}.</p>",
-                _map(own),
-            ]
-    return "\n".join(
-        [
-            "<!DOCTYPE html>",
-            '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
-            f"<title>Extremes</title><style>{STYLE}</style></head><body>",
-            "<h1>Where it holds, where it stops</h1>",
-            f"<p>{_counted(judgements)}{', a part of the matrix (quick)' if quick else ''}. {LEGEND}</p>",
-            _key(),
-            *parts,
-            "</body></html>",
-            "",
-        ]
-    )
+            about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
+            parts.append(Section(title=axis.title, html=about + _map(own)))
+    return parts
 
 
-def _counted(judgements: Sequence[Judgement]) -> str:
+def counted(judgements: Sequence[Judgement]) -> str:
+    """Return how many cells there are, and how many of each verdict."""
     number = Counter(item.verdict for item in judgements)
     return f"{len(judgements)} cells: " + ", ".join(f"{number[verdict]} {verdict}" for verdict in Verdict)
 

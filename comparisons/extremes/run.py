@@ -8,8 +8,9 @@ from pathlib import Path
 from comparisons.extremes.axes import AXES, matrix
 from comparisons.extremes.cell import Cell, Judgement, Verdict, judged
 from comparisons.extremes.checks import Results
-from comparisons.extremes.maps import page
+from comparisons.extremes.maps import counted, sections
 from comparisons.files import write_text
+from comparisons.report import page, provenance
 from comparisons.studies.output import Row, write_numbers, write_rows
 from comparisons.sweep.case import Case
 from comparisons.sweep.results import read_results
@@ -78,16 +79,17 @@ def _cost(case: Case) -> int:
 
 def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tuple[Path, ...]:
     """Write the three files and return their names."""
-    html = folder / "extremes.html"
-    write_text(html, page(AXES, judgements, quick=quick))
-    rows = [row(item) for item in judgements]
-    return (
-        html,
+    html, rows = folder / "extremes.html", [row(item) for item in judgements]
+    tables = (
         write_rows(folder / "extremes.csv", rows),
         write_numbers(
             folder / "extremes.json", {"quick": quick, "verdicts": counts(judgements), "cells": rows}
         ),
     )
+    part = ", a part of the matrix (quick)" if quick else ""
+    whole = [*sections(AXES, judgements), *provenance((), tables, folder)[1:]]
+    write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))
+    return html, *tables
 
 
 def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:

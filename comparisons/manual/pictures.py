@@ -5,20 +5,21 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from comparisons import palette
 from comparisons.manual.record import Curve, Picture
-from comparisons.plot import BEAMS, EXACT, SOLID, figure, save
+from comparisons.plot import SOLID, figure, save
 
 STYLES: dict[str, dict[str, Any]] = {
     "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--"},
     "path of the pin": {"color": "0.6", "linewidth": 0.8, "linestyle": ":"},
-    "solid": {**SOLID, "linewidth": 9.0},
-    "tsm timoshenko": {"color": BEAMS[3]["color"], "linewidth": 6.0},
-    "tsm mixed": {"color": BEAMS[1]["color"], "linewidth": 4.0},
-    "tsm exact": {"color": BEAMS[0]["color"], "linewidth": 2.2},
-    "rod": {"color": "#0072B2", "linewidth": 1.2},
-    "elastica": {"color": BEAMS[2]["color"], "linewidth": 1.2},
-    "exact answer": {**EXACT, "linewidth": 0.8, "linestyle": (0, (4, 3))},
-    "exact order": {**EXACT, "linewidth": 0.8, "linestyle": (0, (4, 3))},
+    "solid": {**SOLID, "color": palette.colour("solid"), "linewidth": 9.0},
+    "tsm timoshenko": {"color": palette.colour("TSM timoshenko"), "linewidth": 6.0},
+    "tsm mixed": {"color": palette.colour("TSM mixed"), "linewidth": 4.0},
+    "tsm exact": {"color": palette.colour("TSM exact"), "linewidth": 2.2},
+    "rod": {"color": palette.colour("exact rod"), "linewidth": 1.2},
+    "elastica": {"color": palette.colour("elastica"), "linewidth": 1.2},
+    "exact answer": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
+    "exact order": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
 }
 """Drawn in this order, each line narrower than those below it, so that those that agree are all seen."""
 

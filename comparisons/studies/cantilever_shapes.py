@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models import solve
 from comparisons.options import Options
@@ -157,10 +158,12 @@ def _draw_lift(axes: Any, scene: Scene, beams: Response, rod: Response) -> None:
     for part in DEPTHS:
         k = round(part * last)
         exact, line = rod.axis_line(name, k)[1], beams.axis_line(name, k)[1]
-        axes.plot(*exact.T, **{**EXACT, "linewidth": 4.0, "alpha": 0.25}, label=labels[0])
+        axes.plot(
+            *exact.T, color=palette.BLACK, **{**EXACT, "linewidth": 4.0, "alpha": 0.25}, label=labels[0]
+        )
         nodes = {"marker": ".", "markersize": 5, "markevery": (len(line) - 1) // ELEMENTS[0]}
         axes.plot(*line.T, color=FORMULATIONS[-1].color, linewidth=0.9, **nodes, label=labels[1])
         place = scene.pins[0].position(float(beams.load_parameter[k]))
-        axes.plot(*place, color="#D55E00", marker="^", linestyle="none", label=labels[2], zorder=5)
+        axes.plot(*place, color=palette.PIN, marker="^", linestyle="none", label=labels[2], zorder=5)
         axes.annotate(f"{place[1]:.2f}", (4.85, line[-1, 1]), fontsize="small", va="center", color="0.25")
         labels = ["_"] * 3

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.plot import figure, save
 from comparisons.studies.approach import NEAREST
 from comparisons.studies.critical_area import (
@@ -141,7 +142,7 @@ def plot_floors(found: CriticalAreas, *paths: Path) -> None:
     for one in found.floors:
         if one.psi == PRINTED_SHEAR_PSI:
             axes.plot(
-                RATIOS, one.floor, color="#56B4E9", marker="v", markersize=5.0, linestyle="-.", linewidth=1.0,
+                RATIOS, one.floor, color=palette.BLUE, marker="v", markersize=5.0, linestyle="-.", linewidth=1.0,
                 label="Timoshenko, printed G of section 4.2",
             )  # fmt: skip
     for edge in FITTED:

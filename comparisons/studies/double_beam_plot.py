@@ -5,15 +5,16 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.plot import figure, save
 from comparisons.response import Array
 from comparisons.studies.double_beam import LOWER, PAIRS, TIP, UPPER, DoubleBeam, Stage
 
-BEAMS = {"upper": "#0072B2", "lower": "#56B4E9"}
+BEAMS = {"upper": palette.BLUE, "lower": palette.SKY}
 STYLES: dict[str, tuple[str, Any]] = {
-    UPPER: ("#D55E00", "-"),
-    TIP: ("#CC79A7", (0, (6, 1))),
-    LOWER: ("#009E73", (0, (2, 1))),
+    UPPER: (palette.VERMILION, "-"),
+    TIP: (palette.PURPLE, (0, (6, 1))),
+    LOWER: (palette.GREEN, (0, (2, 1))),
 }
 NAMES = {UPPER: "pin on upper", TIP: "upper's tip on lower", LOWER: "pin on lower"}
 ARROW = 0.16

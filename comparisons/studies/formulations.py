@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from comparisons import palette
+
 
 @dataclass(frozen=True, kw_only=True)
 class Formulation:
@@ -10,9 +12,13 @@ class Formulation:
 
     element: str
     label: str
-    color: str
     marker: str
     linestyle: Any = "-"
+
+    @property
+    def color(self) -> str:
+        """The model's colour."""
+        return palette.colour(f"TSM {self.element}")
 
     @property
     def line(self) -> dict[str, Any]:
@@ -20,19 +26,15 @@ class Formulation:
         return {"color": self.color, "marker": self.marker, "linestyle": self.linestyle}
 
 
-# Okabe and Ito's palette: told apart with every common colour blindness; markers and dashes tell them apart in grey.
 FORMULATIONS = (
-    Formulation(
-        element="euler-bernoulli-simple", label="Euler-Bernoulli, simple", color="#D55E00", marker="o"
-    ),
+    Formulation(element="euler-bernoulli-simple", label="Euler-Bernoulli, simple", marker="o"),
     Formulation(
         element="euler-bernoulli-cantilever",
         label="Euler-Bernoulli, cantilever",
-        color="#E69F00",
         marker="s",
         linestyle=(0, (5, 2)),
     ),
-    Formulation(element="timoshenko", label="Timoshenko", color="#0072B2", marker="^"),
-    Formulation(element="mixed", label="mixed", color="#009E73", marker="D", linestyle=(0, (1, 1))),
+    Formulation(element="timoshenko", label="Timoshenko", marker="^"),
+    Formulation(element="mixed", label="mixed", marker="D", linestyle=(0, (1, 1))),
 )
 """The paper's three, then the one whose contact force is an unknown."""

@@ -23,6 +23,7 @@ from comparisons.studies.figures import FIGURES
 from comparisons.studies.formulations import FORMULATIONS
 from comparisons.studies.ks_shapes import READINGS, Shapes, ks_shapes, plot_readings, rows, shape_rows
 from comparisons.studies.output import write_numbers, write_rows
+from comparisons.studies.reproduce_report import write_reproduced_page
 
 Report = Callable[[str], None]
 
@@ -43,7 +44,8 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> Reprod
     name : str
         A key of `FIGURES`, or "all".
     folder : Path
-        Made if it is not there. The verdicts are ``claims.md``, those of a single figure ``claims-NAME.md``.
+        Made if it is not there. The verdicts are ``claims.md``, those of a single figure ``claims-NAME.md``; ``report.html`` shows what was
+        run last.
     quick : bool
         Whether to take coarse settings.
     report : callable
@@ -71,7 +73,8 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> Reprod
         found = replace(found, **{figure: study})
     claims = folder / ("claims.md" if name == "all" else f"claims-{name}.md")
     write_text(claims, claims_text(found))
-    return Reproduced(files=(*files, claims), stopped=tuple(stopped))
+    page = write_reproduced_page(found, [*files, claims], folder)
+    return Reproduced(files=(page, *files, claims), stopped=tuple(stopped))
 
 
 def _pictures(folder: Path, stem: str) -> list[Path]:

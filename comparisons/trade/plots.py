@@ -6,25 +6,25 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import palette
 from comparisons.plot import figure, save
 from comparisons.trade.cases import family
 from comparisons.trade.points import COSTS, OnFront, Trade, front
 from comparisons.trade.tables import short
 
-# Okabe and Ito's palette: told apart with every common colour blindness; markers tell the families apart in grey.
-STYLES = {
-    "TSM exact": ("#000000", "*"),
-    "TSM mixed": ("#009E73", "D"),
-    "TSM mixed-no-bow": ("#CC79A7", "v"),
-    "TSM timoshenko": ("#0072B2", "^"),
-    "TSM euler-bernoulli-simple": ("#D55E00", "o"),
-    "TSM euler-bernoulli-cantilever": ("#E69F00", "s"),
-    "solid Q2": ("#56B4E9", "h"),
-    "solid Q2-full": ("#999999", "P"),
-    "solid Q1": ("#444444", "X"),
-    "elastica": ("#F0E442", "d"),
+MARKERS = {
+    "TSM exact": "*",
+    "TSM mixed": "D",
+    "TSM mixed-no-bow": "v",
+    "TSM timoshenko": "^",
+    "TSM euler-bernoulli-simple": "o",
+    "TSM euler-bernoulli-cantilever": "s",
+    "solid Q2": "h",
+    "solid Q2-full": "P",
+    "solid Q1": "X",
+    "elastica": "d",
 }
-FRONTS = {"tsm": "#009E73", "solid": "#56B4E9"}
+FRONTS = {"tsm": palette.GREEN, "solid": palette.SKY}
 AXES = {
     "seconds": "processor seconds of one thread, scene to checked answer",
     "iterations": "Newton iterations of the whole path",
@@ -74,7 +74,8 @@ def _title(trade: Trade, quantity: str, scope: str) -> str:
 def _draw(axes: Any, trade: Trade, quantity: str, scope: str, cost: str, *, own: bool) -> None:
     """Draw every completed setting, the families in the order of the legend; what is uncertain bounds errors from below."""
     shown = [point for model in ("tsm", "solid", "elastica") for point in trade.of_model(model, scope)]
-    for name, (color, marker) in STYLES.items():
+    for name, marker in MARKERS.items():
+        color = palette.colour(name)
         for point in (one for one in shown if family(one.case) == name):
             error = (point.own_errors if own else point.errors)[scope][quantity]
             floor = trade.uncertainty(point.case.model if own else "rod", scope, quantity)

@@ -19,6 +19,7 @@ from comparisons.trade.orders import orders
 from comparisons.trade.plots import plot_all
 from comparisons.trade.points import COSTS, Point, Trade, front
 from comparisons.trade.references import Measured, best_reference, reference_cases, solid_limit
+from comparisons.trade.report import write_trade_page
 from comparisons.trade.tables import cheapest_rows, setting_rows
 
 Runner = Callable[[Sequence[Case]], Measured]
@@ -114,7 +115,8 @@ def write_trade(trade: Trade, folder: Path) -> list[Path]:
     }
     files = [write_rows(folder / name, rows) for name, rows in tables.items() if rows]
     files.append(write_numbers(folder / "trade.json", numbers))
-    return files + plot_all(trade, SHOWN, folder, SCOPES)
+    files += plot_all(trade, SHOWN, folder, SCOPES)
+    return [write_trade_page(trade, fitted[SHOWN], SHOWN, files, folder), *files]
 
 
 def _fronts(trade: Trade) -> list[Row]:

@@ -86,15 +86,18 @@ def _named(name: str, point: Point | None) -> Row:
 
 def cheapest_text(trade: Trade, quantity: str) -> str:
     """Return the cheapest settings for the errors of one quantity as aligned text, both scopes."""
+    blocks = (cheapest_lines(trade, quantity, scope) for scope in SCOPES)
+    return "\n\n".join(f"{title}\n\n{tabulated(rows)}" for title, rows in blocks)
+
+
+def cheapest_lines(trade: Trade, quantity: str, scope: str) -> tuple[str, list[Row]]:
+    """Return the cheapest settings for the errors of one quantity and scope as rows for people, below their title."""
     titles = {
         "end": f"at the load parameter {trade.reference.end:g}, any number of load steps",
         "path": f"the largest over all {trade.scene.load_parameters} load parameters",
     }
-    blocks = []
-    for scope, title in titles.items():
-        rows = [_line(cheapest(trade, scope, quantity, target)) for target in TARGETS]
-        blocks.append(f"cheapest for an error of {quantity.replace('_', ' ')}, {title}\n\n{tabulated(rows)}")
-    return "\n\n".join(blocks)
+    title = f"cheapest for an error of {quantity.replace('_', ' ')}, {titles[scope]}"
+    return title, [_line(cheapest(trade, scope, quantity, target)) for target in TARGETS]
 
 
 def _line(one: Cheapest) -> Row:
@@ -117,7 +120,12 @@ def _known(value: float) -> float | None:
 
 def orders_text(rows: Sequence[Row]) -> str:
     """Return the orders and cost exponents with what they are fitted to as aligned text."""
-    shown = [
+    return tabulated(order_lines(rows)) if rows else "no family has three settings"
+
+
+def order_lines(rows: Sequence[Row]) -> list[Row]:
+    """Return the orders and cost exponents with what they are fitted to as rows for people."""
+    return [
         {
             "family": row["family"],
             "order": row["order"],
@@ -129,7 +137,6 @@ def orders_text(rows: Sequence[Row]) -> str:
         }
         for row in rows
     ]
-    return tabulated(shown) if shown else "no family has three settings"
 
 
 def _range(row: Row, name: str) -> str | None:

@@ -15,7 +15,7 @@ from comparisons.scene import load_scene, read_scene, to_toml
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 FILES = {
     "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "tsm/tsm.pvd", "solid/solid.pvd",
-    "budget.png", "budget.svg", "budget.json",
+    "budget.png", "budget.svg", "budget.json", "report.html",
 }  # fmt: skip
 
 

@@ -57,7 +57,7 @@ def test_nearest_steps_are_distinct() -> None:
 
 def test_shapes_are_drawn_in_both_formats(beams: Response, tmp_path: Path) -> None:
     paths = [tmp_path / "shapes.png", tmp_path / "shapes.svg"]
-    plot_shapes(SCENE, {"TSM": beams, "exact rod": solve(SCENE, "rod")}, *paths)
+    plot_shapes(SCENE, {"TSM mixed": beams, "exact rod": solve(SCENE, "rod")}, *paths)
     assert imread(paths[0]).std() > 0.05
     assert "<svg" in paths[1].read_text()
     assert sorted(tmp_path.iterdir()) == paths

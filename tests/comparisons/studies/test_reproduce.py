@@ -18,6 +18,7 @@ from comparisons.studies.figures import FIGURES
 from comparisons.studies.ks_shapes import ks_shapes
 from comparisons.studies.reproduce import STUDIES, reproduce
 from comparisons.studies.verdict import Verdict
+from tests.comparisons.report.markup import block, check_alone
 
 PICTURES = {
     "fig7a": ["fig7a"],
@@ -70,7 +71,23 @@ def run(figure: str, folder: Path) -> dict[str, Any]:
     assert set(verdicts(folder, f"claims-{figure}.md")) == {
         claim.text for claim in CLAIMS if claim.figure == figure
     }
+    check_page(folder, figure)
     return json.loads((folder / f"{figure}.json").read_text())
+
+
+def check_page(folder: Path, figure: str) -> None:
+    """The page has every picture, every claim, and the shapes that move."""
+    html = (folder / "report.html").read_text()
+    check_alone(html, folder)
+    assert html.count(f"({figure})</td>") == len(verdicts(folder, f"claims-{figure}.md")) > 0
+    assert html.count("data:image/svg+xml") == len(PICTURES[figure])
+    moving = block(html)
+    assert len(moving) == {"fig8": 3, "fig9": 1}.get(figure, 0)
+    if figure == "fig9":
+        (double,) = moving.values()
+        titles = [track["title"] for track in double["tracks"][:2]]
+        assert titles == ["force, pin on upper", "arc position, pin on upper"]
+        assert all(len(lines) == 2 for lines in double["runs"][0]["lines"])
 
 
 def test_fig7a(tmp_path):

@@ -13,6 +13,7 @@ import pytest
 from comparisons.cli import main
 from comparisons.models import MODELS
 from comparisons.options import Options
+from comparisons.report import text
 from comparisons.scene import load_scene, to_toml
 from comparisons.scene.conditions import LoadSpec
 from comparisons.sweep import Case, Measurement, measure
@@ -23,6 +24,7 @@ from comparisons.trade.points import TARGETS, Point, Trade, cheapest, front
 from comparisons.trade.references import NoReferenceError, best_reference, reference_cases
 from comparisons.trade.sweep import measure_trade, write_trade
 from comparisons.trade.tables import cheapest_text, setting_rows, stopped_text
+from tests.comparisons.report.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 
@@ -173,11 +175,15 @@ def test_order_of_mixed_elements(trade: Trade) -> None:
 def test_files_hold_every_setting(trade: Trade, tmp_path: Path) -> None:
     files = write_trade(trade, tmp_path)
     assert all(file.stat().st_size for file in files)
-    assert {file.suffix for file in files} == {".csv", ".json", ".png", ".svg"}
-    with (tmp_path / "trade.csv").open() as text:
-        rows = list(csv.DictReader(text))
+    assert {file.suffix for file in files} == {".csv", ".html", ".json", ".png", ".svg"}
+    with (tmp_path / "trade.csv").open() as file:
+        rows = list(csv.DictReader(file))
     assert len(rows) == len(trade.points)
     assert {row["status"] for row in rows} >= {"COMPLETED", "LEFT_OUT"}
+    html = (tmp_path / "report.html").read_text()
+    check_alone(html, tmp_path)
+    assert html.count("data:image/svg+xml") == len(list(tmp_path.glob("*.svg")))
+    assert all(text(f"{one.measured.status}: {one.measured.message}") in html for one in trade.stopped)
     numbers = json.loads((tmp_path / "trade.json").read_text())
     assert len(numbers["cheapest"]) == len(SCOPES) * len(QUANTITIES) * len(TARGETS)
     assert {row["model"] for row in numbers["pareto"]} == {"tsm"}
@@ -216,8 +222,8 @@ def test_a_file_in_place_of_the_folder(tmp_path: Path, capsys: pytest.CaptureFix
 @pytest.mark.slow
 def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("trade", "ks-cantilever", "--quick", "--out", str(tmp_path)) == 0
-    with (tmp_path / "trade.csv").open() as text:
-        rows = list(csv.DictReader(text))
+    with (tmp_path / "trade.csv").open() as file:
+        rows = list(csv.DictReader(file))
     completed = [row for row in rows if row["status"] == "COMPLETED" and row["model"] in {"tsm", "solid"}]
     assert len(completed) >= 25
     known = [float(row["own_error_end_force"]) for row in completed]
