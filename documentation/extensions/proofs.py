@@ -20,9 +20,7 @@ def tests_in(path: str) -> frozenset[str]:
         return frozenset()
     tree = ast.parse(file.read_text(encoding="utf-8"))
     return frozenset(
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+        node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
     )
 
 

@@ -1,0 +1,91 @@
+"""The site is built without a warning, shows its notebooks' figures, and loads nothing from elsewhere."""
+
+import os
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tests.documentation.snippets import ROOT
+
+LOADED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "link": "href"}
+
+
+class Loaded(HTMLParser):
+    """What a page loads when it is shown."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        address = dict(attrs).get(LOADED.get(tag, ""))
+        if address:
+            self.addresses.append(address)
+
+
+def loaded_from_elsewhere(html: str) -> list[str]:
+    page = Loaded()
+    page.feed(html)
+    inline = re.findall(r"@import\s+[\"']?(\S+)|url\([\"']?([^\"')]+)", html)
+    return [a for a in [*page.addresses, *filter(None, sum(inline, ()))] if re.match(r"(https?:)?//", a)]
+
+
+def test_an_address_elsewhere_is_found() -> None:
+    assert loaded_from_elsewhere('<script src="https://cdn.example/x.js"></script>')
+    assert loaded_from_elsewhere('<link rel="stylesheet" href="//fonts.example/f.css">')
+    assert loaded_from_elsewhere("<style>@import 'https://fonts.example/f.css';</style>")
+    assert not loaded_from_elsewhere('<a href="https://example.org">link</a><img src="_images/a.png">')
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built as ``make docs`` does it."""
+    folder = tmp_path_factory.mktemp("site")
+    line = re.search(
+        r"-m sphinx (.*) -d docs/doctrees documentation docs/html", (ROOT / "Makefile").read_text()
+    )
+    assert line is not None
+    assert {"-W", "-n", "--keep-going"} <= set(line[1].split())
+    built = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "sphinx",
+            *line[1].split(),
+            "-d",
+            folder / "doctrees",
+            "documentation",
+            folder / "html",
+        ],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert built.returncode == 0, built.stderr
+    return folder / "html"
+
+
+@pytest.mark.slow
+def test_the_site_is_built_strictly_and_loads_nothing_from_elsewhere(site: Path) -> None:
+    pages = sorted(site.rglob("*.html"))
+    assert len(pages) > 25
+    for page in [*pages, *site.rglob("*.css")]:
+        assert loaded_from_elsewhere(page.read_text(encoding="utf-8")) == [], page
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "notebook", sorted(p.stem for p in (ROOT / "documentation" / "notebooks").glob("*.md"))
+)
+def test_a_notebook_shows_figures_and_numbers(notebook: str, site: Path) -> None:
+    html = (site / "notebooks" / f"{notebook}.html").read_text(encoding="utf-8")
+    assert "cell_output" in html
+    pictures = re.findall(r'<img [^>]*src="\.\./(_images/[^"]+\.png)"', html)
+    assert pictures
+    assert all((site / picture).stat().st_size > 5000 for picture in pictures)
