@@ -19,7 +19,7 @@ extensions = [
     "documentation.extensions.proofs",
     "documentation.extensions.generated",
 ]
-exclude_patterns = ["extensions", "_generated/*.md"]  # those pages are included by others
+exclude_patterns = ["extensions", "static", "_generated/*.md"]  # those pages are included by others
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
@@ -31,6 +31,8 @@ html_theme = "furo"
 html_title = "tsm-crossval"
 html_math_renderer = "mathml"
 html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_show_sphinx = False
 html_theme_options = {"navigation_with_keys": True}
 

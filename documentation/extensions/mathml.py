@@ -2,12 +2,18 @@
 
 import re
 from typing import Any
+from xml.etree import ElementTree as ET
 
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 from sphinx.locale import _
 from sphinx.util.math import get_node_equation_number
+
+
+NAMESPACE = "http://www.w3.org/1998/Math/MathML"
+PRIME = "\u2032"
+ET.register_namespace("", NAMESPACE)
 
 
 def mathml(latex: str, display: str) -> str:
@@ -18,7 +24,48 @@ def mathml(latex: str, display: str) -> str:
     >>> mathml("x^2", "inline")
     '<math xmlns="http://www.w3.org/1998/Math/MathML" display="inline"><mrow><msup><mi>x</mi><mn>2</mn></msup></mrow></math>'
     """
-    return str(convert(re.sub(r"\s+", " ", latex).strip(), display=display))
+    upright = re.sub(r"\\mathrm\{(\w+)\}", r"\\text{\1}", " ".join(latex.split()))
+    math = ET.fromstring(convert(upright, display=display))  # noqa: S314 - our own text
+    for parent in list(math.iter()):
+        for place, child in enumerate(list(parent)):
+            parent[place] = _primed(child)
+    return ET.tostring(math, encoding="unicode")
+
+
+def _primed(item: ET.Element) -> ET.Element:
+    """Return a superscript that starts with a prime with the prime beside its base.
+
+    The prime of a font is raised and small already; only fonts for mathematics have another one for superscripts.
+    """
+    if _name(item) not in ("msup", "msubsup"):
+        return item
+    *others, above = item
+    marks = list(above) if _name(above) == "mrow" else [above]
+    if not marks or marks[0].text != PRIME:
+        return item
+    base = _element("mrow", others[0], _mark())
+    rest = marks[1:]
+    kind = {(1, False): "mrow", (1, True): "msup", (2, False): "msub", (2, True): "msubsup"}
+    return _element(
+        kind[len(others), bool(rest)], base, *others[1:], *([_element("mrow", *rest)] if rest else [])
+    )
+
+
+def _name(item: ET.Element) -> str:
+    return item.tag.rpartition("}")[2]
+
+
+def _element(name: str, *children: ET.Element) -> ET.Element:
+    made = ET.Element(f"{{{NAMESPACE}}}{name}")
+    made.extend(children)
+    return made
+
+
+def _mark() -> ET.Element:
+    mark = _element("mo")
+    mark.text = PRIME
+    mark.attrib.update(lspace="0em", rspace="0em")
+    return mark
 
 
 def _inline(writer: Any, node: nodes.math) -> None:

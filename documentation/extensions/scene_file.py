@@ -31,15 +31,14 @@ def _section(header: str, kind: type, leave: set[str] = frozenset()) -> str:  # 
         if item.name in leave:
             continue
         sort, meaning = described[item.name]
-        rows.append(
-            (f"`{item.name}`", text(sort), _rule(kind, item.name), _default(item.default), text(meaning))
-        )
+        value = _rule(kind, item.name) or text(sort.replace("tuple of", "list of"))
+        rows.append((f"`{item.name}`", value, _default(item.default), text(meaning)))
     head = [" ".join(doc["Summary"]), " ".join(doc["Extended Summary"])]
     return "\n\n".join(
         [
             f"## `{header}`",
             *(text(part) for part in head if part),
-            table(("key", "type", "rule", "default", "meaning"), rows),
+            table(("key", "value", "default", "meaning"), rows),
         ]
     )
 
