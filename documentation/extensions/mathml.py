@@ -12,7 +12,7 @@ from sphinx.util.math import get_node_equation_number
 
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
-PRIME = "\u2032"
+PRIMES = ("\u2032", "\u2033")
 ET.register_namespace("", NAMESPACE)
 
 
@@ -41,9 +41,9 @@ def _primed(item: ET.Element) -> ET.Element:
         return item
     *others, above = item
     marks = list(above) if _name(above) == "mrow" else [above]
-    if not marks or marks[0].text != PRIME:
+    if not marks or marks[0].text not in PRIMES:
         return item
-    base = _element("mrow", others[0], _mark())
+    base = _element("mrow", others[0], _mark(marks[0].text))
     rest = marks[1:]
     kind = {(1, False): "mrow", (1, True): "msup", (2, False): "msub", (2, True): "msubsup"}
     return _element(
@@ -61,9 +61,9 @@ def _element(name: str, *children: ET.Element) -> ET.Element:
     return made
 
 
-def _mark() -> ET.Element:
+def _mark(text: str | None) -> ET.Element:
     mark = _element("mo")
-    mark.text = PRIME
+    mark.text = text
     mark.attrib.update(lspace="0em", rspace="0em")
     return mark
 
@@ -80,7 +80,7 @@ def _block(writer: Any, node: nodes.math_block) -> None:
         writer.body.append(f'<span class="eqno">({number})')
         writer.add_permalink_ref(node, _("Link to this equation"))
         writer.body.append("</span>")
-    writer.body.append(mathml(node.astext(), "block") + "</div>\n")
+    writer.body.append(f'<div class="formula">{mathml(node.astext(), "block")}</div></div>\n')
     raise nodes.SkipNode
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).parents[1] / "reference" / "messages.toml"
+FENCE = "```{code-block} text\n:class: message\n\n"
 _DATA: dict[str, Any] = tomllib.loads(FILE.read_text(encoding="utf-8"))
 SCENES: dict[str, str] = _DATA["scenes"]
 """Good scenes, each wrong after a change."""
@@ -69,5 +70,5 @@ def page() -> str:
     parts = []
     for title, group in groups().items():
         parts.append(f"## {title}")
-        parts += [f"```text\n{message.example}\n```\n\n{message.cure}" for message in group]
+        parts += [f"{FENCE}{message.example}\n```\n\n{message.cure}" for message in group]
     return "\n\n".join(parts) + "\n"
