@@ -18,6 +18,7 @@ test-all: lint
 	$(PYTEST)
 
 docs: setup
+	rm -rf docs
 	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d docs/doctrees documentation docs/html
 
 bench: setup

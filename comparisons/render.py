@@ -17,8 +17,8 @@ from comparisons.plot import plot_panels
 from comparisons.stress import Panel
 
 TIMEOUT = 60.0
-SOFTWARE = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}
-"""Makes VTK draw in memory by libOSMesa alone."""
+ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"})
+"""Tried in turn: VTK's own choice, then drawing in memory by libOSMesa alone."""
 
 BAR = {
     "color": "black",
@@ -43,7 +43,7 @@ def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | N
     with tempfile.TemporaryDirectory() as folder, replacing(path) as temporary:
         data = Path(folder) / "panels.npz"
         _write(data, panels, stress_label)
-        if not any(_rendered(data, temporary, extra) for extra in ({}, SOFTWARE)):
+        if not any(_rendered(data, temporary, extra) for extra in ENVIRONMENTS):
             plot_panels(panels, stress_label, temporary)
             return (
                 "off-screen rendering is not available here (no OpenGL), matplotlib drew the picture instead"
@@ -51,16 +51,32 @@ def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | N
     return None
 
 
+def renders() -> bool:
+    """Whether off-screen rendering works on this machine: a trial in a child process."""
+    trial = (
+        "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.screenshot(); p.close()"
+    )
+    return any(_run(["-c", trial], extra) for extra in ENVIRONMENTS)
+
+
 def _rendered(data: Path, picture: Path, environment: dict[str, str]) -> bool:
     """Whether a child process wrote the picture."""
-    command = [sys.executable, "-m", "comparisons.render", str(data), str(picture)]
+    return _run(["-m", "comparisons.render", str(data), str(picture)], environment) and picture.is_file()
+
+
+def _run(arguments: list[str], environment: dict[str, str]) -> bool:
+    """Whether a child process of our own interpreter came to its end."""
     try:
         child = subprocess.run(  # noqa: S603 our own interpreter and module
-            command, env={**os.environ, **environment}, capture_output=True, timeout=TIMEOUT, check=False
+            [sys.executable, *arguments],
+            env={**os.environ, **environment},
+            capture_output=True,
+            timeout=TIMEOUT,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return False
-    return child.returncode == 0 and picture.is_file()
+    return child.returncode == 0
 
 
 def _write(path: Path, panels: list[Panel], stress_label: str) -> None:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from tsm import present
 from tsm.contact import arc_position, project
-from tsm.elements.curve import Curve
-from tsm.elements.properties import Array
+from tsm.elements.axis import PointForce, deflected_axes
+from tsm.elements.properties import Array, Properties
 from tsm.events import Event, normal_force
-from tsm.model import Model
+from tsm.model import BeamModel, Model
 from tsm.newton import Equilibrium
 from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces
@@ -57,9 +59,9 @@ class SupportHistory:
     moment: Array
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Result:
-    """Outcome of a solution.
+    """Outcome of a solution. It prints itself in a few lines and draws itself.
 
     Attributes
     ----------
@@ -98,8 +100,19 @@ class Result:
     events: tuple[Event, ...]
     unknowns: int
     wall_seconds: float
-    model: Model = field(repr=False)
-    equilibria: tuple[Equilibrium, ...] = field(repr=False)
+    model: Model
+    equilibria: tuple[Equilibrium, ...]
+
+    def __repr__(self) -> str:
+        return present.summary(self)
+
+    def arrays(self) -> dict[str, Array]:
+        """Histories by name, see `tsm.present.arrays`: what ``numpy.savez`` and data frames take."""
+        return present.arrays(self)
+
+    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
+        """Draw the deflected axes, see `tsm.present.plot`."""
+        return present.plot(self, axes, shown)
 
     @cached_property
     def strain_energy(self) -> Array:
@@ -140,18 +153,17 @@ class Result:
         arc : ndarray, shape (m,)
             Distance along the undeformed axis.
         xy : ndarray, shape (m, 2)
-            Deformed position, in closed-form elements without the dent of a contact.
+            Deformed position.
         """
         place, exact = self.model.beams[beam], self.model.rods is not None and self._exact(beam)
         default = max(10, math.ceil(100 / place.beam.elements)) if exact else 10
         xi = np.linspace(0, 1, (points_per_element or default) + 1)
-        arcs, points = [], []
-        for e in range(place.first, place.last + 1):
-            xy = self._exact_axis(e, k, xi) if exact else self._curve(e, k, xi)
-            keep = slice(None) if e == place.last else slice(-1)
-            points.append(xy[keep])
-            arcs.append(place.arcs[e - place.first] + xi[keep] * place.lengths[e - place.first])
-        return np.concatenate(arcs), np.concatenate(points)
+        if exact:
+            axes = np.array([self._exact_axis(e, k, xi) for e in range(place.first, place.last + 1)])
+        else:
+            axes = self._closed_axis(place, k, xi)
+        arcs = np.array(place.arcs[:-1])[:, None] + xi * np.array(place.lengths)[:, None]
+        return np.append(arcs[:, :-1], place.beam.length), np.concatenate([*axes[:, :-1], axes[-1, -1:]])
 
     def _exact(self, beam: str) -> bool:
         return bool(np.isin(self.model.beams[beam].first, self.model.exact))
@@ -162,14 +174,20 @@ class Result:
         state = self.equilibria[k].state
         return deflected(rods, state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
 
-    def _curve(self, e: int, k: int, xi: Array) -> Array:
-        x = self.equilibria[k].state.q[self.model.dofs[:, e]]
-        curve = Curve(self.model.element[e], x)
-        w = curve.deflection(xi)[0]
-        d = np.array([curve.dx, curve.dy])
-        xy: Array = self.model.element_start[e] + x[:2] + xi[:, None] * d
-        xy += w[:, None] * np.array([-d[1], d[0]])
-        return xy
+    def _closed_axis(self, place: BeamModel, k: int, xi: Array) -> Array:
+        """Positions on all elements of a beam, shape (elements, m, 2)."""
+        state, system = self.equilibria[k].state, self.equilibria[k].system
+        own = slice(place.first, place.last + 1)
+        x, part = state.q[self.model.dofs[:, own]], self.model.place[own]
+        p = Properties(*(np.asarray(values)[part] for values in self.model.properties))
+        contacts = [
+            PointForce(touch.element - place.first, touch.xi, touch.force)
+            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
+            if touch is not None and pair.target is place and pair.slot >= 0
+        ]
+        axes = deflected_axes(p, x, system.closed_force[:, part], contacts, xi)
+        starts: Array = np.array(self.model.element_start[own]) + x[:2].T
+        return starts[:, None] + axes
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""

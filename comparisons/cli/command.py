@@ -5,14 +5,14 @@ import os
 import sys
 from importlib import metadata
 
-from comparisons.cli import compare, reproduce, results, solve, study, trade
+from comparisons.cli import compare, doctor, gate, reproduce, results, scene_files, solve, study, trade
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
 from comparisons.files import OutputError
 from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (solve, compare, reproduce, study, results, trade)
+COMMANDS = (scene_files, solve, compare, gate, reproduce, study, results, trade, doctor)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 
 

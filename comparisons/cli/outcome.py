@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]  # noqa: SLF001 - it has no public name
 
-DONE, BAD_INPUT, STOPPED, INTERRUPTED = 0, 2, 3, 130
+DONE, WRONG, BAD_INPUT, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution stopped (the reason is named)"""
 
 

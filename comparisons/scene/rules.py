@@ -5,7 +5,7 @@ A record names the rule of a field in the field's type, ``Annotated[float, posit
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import cache
 from itertools import pairwise
 from typing import Annotated, Any, get_args, get_type_hints
@@ -56,7 +56,7 @@ def shown(value: object) -> str:
 
 
 @cache
-def _rules(kind: type) -> dict[str, Rule]:
+def field_rules(kind: type) -> dict[str, Rule]:
     """Return the rule of every field, the first annotation of its type."""
     hints = get_type_hints(kind, include_extras=True).items()
     return {
@@ -73,7 +73,7 @@ def apply_rules(record: Any) -> None:
     FieldError
         For the first field that breaks its rule.
     """
-    rules = _rules(record.__class__)
+    rules = field_rules(record.__class__)
     for item in fields(record):
         value = getattr(record, item.name)
         if value is None and item.default is None:
@@ -212,28 +212,42 @@ def truth(value: object) -> bool:
     return value
 
 
-def choice(*options: str) -> Rule:
-    """Return the rule: one of `options`."""
+@dataclass(frozen=True)
+class Choice:
+    """The rule: one of `options`."""
 
-    def rule(value: object) -> str:
-        if not isinstance(value, str) or value not in options:
-            raise RuleError("must be one of " + ", ".join(f'"{option}"' for option in options))
+    options: tuple[str, ...]
+
+    def __call__(self, value: object) -> str:
+        """Accept an option."""
+        if not isinstance(value, str) or value not in self.options:
+            raise RuleError("must be one of " + ", ".join(f'"{option}"' for option in self.options))
         return value
 
-    return rule
 
+@dataclass(frozen=True)
+class Subset:
+    """The rule: some of `options`, each once."""
 
-def subset(*options: str) -> Rule:
-    """Return the rule: some of `options`, each once."""
+    options: tuple[str, ...]
 
-    def rule(value: object) -> tuple[str, ...]:
+    def __call__(self, value: object) -> tuple[str, ...]:
+        """Accept a list of options."""
         items = sequence(value)
-        wanted = ", ".join(f'"{option}"' for option in options)
-        if not items or any(item not in options for item in items) or len(set(items)) != len(items):
+        wanted = ", ".join(f'"{option}"' for option in self.options)
+        if not items or any(item not in self.options for item in items) or len(set(items)) != len(items):
             raise RuleError(f"must be a list of some of {wanted}, each once")
         return tuple(str(item) for item in items)
 
-    return rule
+
+def choice(*options: str) -> Choice:
+    """Return the rule: one of `options`."""
+    return Choice(options)
+
+
+def subset(*options: str) -> Subset:
+    """Return the rule: some of `options`, each once."""
+    return Subset(options)
 
 
 def ends(value: object) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import pytest
 
 import tsm
 from tsm.contact import Projection, nearest_chord, project, slide
+from tsm.elements.curve import Curve
 from tsm.model import Model
 
 SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
@@ -197,15 +198,22 @@ def test_one_owner_at_a_kink(bend, ulps):
 
 
 def test_projection_is_the_closest_point():
-    """Against a search over a fine division of the deflected axis."""
+    """Against a search over a fine division of the elements' curves."""
     structure = cantilever(((0.8, 0.0), (0.8, 0.3)))
     result = tsm.solve(structure, TENTHS)
     model, state = result.model, result.equilibria[-1].state
-    pair = model.pairs[0]
+    pair, xi = model.pairs[0], np.linspace(0, 1, 2001)
+    lines = []
+    for e in range(10):
+        x = state.q[model.dofs[:, e]]
+        curve = Curve(model.element[e], x)
+        d = np.array([curve.dx, curve.dy])
+        across = np.outer(curve.deflection(xi)[0], (-d[1], d[0]))
+        lines.append(model.element_start[e] + x[:2] + np.outer(xi, d) + across)
+    arc, xy = np.add.outer(np.arange(10), xi).ravel() / 10, np.concatenate(lines)
     for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
         moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
         seen = project(model, replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,)))
-        arc, xy = result.axis_line("b", -1, points_per_element=2000)
         distance = np.hypot(*(xy - np.array(target)).T)
         nearest = int(np.argmin(distance))
         assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)

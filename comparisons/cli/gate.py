@@ -1,0 +1,78 @@
+"""``crossval gate``: bounds on errors, for continuous integration."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from comparisons.cli import values
+from comparisons.cli.outcome import DONE, WRONG, exit_status, report
+from comparisons.files import writable_file, write_text
+from comparisons.options import OPTIONS, QUANTITIES, Options
+from comparisons.scene import load_scene
+
+if TYPE_CHECKING:
+    from comparisons.cli.outcome import Commands
+
+GATE_EPILOG = """exit status: 0 every bound holds, 1 an error lies beyond its bound, 2 bad input, 3 a solution stopped"""
+
+
+def add_to(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    gate = commands.add_parser(
+        "gate",
+        help="fail where errors lie beyond bounds",
+        description="Errors are relative and the largest over all load parameters, against the exact rod where it can state "
+        "the scene, else against exact TSM elements.",
+        epilog=GATE_EPILOG,
+    )
+    gate.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
+    gate.add_argument(
+        "--max-error",
+        required=True,
+        action="append",
+        type=_bound,
+        metavar="QUANTITY=X",
+        help="a bound, any number of them: " + ", ".join(QUANTITIES),
+    )
+    gate.add_argument("--model", choices=OPTIONS, default="tsm", help="the model that is measured (tsm)")
+    gate.add_argument("--against", choices=OPTIONS, help="the model that it is measured against")
+    gate.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
+    gate.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
+    gate.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
+    gate.add_argument("--junit", metavar="FILE", help="write the bounds as JUnit XML")
+    gate.set_defaults(run=run)
+
+
+def _bound(text: str) -> tuple[str, float]:
+    quantity, _, bound = text.partition("=")
+    try:
+        value = float(bound)
+    except ValueError:
+        value = -1.0
+    if quantity not in QUANTITIES or not value > 0:
+        raise argparse.ArgumentTypeError(
+            f"{text}: must be QUANTITY=X with X above 0 and one of {', '.join(QUANTITIES)}"
+        )
+    return quantity, value
+
+
+def run(given: argparse.Namespace) -> int:
+    """Measure, print the bounds and write them."""
+    scene = load_scene(given.scene)
+    file = None if given.junit is None else writable_file(Path(given.junit))
+    from comparisons.gate import gate
+
+    options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
+    found = gate(scene, given.model, options, dict(given.max_error), given.against)
+    if file is not None:
+        write_text(file, found.junit())
+    print(f"{scene.name}: {given.model} against {found.reference.model}")
+    for item in found.bounds:
+        print(f"  {item.quantity:8s} {item.error:9.3g}  {'<=' if item.held else '> '} {item.bound:g}")
+    status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
+    if status != DONE or found.held:
+        return status
+    report(
+        f"crossval: {', '.join(item.quantity for item in found.bounds if not item.held)}: beyond the bound"
+    )
+    return WRONG

@@ -1,0 +1,105 @@
+"""The JSON Schema of scene files, for editors: made from the records and their rules."""
+
+import json
+import re
+from dataclasses import MISSING, fields
+from inspect import getdoc
+from pathlib import Path
+from typing import Any
+
+from comparisons.files import write_text
+from comparisons.scene import rules
+from comparisons.scene.read import LISTS
+from comparisons.scene.records import Scene
+from comparisons.scene.rules import Choice, Rule, Subset, field_rules
+
+Schema = dict[str, Any]
+NUMBER: Schema = {"type": "number"}
+COUNT: Schema = {"type": "integer", "minimum": 1, "maximum": 100_000}
+POINT: Schema = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
+END: Schema = {"enum": ["start", "end"]}
+OF_RULES: dict[Rule, Schema] = {
+    rules.number: NUMBER,
+    rules.positive: {"type": "number", "exclusiveMinimum": 0},
+    rules.poissons_ratio: {"type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5},
+    rules.whole_number: COUNT,
+    rules.parts: {
+        "type": "array",
+        "items": {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+    },
+    rules.mesh: {"type": "array", "items": COUNT, "minItems": 2, "maxItems": 2},
+    rules.point: POINT,
+    rules.polyline: {"type": "array", "items": POINT, "minItems": 2},
+    rules.text: {"type": "string", "minLength": 1},
+    rules.name: {"type": "string", "pattern": r"^[\w-]+$"},
+    rules.units: {"type": "string", "pattern": "^[^,]*[^, ][^,]*,[^,]*[^, ][^,]*$"},
+    rules.truth: {"type": "boolean"},
+    rules.ends: {"type": "array", "items": END, "uniqueItems": True},
+}
+"""What a rule says about a value, as far as a schema can say it."""
+
+
+def json_schema() -> Schema:
+    """Return the schema: what it refuses the reader refuses too; rules between keys are the reader's alone.
+
+    Examples
+    --------
+    >>> json_schema()["properties"]["beam"]["items"]["properties"]["height"]["exclusiveMinimum"]
+    0
+    """
+    tables = {
+        kind: {"type": "array", "minItems": 1, "items": _record(record)} for kind, record in LISTS.items()
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Scene of tsm-crossval",
+        "type": "object",
+        "properties": {
+            "scene": _record(Scene, leave=tuple(f"{kind}s" for kind in LISTS)),
+            **tables,
+        },
+        "required": ["scene", "beam"],
+        "additionalProperties": False,
+    }
+
+
+def json_schema_text() -> str:
+    """Return the schema as the text of ``scene.schema.json``, which is shipped."""
+    return json.dumps(json_schema(), indent=1) + "\n"
+
+
+def _record(kind: type, leave: tuple[str, ...] = ()) -> Schema:
+    known = [item for item in fields(kind) if item.name not in leave]
+    of_fields, texts = field_rules(kind), _descriptions(kind)
+    properties = {}
+    for item in known:
+        default = {} if item.default in (MISSING, None) else {"default": item.default}
+        properties[item.name] = {"description": texts[item.name], **_of_rule(of_fields[item.name]), **default}
+    return {
+        "type": "object",
+        "description": (getdoc(kind) or "").partition("\n")[0],
+        "properties": properties,
+        "required": [item.name for item in known if item.default is MISSING],
+        "additionalProperties": False,
+    }
+
+
+def _of_rule(rule: Rule) -> Schema:
+    if isinstance(rule, Choice):
+        return {"enum": list(rule.options)}
+    if isinstance(rule, Subset):
+        return {"type": "array", "items": {"enum": list(rule.options)}, "uniqueItems": True, "minItems": 1}
+    return OF_RULES[rule]
+
+
+def _descriptions(kind: type) -> dict[str, str]:
+    """Return what a record's docstring says about its fields."""
+    found: dict[str, str] = {}
+    for names, text in re.findall(r"^(\w[\w, ]*) : .*\n((?: +.*\n?)+)", getdoc(kind) or "", re.MULTILINE):
+        for name in names.split(", "):
+            found[name] = " ".join(text.split()).replace("``", "`")
+    return found
+
+
+if __name__ == "__main__":
+    write_text(Path(__file__).with_name("scene.schema.json"), json_schema_text())

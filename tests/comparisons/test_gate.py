@@ -1,0 +1,77 @@
+"""``crossval gate``: bounds hold or break, on the screen, in the exit status and as JUnit XML."""
+
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from comparisons.cli import main
+from comparisons.scene import built_in_scenes
+
+KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
+Output = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> str:
+    path = tmp_path / "my.toml"
+    path.write_text(KS)
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "status"),
+    [
+        (["force=1e-3"], 0),
+        (["force=1e-3", "tip=1e-3", "moment=1e-3", "arc=1e-3"], 0),
+        (["force=1e-3", "tip=1e-15"], 1),
+    ],
+)
+def test_bounds(scene: str, bounds: list[str], status: int, capsys: Output) -> None:
+    assert main(["gate", scene, *(f"--max-error={bound}" for bound in bounds)]) == status
+    out, error = capsys.readouterr()
+    assert out.startswith("ks-cantilever: tsm against rod\n")
+    assert out.count("<=") == len(bounds) - status
+    assert error == ("crossval: tip: beyond the bound\n" if status else "")
+
+
+def test_the_error_is_that_of_the_resolution(scene: str) -> None:
+    """The force of ``mixed`` with 10 elements is 1.5e-5 off, with 20 elements a sixteenth of that."""
+    assert main(["gate", scene, "--max-error", "force=2e-5", "--elements", "10"]) == 0
+    assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "10"]) == 1
+    assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "20"]) == 0
+
+
+def test_junit(scene: str, tmp_path: Path) -> None:
+    file = tmp_path / "gate.xml"
+    assert main(["gate", scene, "--max-error=force=1e-3", "--max-error=tip=1e-15", "--junit", str(file)]) == 1
+    suite = ET.parse(file).getroot()  # noqa: S314 - our own
+    assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
+    assert [len(case) for case in suite] == [0, 1]
+    assert "against rod" in str(suite[1][0].get("message"))
+
+
+def test_a_model_without_an_exact_rod_is_measured_against_exact_elements(capsys: Output) -> None:
+    assert main(["gate", "double-beam", "--max-error", "force=1e-3", "--elements", "10"]) == 0
+    assert capsys.readouterr().out.startswith("double-beam: tsm against tsm")
+
+
+def test_a_solution_that_stops_holds_no_bound(tmp_path: Path, capsys: Output) -> None:
+    scene = tmp_path / "stops.toml"
+    scene.write_text(
+        built_in_scenes()["ks-cantilever"]
+        .replace("[[contact]]", "[[contact]]\nkeep = true")
+        .replace("0.6366197723675814]", "3.0]")
+    )
+    assert main(["gate", str(scene), "--max-error", "force=1", "--elements", "10"]) == 3
+    out, error = capsys.readouterr()
+    assert "inf" in out
+    assert error.startswith("crossval: ")
+
+
+@pytest.mark.parametrize("bound", ["force", "force=", "force=-1", "force=0", "force=nan", "weight=1"])
+def test_bad_bounds(scene: str, bound: str, capsys: Output) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["gate", scene, "--max-error", bound])
+    assert caught.value.code == 2
+    assert f"{bound}: must be QUANTITY=X" in capsys.readouterr().err

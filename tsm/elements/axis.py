@@ -1,0 +1,84 @@
+"""The deflected axis inside closed-form elements, at equal lengths of arc: for shapes, not for equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements.properties import Array, Properties, chord_rotation, unwind
+
+_PIECES, _ROUNDS = 8, 3
+"""Pieces with a linear curvature each, and rounds of the iteration, each of which gains two powers of the length."""
+
+
+class PointForce(NamedTuple):
+    """Force (x, y) of a contact on element number `element`, at xi."""
+
+    element: int
+    xi: float
+    force: tuple[float, float]
+
+
+def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[PointForce], xi: Array) -> Array:
+    """Positions along the axes of elements from their ends i: the rod's equations between their end states.
+
+    The internal force n is that of the element; sections turn by phi, t and n_ are their directions::
+
+        phi' = l0 (M + a + b xi)/EI,  M' = -(r' x n),  r' = l0 ((1 + n.t/EA) t + (n.n_/GA) n_)
+
+    solved by Picard's iteration from the chord. The small a and b bring the axis to the rotation of end j and onto the chord, and
+    a factor beside one to the chord's length: what the element leaves of its equilibrium inside.
+
+    Parameters
+    ----------
+    p : Properties
+        Constants of the elements, arrays over them.
+    x, force : ndarray, shape (6, elements)
+        Their displacements and the nodal forces on them.
+    contacts : sequence of PointForce
+        What touches them.
+    xi : ndarray, shape (m,)
+        Where, as parts of the length.
+
+    Returns
+    -------
+    ndarray, shape (elements, m, 2)
+    """
+    dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
+    turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
+    first, last = unwind(x[2] - turn)[:, None], unwind(x[5] - turn)[:, None]
+    chord = (dx + 1j * dy)[:, None]
+    at = np.unique(np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [own.xi for own in contacts]]))
+    n = np.repeat(-(force[0] + 1j * force[1])[:, None], len(at) - 1, axis=1)
+    for own in contacts:
+        n[own.element, at[:-1] >= own.xi] -= complex(*own.force)
+    n *= np.abs(chord) / chord
+    inverse = p.l0[:, None] / p.EI[:, None]
+    r, b = at * np.abs(chord) + 0j, np.zeros_like(first)
+    for _ in range(_ROUNDS):
+        bend = inverse * _sums(-(np.conj(np.diff(r)) * n).imag)
+        turned = _sums(np.diff(at) * (bend[:, 1:] + bend[:, :-1]) / 2)
+        a = last - first - turned[:, -1:] - b / 2
+        r = _positions(p, first + turned + a * at + b * at**2 / 2, bend + a + b * at, n, at)
+        b += 12 * r[:, -1:].imag / r[:, -1:].real
+    own_points = (r * chord / r[:, -1:])[:, np.searchsorted(at, xi)]
+    return np.stack([own_points.real, own_points.imag], axis=-1)
+
+
+def _sums(values: Array) -> Array:
+    """Sums up to every station, from zero."""
+    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+
+
+def _positions(p: Properties, angle: Array, bend: Array, n: Array, at: Array) -> Array:
+    """Integrals of r' by Simpson's rule in every piece, where the curvature is linear."""
+    step, stretch, shear = np.diff(at), 1 / p.EA[:, None], (p.Phi * p.l0**2 / (12 * p.EI))[:, None]
+    middle = angle[:, :-1] + step * (3 * bend[:, :-1] + bend[:, 1:]) / 8
+    total = np.zeros(n.shape, complex)
+    for weight, phi in ((1, angle[:, :-1]), (4, middle), (1, angle[:, 1:])):
+        t = np.exp(1j * phi)
+        along = np.conj(t) * n
+        total += weight / 6 * t * (1 + along.real * stretch + 1j * along.imag * shear)
+    return _sums(p.l0[:, None] * step * total)

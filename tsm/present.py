@@ -1,0 +1,101 @@
+"""A result as a few lines, as plain arrays, and as a picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tsm.elements.properties import Array
+
+if TYPE_CHECKING:
+    from tsm.result import Result
+
+SHOWN = 5
+"""Load parameters in a picture."""
+
+
+def summary(result: Result) -> str:
+    """Return how the solution ended and the last state reached, one line each."""
+    reached = len(result.load_parameter)
+    iterations = f"{result.newton_iterations.sum()} Newton iterations, {result.cutbacks} cut-backs"
+    lines = [
+        f"{result.status.name}: {result.message}",
+        f"{result.unknowns} unknowns, {iterations}, {result.wall_seconds:.3g} s",
+    ]
+    if reached:
+        lines.append(f"at load parameter {result.load_parameter[-1]:g}, the last of {reached}:")
+        for pair, contact in result.contacts.items():
+            arc = contact.arc_position[-1]
+            where = "open" if np.isnan(arc) else f"force {contact.force[-1]:.9g} at arc position {arc:.9g}"
+            lines.append(f"  {pair}: {where}")
+        for beam, support in result.supports.items():
+            lines.append(f"  {beam}: support moment {support.moment[-1]:.9g}")
+        for beam, tip in result.tips.items():
+            lines.append(f"  {beam}: end at ({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g})")
+    counts: dict[str, int] = {}
+    for event in result.events:
+        counts[event.kind.value] = counts.get(event.kind.value, 0) + 1
+    if counts:
+        lines.append("events: " + ", ".join(f"{number} {kind}" for kind, number in counts.items()))
+    return "\n".join(lines)
+
+
+def arrays(result: Result) -> dict[str, Array]:
+    """Return the histories by name, each with the s load parameters first: what ``numpy.savez`` and data frames take.
+
+    ``load_parameter``, ``newton_iterations``, ``{node->beam}.force``, ``.arc_position``, ``.gap``, ``{beam}.tip`` (s, 2),
+    ``{beam}.support_force`` (s, 2), ``{beam}.support_moment``.
+    """
+    named = {"load_parameter": result.load_parameter, "newton_iterations": result.newton_iterations}
+    for pair, contact in result.contacts.items():
+        named[f"{pair}.force"] = contact.force
+        named[f"{pair}.arc_position"] = contact.arc_position
+        named[f"{pair}.gap"] = contact.gap
+    for beam, tip in result.tips.items():
+        named[f"{beam}.tip"] = tip
+    for beam, support in result.supports.items():
+        named[f"{beam}.support_force"] = support.force
+        named[f"{beam}.support_moment"] = support.moment
+    return named
+
+
+def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:
+    """Draw deflected axes at `shown` of the load parameters reached, evenly spread, with the pins; needs matplotlib.
+
+    Parameters
+    ----------
+    result : Result
+        What is drawn.
+    axes : matplotlib.axes.Axes, optional
+        Where; the current ones of pyplot if not given.
+    shown : int
+        How many load parameters.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if axes is None:
+        import matplotlib.pyplot as plt
+
+        axes = plt.gca()
+    structure, reached = result.model.structure, len(result.load_parameter)
+    ks = np.unique(np.linspace(0, reached - 1, shown if reached else 0).round().astype(int))
+    for number, beam in enumerate(structure.beams):
+        axes.plot(*np.array([beam.start, beam.end]).T, color="0.7", linewidth=1.0, linestyle="--")
+        for k in ks:
+            label = beam.name if k == ks[-1] else None
+            faint = 0.35 + 0.65 * (k + 1) / reached
+            axes.plot(*result.axis_line(beam.name, k)[1].T, color=f"C{number}", alpha=faint, label=label)
+            axes.plot(
+                *result.shape(beam.name, k)[:, :2].T, ".", color=f"C{number}", alpha=faint, markersize=4
+            )
+    for pin in structure.pins:
+        axes.plot(*np.array(pin.path).T, color="0.5", linewidth=0.8, linestyle=":")
+        places = np.array([pin.position(float(result.load_parameter[k])) for k in ks]).reshape(-1, 2)
+        axes.plot(*places.T, "*", color="black", markersize=8, label=pin.name)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="x", ylabel="y", title=result.status.name)
+    axes.legend(loc="best", fontsize="small")
+    return axes
