@@ -16,6 +16,7 @@ MODULES = {
         "comparisons.metrics",
         "comparisons.compare",
         "comparisons.accuracy",
+        "comparisons.gate",
         "comparisons.exact",
         "comparisons.translate",
         "comparisons.export",

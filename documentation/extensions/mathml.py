@@ -10,7 +10,6 @@ from sphinx.application import Sphinx
 from sphinx.locale import _
 from sphinx.util.math import get_node_equation_number
 
-
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 PRIMES = ("\u2032", "\u2033")
 ET.register_namespace("", NAMESPACE)

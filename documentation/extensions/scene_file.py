@@ -2,12 +2,13 @@
 
 from dataclasses import MISSING, fields
 from inspect import getdoc
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Any
 
 from numpydoc.docscrape import NumpyDocString
 
 from comparisons.scene.read import LISTS
 from comparisons.scene.records import Scene
+from comparisons.scene.rules import Choice, Subset, field_rules
 from comparisons.scene.toml import toml_value
 from documentation.extensions.markdown import table, text
 
@@ -31,7 +32,7 @@ def _section(header: str, kind: type, leave: set[str] = frozenset()) -> str:  # 
         if item.name in leave:
             continue
         sort, meaning = described[item.name]
-        value = _rule(kind, item.name) or text(sort.replace("tuple of", "list of"))
+        value = _value(field_rules(kind)[item.name]) or text(sort)
         rows.append((f"`{item.name}`", value, _default(item.default), text(meaning)))
     head = [" ".join(doc["Summary"]), " ".join(doc["Extended Summary"])]
     return "\n\n".join(
@@ -49,9 +50,10 @@ def _default(value: Any) -> str:
     return "" if value is None else f"`{toml_value(value)}`"
 
 
-def _rule(kind: type, field: str) -> str:
-    """Return what the rule of a field accepts, in the words of its docstring; a choice is in the type."""
-    hint = get_type_hints(kind, include_extras=True)[field]
-    annotated = next(part for part in (hint, *get_args(hint)) if get_origin(part) is Annotated)
-    sentence = (annotated.__metadata__[0].__doc__ or "").partition("\n")[0]
+def _value(rule: Any) -> str:
+    """Return what a rule accepts: its options, or the words of its docstring."""
+    if isinstance(rule, Choice | Subset):
+        kind = "one of" if isinstance(rule, Choice) else "a list of some of"
+        return f"{kind} " + ", ".join(f'`"{option}"`' for option in rule.options)
+    sentence = (rule.__doc__ or "").partition("\n")[0]
     return text(sentence.removeprefix("Accept ").removesuffix(".")) if sentence.startswith("Accept") else ""
