@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from comparisons.accuracy.quantities import difference
+from comparisons.junit import JUnitCase, junit_text
 from comparisons.models import solve
 from comparisons.options import ModelError, Options
 from comparisons.response import Response
@@ -59,26 +59,17 @@ class Gate:
 
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
-        failed = sum(not item.held for item in self.bounds)
-        suite = Element(
-            "testsuite",
-            name=f"crossval gate {self.response.scene}",
-            tests=str(len(self.bounds)),
-            failures=str(failed),
-            errors="0",
-            time=f"{self.response.wall_seconds:.6f}",
+        return junit_text(
+            f"crossval gate {self.response.scene}",
+            [
+                JUnitCase(
+                    classname=f"{self.response.scene}.{self.response.model}",
+                    name=f"{item.quantity} <= {item.bound:g}",
+                    failure=None if item.held else f"error {item.error:.3g}, against {self.reference.model}",
+                )
+                for item in self.bounds
+            ],
         )
-        for item in self.bounds:
-            case = SubElement(
-                suite,
-                "testcase",
-                classname=f"{self.response.scene}.{self.response.model}",
-                name=f"{item.quantity} <= {item.bound:g}",
-            )
-            if not item.held:
-                SubElement(case, "failure", message=f"error {item.error:.3g}, against {self.reference.model}")
-        indent(suite)
-        return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(suite, encoding="unicode") + "\n"
 
 
 def gate(

@@ -16,7 +16,7 @@ BLOCKS = blocks(README)
 COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line]
 
 
-SLOW = ("crossval trade",)
+SLOW = ("crossval trade", "crossval manual")
 """Commands of a minute and more."""
 
 

@@ -5,14 +5,25 @@ import os
 import sys
 from importlib import metadata
 
-from comparisons.cli import compare, doctor, gate, reproduce, results, scene_files, solve, study, trade
+from comparisons.cli import (
+    compare,
+    doctor,
+    gate,
+    manual,
+    reproduce,
+    results,
+    scene_files,
+    solve,
+    study,
+    trade,
+)
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
 from comparisons.files import OutputError
 from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (scene_files, solve, compare, gate, reproduce, study, results, trade, doctor)
+COMMANDS = (scene_files, solve, compare, gate, reproduce, manual, study, results, trade, doctor)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 
 

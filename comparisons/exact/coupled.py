@@ -20,11 +20,10 @@ from scipy.optimize import brentq
 from comparisons.exact.checks import require_positive
 from comparisons.exact.reissner import COMPLEX_STEP, Flexibility, loaded_part, normal, position
 from comparisons.exact.rod import RodPath, rod_under_pin
+from comparisons.exact.section import Section, integrate, tangent
 
 Array = NDArray[Any]
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(36)
-_PICARD = 24
 _SMALLEST_STEP = 1e-9
 
 
@@ -65,15 +64,6 @@ class CoupledPath:
     end: str
 
 
-class _Section(NamedTuple):
-    """State at a section of the first rod and the tangent `r'` on the side of the integrated part."""
-
-    x: Array
-    y: Array
-    theta: Array
-    moment: Array
-
-
 class _Pair(NamedTuple):
     """Dimensionless scene."""
 
@@ -89,10 +79,10 @@ class _Pair(NamedTuple):
         under_tip = position(second)
         Tx, Ty = np.moveaxis(second.force[..., None] * normal(second), -1, 0)
         zero = np.zeros_like(s)
-        pin = _integrate(_Section(zero, zero, zero, moment), (nx, ny), s, self.flexibility)
-        tip = _integrate(pin, (-Tx, -Ty), 1.0 - s, self.flexibility)
-        before = _tangent(pin.theta, (nx, ny), self.flexibility)
-        after = _tangent(pin.theta, (-Tx, -Ty), self.flexibility)
+        pin = integrate(Section(zero, zero, zero, moment), (nx, ny), s, self.flexibility)
+        tip = integrate(pin, (-Tx, -Ty), 1.0 - s, self.flexibility)
+        before = tangent(pin.theta, (nx, ny), self.flexibility)
+        after = tangent(pin.theta, (-Tx, -Ty), self.flexibility)
         slide = (nx + Tx) * (before[0] + after[0]) + (ny + Ty) * (before[1] + after[1])
         gap = tip.x - under_tip[..., 0], tip.y - under_tip[..., 1] - self.spacing
         return np.stack([pin.x - self.pin_x, pin.y - depth, slide, tip.moment, *gap], axis=-1)
@@ -119,41 +109,6 @@ class _Pair(NamedTuple):
         """Events that end the stage, and how far off they are: positive before."""
         tip_arc = float(loaded_part(z[0], z[1], self.flexibility).arc.real)
         return {"pin at the tip": 1.0 - z[5], "tip released": z[0], "tip slipped": 1.0 - tip_arc}
-
-
-def _integration_matrix() -> NDArray[np.float64]:
-    """Weights of the integrals from 0 to the Gauss points of (0, 1), last row to 1, exact for polynomials through them."""
-    P = np.polynomial.legendre.legvander(np.append(_NODES, 1.0), len(_NODES))
-    k = np.arange(len(_NODES))
-    integrals = np.column_stack([P[:, 0] + P[:, 1], P[:, 2:] - P[:, :-2]])
-    return np.asarray(integrals @ (P[:-1, k] * _WEIGHTS[:, None]).T / 4.0, dtype=np.float64)
-
-
-_INTEGRATION = _integration_matrix()
-
-
-def _tangent(theta: Array, force: tuple[Array, Array], flexibility: Flexibility) -> tuple[Array, Array]:
-    """Strained tangent `r' = (1 + N/EA) d1 + (Q/GA) d2`."""
-    c, s = np.cos(theta), np.sin(theta)
-    stretch = 1.0 + flexibility.stretch * (force[0] * c + force[1] * s)
-    shear = flexibility.shear * (force[1] * c - force[0] * s)
-    return stretch * c - shear * s, stretch * s + shear * c
-
-
-def _integrate(
-    start: _Section, force: tuple[Array, Array], length: Array, flexibility: Flexibility
-) -> _Section:
-    """Section at the end of a part with a constant force, by Picard's iteration at the Gauss points."""
-    n = force[0][..., None], force[1][..., None]
-    weights = length[..., None, None] * _INTEGRATION
-    theta = start.theta[..., None] + np.zeros(len(_NODES) + 1)
-    for _ in range(_PICARD):
-        dx, dy = _tangent(theta[..., :-1], n, flexibility)
-        moment = start.moment[..., None] - (weights @ (dx * n[1] - dy * n[0])[..., None])[..., 0]
-        theta = start.theta[..., None] + (weights @ moment[..., :-1, None])[..., 0]
-    dx, dy = (component[..., None] for component in _tangent(theta[..., :-1], n, flexibility))
-    x, y = start.x + (weights @ dx)[..., -1, 0], start.y + (weights @ dy)[..., -1, 0]
-    return _Section(x, y, theta[..., -1], moment[..., -1])
 
 
 def _touch(single: Callable[[float], RodPath], spacing: float) -> float:

@@ -7,6 +7,7 @@ import pytest
 
 import tsm
 from comparisons.exact.elastica import three_point_bending_limit
+from comparisons.manual.frames import lee_limit, toggle_limits
 
 STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)
 
@@ -83,7 +84,7 @@ def limits(structure, arc_length, steps):
 def test_lees_frame():
     """Limit load P L^2/EI = 18.557 (Lee, Manuel & Rossow 1968; Simo & Vu-Quoc 1986 give 18.532 kN/10); snaps through and back."""
     found = [limits(lees_frame(n), 0.3, 120)[0][0] * 0.1 * 120**2 / 1440 for n in (4, 8, 16)]
-    assert found[-1] == pytest.approx(18.557, rel=1e-3)
+    assert found[-1] == pytest.approx(lee_limit(), rel=1e-6)
     assert np.diff(found) == pytest.approx(0, abs=3e-3)
     order = np.log2((found[0] - found[1]) / (found[1] - found[2]))
     assert 3.3 < order < 4.7
@@ -106,7 +107,7 @@ def toggle(elements):
 def test_williams_toggle():
     """Both limit points, 33.87 near v = .235 and 31.28 near v = .39 (Wood & Zienkiewicz 1977, by finite elements)."""
     found = [limits(toggle(n), 0.01, 60)[0] for n in (8, 16)]
-    assert found[-1] == pytest.approx([33.87, 31.28], rel=1e-3)
+    assert found[-1] == pytest.approx(toggle_limits(), rel=1e-5)
     assert found[0] == pytest.approx(found[1], rel=1e-3)
 
 

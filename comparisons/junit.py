@@ -1,0 +1,59 @@
+"""JUnit XML: what a CI server reads of checks."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+
+@dataclass(frozen=True, kw_only=True)
+class JUnitCase:
+    """One check.
+
+    Attributes
+    ----------
+    classname, name : str
+        What it belongs to, and its own name.
+    seconds : float
+        What it took.
+    failure : str or None
+        Why it failed, in one line with numbers; None if it passed.
+    """
+
+    classname: str
+    name: str
+    seconds: float = 0.0
+    failure: str | None = None
+
+
+def junit_text(suite: str, cases: Iterable[JUnitCase]) -> str:
+    """Return checks as the JUnit XML of one test suite.
+
+    Examples
+    --------
+    >>> print(junit_text("manual", [JUnitCase(classname="euler", name="rod", failure="off by 2")]))
+    <?xml version="1.0" encoding="utf-8"?>
+    <testsuite name="manual" tests="1" failures="1" errors="0" skipped="0" time="0.000000">
+      <testcase classname="euler" name="rod" time="0.000000">
+        <failure message="off by 2" />
+      </testcase>
+    </testsuite>
+    <BLANKLINE>
+    """
+    listed = list(cases)
+    root = Element(
+        "testsuite",
+        name=suite,
+        tests=str(len(listed)),
+        failures=str(sum(case.failure is not None for case in listed)),
+        errors="0",
+        skipped="0",
+        time=f"{sum(case.seconds for case in listed):.6f}",
+    )
+    for case in listed:
+        element = SubElement(
+            root, "testcase", classname=case.classname, name=case.name, time=f"{case.seconds:.6f}"
+        )
+        if case.failure is not None:
+            SubElement(element, "failure", message=case.failure)
+    indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="unicode") + "\n"
