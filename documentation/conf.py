@@ -1,10 +1,14 @@
 """Settings of the documentation: `make docs` builds it strictly into docs/."""
 
+import logging
 import sys
 from importlib import metadata
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+for _name in ("skfem", "traitlets"):  # they tell of every mesh and every notebook
+    logging.getLogger(_name).setLevel(logging.WARNING)
 
 project = "tsm-crossval"
 author = "The tsm-crossval authors"
@@ -18,6 +22,7 @@ extensions = [
     "documentation.extensions.mathml",
     "documentation.extensions.proofs",
     "documentation.extensions.generated",
+    "documentation.extensions.manual",
 ]
 exclude_patterns = ["extensions", "static", "_generated/*.md"]  # those pages are included by others
 

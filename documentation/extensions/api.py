@@ -17,6 +17,7 @@ MODULES = {
         "comparisons.compare",
         "comparisons.accuracy",
         "comparisons.gate",
+        "comparisons.manual",
         "comparisons.exact",
         "comparisons.translate",
         "comparisons.export",

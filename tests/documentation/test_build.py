@@ -77,6 +77,9 @@ def test_the_site_is_built_strictly(tmp_path: Path) -> None:
     assert len(pages) > 25
     for page in [*pages, *site.rglob("*.css")]:
         assert loaded_from_elsewhere(page.read_text(encoding="utf-8")) == [], page
+    manual = (site / "_generated" / "manual" / "index.html").read_text(encoding="utf-8")
+    assert "Lee's frame" in manual.replace("\u2019", "'")
+    assert manual.count(".svg") >= 20
     notebooks = sorted((site / "notebooks").glob("*.html"))
     assert len(notebooks) == 3
     for notebook in notebooks:
