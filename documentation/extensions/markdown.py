@@ -10,7 +10,7 @@ def text(docstring: str) -> str:
     Examples
     --------
     >>> text("a name, ``pin->beam``, of `Beam` * 2")
-    'a name, `pin->beam`, of `Beam` \\\\* 2'
+    'a name, `pin->beam`, of `Beam` \\* 2'
     """
     parts = re.split(r"(``[^`]+``|`[^`]+`)", " ".join(docstring.split()))
     return "".join(
