@@ -11,6 +11,9 @@ from comparisons.scene import Scene
 
 BALANCE = 1e-6
 """Largest unbalanced part of a force, relative to the largest that acts: Newton tolerances are far below."""
+LAST_PLACES, UNRESOLVED = 8 * float(np.finfo(float).eps), 1e-4
+"""A force follows from a stretch, which positions resolve to a few units in the last place: so many of EA are allowed besides, up to
+this part of the largest force."""
 
 LEAST = 1e-4
 """Smallest force that is to balance to `BALANCE`, over ``EI/L^2``: Newton's methods end at 1e-10."""
@@ -33,7 +36,8 @@ def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
     supports, loads = _supports(response, scene), _loads(response, scene)
     outer = _sum([*supports, *loads], len(response.load_parameter))
     pushing, magnitude, pins = _pins(response, scene, outer)
-    scale = BALANCE * max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
+    largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
+    scale = BALANCE * largest + min(LAST_PLACES * max(beam.EA for beam in scene.beams), UNRESOLVED * largest)
     missing = np.hypot(*outer.force.T)
     off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
     length = max(beam.length for beam in scene.beams)

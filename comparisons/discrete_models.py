@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 
 from comparisons.options import ModelError, Options
-from comparisons.response import Array, ContactEvent, ContactHistory, Grid, Response, SupportHistory
+from comparisons.response import (
+    Array,
+    ContactEvent,
+    ContactHistory,
+    Deformation,
+    Grid,
+    Response,
+    SupportHistory,
+)
 from comparisons.scene import Scene, SupportSpec
 from comparisons.translate import to_solid, to_structure
 
@@ -44,7 +52,36 @@ def solve_tsm(scene: Scene, options: Options) -> Response:
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
+        deformation=None
+        if options.element == "exact"
+        else _beam_deformation(scene, options, result, response),
     )
+
+
+def _beam_deformation(scene: Scene, options: Options, result: Any, response: Response) -> Deformation:
+    """Bend and strain of the most deformed element; Euler-Bernoulli elements do not shear."""
+    element, steps = options.element or "mixed", range(len(result.load_parameter))
+    stiff = element.startswith("euler-bernoulli")
+    turn, strain = np.zeros((2, len(scene.beams), len(steps)))
+    for b, beam in enumerate(scene.beams):
+        stiffness = np.array([beam.EA, np.inf if stiff else beam.GA])
+        for k in steps:
+            turn[b, k] = np.abs(np.diff(result.shape(beam.name, k)[:, 2])).max()
+            strain[b, k] = np.abs(result.section_forces(beam.name, k)[..., :2] / stiffness).max()
+        for contact in [response.contacts[item.pair] for item in scene.contacts if item.beam == beam.name]:
+            turn[b] = np.maximum(turn[b], contact.force * _arms(result, beam.name, contact) / beam.EI)
+            strain[b] = np.maximum(strain[b], contact.force / stiffness.min())
+    return Deformation(
+        turn=turn.max(axis=0), strain=strain.max(axis=0), bearable=2.0 if element == "mixed" else 1.0
+    )
+
+
+def _arms(result: Any, beam: str, contact: ContactHistory) -> Array:
+    """Distance (s,) of a contact from the nearer end of its element times the element's length, zero where it is open."""
+    arcs, at = np.array(result.model.beams[beam].arcs), np.nan_to_num(contact.arc_position)
+    element = np.clip(np.searchsorted(arcs, at, side="right") - 1, 0, len(arcs) - 2)
+    start, end = arcs[element], arcs[element + 1]
+    return np.asarray(np.minimum(np.abs(at - start), np.abs(end - at)) * (end - start))
 
 
 def _event(event: Any) -> ContactEvent:
@@ -116,6 +153,7 @@ def solve_solid(scene: Scene, options: Options) -> Response:
             "displacement": displacement,
             "deformed": result.mesh_points + displacement,
             "cauchy_stress": fem_reference.nodal_stress(result, k),
+            "axial_stress": fem_reference.fibre_stress(result, k),
         }
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
 
@@ -129,7 +167,16 @@ def solve_solid(scene: Scene, options: Options) -> Response:
         )
         for contact in problem.contacts
     }
-    return replace(response, contacts=contacts)
+    turn = 2 * np.max([_half_turns(response, beam.name) for beam in scene.beams], axis=0)
+    deformation = Deformation(turn=turn, strain=np.zeros_like(turn), bearable=1.0)
+    return replace(response, contacts=contacts, deformation=deformation)
+
+
+def _half_turns(response: Response, beam: str) -> Array:
+    """Largest angle (s,) between neighbouring chords of the axis, two of which span an element."""
+    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
+    chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
+    return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
 
 
 def _response(
@@ -173,7 +220,8 @@ def _response(
 def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
     """Return the TSM elements, each with its own two points: section forces jump at a contact.
 
-    Besides the fields, `beam` is the beam's number in the scene and `arc` the distance along its undeformed axis.
+    Besides the fields, `beam` is the beam's number in the scene, `arc` the distance along its undeformed axis, and the axial stresses
+    are those of the faces to the right and left of its direction; `height` is 0 where the section has none.
     """
     parts = [_one_beam(scene, number, result, k) for number in range(len(scene.beams))]
     data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -188,6 +236,8 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
     fraction = arc[:, None] / beam.length
     reference = (1.0 - fraction) * np.array(beam.start) + fraction * np.array(beam.end)
     N, V, M = stations.forces.reshape(-1, 3).T
+    area, inertia, _ = beam.cross_section
+    height = beam.height or 0.0
     return {
         "reference": reference,
         "displacement": deformed - reference,
@@ -198,6 +248,9 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
         "M": M,
         "beam": np.full(len(arc), float(number)),
         "arc": arc,
+        "height": np.full(len(arc), height),
+        "axial_stress_right": N / area + M * height / (2.0 * inertia),
+        "axial_stress_left": N / area - M * height / (2.0 * inertia),
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from comparisons.files import replacing
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
-from comparisons.stress import Panel
+from comparisons.stress import Panel, Scale
 
 # Okabe and Ito's palette: told apart with every common colour blindness.
 SOLID = {"color": "#56B4E9", "linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
@@ -116,26 +116,30 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Res
     box.rectangle.set_zorder(4)
 
 
-def plot_panels(panels: list[Panel], stress_label: str, path: Path) -> None:
+def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
     """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
     from matplotlib.collections import PolyCollection
 
-    fig = figure(figsize=(14.0, 6.5))
+    fig = figure(figsize=(7.0 * len(panels), 6.5))
     frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-    top = max(float(panel.stress.max()) for panel in panels)
+    (x, y), reach = scale.centre, 1.12 * scale.half
     for axes, panel in zip(frames, panels, strict=True):
         bodies = PolyCollection(
             list(panel.points[panel.quads]),
             array=panel.stress[panel.quads].mean(axis=1),
-            cmap="viridis",
+            cmap=scale.colours,
             edgecolors="face",
             linewidths=0.3,
         )
-        bodies.set_clim(0.0, top)
+        bodies.set_clim(*scale.stress)
         axes.add_collection(bodies)
-        axes.plot(*panel.pins.T, linestyle="none", marker="o", color="#D55E00", markersize=6)
-        axes.set_aspect("equal")
-        axes.set_title(panel.title)
-        axes.autoscale_view()
-    fig.colorbar(bodies, ax=list(frames), label=stress_label, location="bottom", shrink=0.5)
+        axes.plot(*panel.pins.T, linestyle="none", marker="o", color=scale.PIN, markersize=6)
+        for pin, force in zip(panel.pins, panel.forces, strict=True):
+            if force.any():
+                tail = pin - scale.force * force
+                axes.annotate(
+                    "", pin, tail, arrowprops={"arrowstyle": "-|>", "color": scale.PIN, "linewidth": 2}
+                )
+        axes.set(title=panel.title, aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+    fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
     save(fig, path)

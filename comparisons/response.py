@@ -88,6 +88,26 @@ class ContactEvent:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Deformation:
+    """The largest deformation of one element: what its strain measures, and its shape functions, have to bear.
+
+    Attributes
+    ----------
+    turn : ndarray, shape (s,)
+        Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
+        the distances a and b of the contact from its ends [rad].
+    strain : ndarray, shape (s,)
+        Stretch and shear by the section forces, ``|N|/EA`` and ``|V|/GA``, of elements that take them for small; else zero.
+    bearable : float
+        Turn [rad] up to which the element is an approximation: where the first term that it neglects leaves a fifth of the force.
+    """
+
+    turn: Array
+    strain: Array
+    bearable: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Grid:
     """A mesh in its undeformed state with fields at its points.
 
@@ -140,6 +160,8 @@ class Response:
         ``grid(k)``: the model's mesh and fields at load parameter k.
     integration_error : float
         Estimated error of the integration inside exact elements, in positions over the longest beam's length, angles and forces over ``EI/L^2``.
+    deformation : Deformation, optional
+        Of the most deformed element; None where no element approximates.
     """
 
     model: str
@@ -159,3 +181,4 @@ class Response:
     grid: Callable[[int], Grid] = field(repr=False)
     events: tuple[ContactEvent, ...] | None = None
     integration_error: float = 0.0
+    deformation: Deformation | None = None

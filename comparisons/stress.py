@@ -1,6 +1,8 @@
 """The stress of beams and solids on one footing: von Mises stress on quadrilaterals."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +18,7 @@ QUAD9_QUARTERS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Panel:
-    """A deformed body as quadrilaterals with a stress at its points.
+    """A deformed body as quadrilaterals with a stress at its points, and the pins.
 
     Attributes
     ----------
@@ -27,9 +29,11 @@ class Panel:
     quads : ndarray of int, shape (m, 4)
         Points of the quadrilaterals.
     stress : ndarray, shape (n,)
-        Von Mises stress.
+        Stress, signed or not.
     pins : ndarray, shape (p, 2)
         Positions of the pins.
+    forces : ndarray, shape (p, 2)
+        What they exert on the beams, drawn as arrows; zero where none are to be drawn.
     """
 
     title: str
@@ -37,6 +41,55 @@ class Panel:
     quads: NDArray[np.int64]
     stress: Array
     pins: Array
+    forces: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scale:
+    """What pictures of panels share.
+
+    Attributes
+    ----------
+    centre : tuple of float
+        Middle of the view.
+    half : float
+        Half the size of the view.
+    stress : tuple of float
+        Lowest and highest stress of the colours.
+    force : float
+        Length of an arrow per force.
+    label : str
+        Of the stress.
+    """
+
+    centre: tuple[float, float]
+    half: float
+    stress: tuple[float, float]
+    force: float
+    label: str
+    PIN: ClassVar[str] = "#D55E00"
+
+    @classmethod
+    def of(cls, panels: Sequence[Panel], label: str) -> "Scale":
+        """Return the scale that shows all of `panels`; the colours of a stress with both signs are symmetric."""
+        points = np.concatenate([part for panel in panels for part in (panel.points, panel.pins)])
+        low, high = points.min(axis=0), points.max(axis=0)
+        half = float((high - low).max()) / 2.0
+        top = max(float(np.abs(panel.stress).max()) for panel in panels)
+        signed = any(float(panel.stress.min()) < 0.0 for panel in panels)
+        largest = max(float(np.hypot(*panel.forces.T).max(initial=0.0)) for panel in panels)
+        return cls(
+            centre=(float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0),
+            half=half,
+            stress=(-top if signed else 0.0, top),
+            force=0.4 * half / largest if largest else 0.0,
+            label=label,
+        )
+
+    @property
+    def colours(self) -> str:
+        """Name of the colour map: from blue over grey to red where the stress has both signs."""
+        return "coolwarm" if self.stress[0] < 0.0 else "viridis"
 
 
 def solid_panel(response: Response, scene: Scene, ks: list[int], title: str) -> Panel:
@@ -104,5 +157,6 @@ def _panel(
         points=np.concatenate([points for points, _, _ in bodies]),
         quads=np.concatenate([quads + start for (_, quads, _), start in zip(bodies, starts, strict=True)]),
         stress=np.concatenate([stress for _, _, stress in bodies]),
-        pins=np.array(pins),
+        pins=np.array(pins).reshape(-1, 2),
+        forces=np.zeros((len(pins), 2)),
     )

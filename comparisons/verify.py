@@ -17,16 +17,30 @@ CLOSED = 1e-9
 """Largest gap of a closed contact, relative to the length: round-off of 2000 elements is below."""
 PENETRATION = 1e-2
 """Largest penetration of a penalty model, relative to the length."""
+STRAIN = 1.0
+"""Strain beyond which no element is believed that takes strains for small."""
+MOTION = 1e-10
+"""Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
 
 
 def verified(response: Response, scene: Scene) -> Response:
-    """Return `response`, with the status ``CHECK_FAILED`` and the reason if it claims success and breaks a check."""
-    reason = next(failures(response, scene), None) if response.completed else None
+    """Return `response`, with the status ``CHECK_FAILED`` and the reason if it breaks a check.
+
+    One that stopped claims only what it reached: that its elements bear, and its numbers resolve.
+    """
+    if response.completed:
+        reason = next(failures(response, scene), None)
+        return response if reason is None else _failed(response, reason)
+    reason = next(unresolved(response, scene), None)
     return (
         response
         if reason is None
-        else replace(response, status=CHECK_FAILED, message=reason, completed=False)
+        else _failed(response, f"{reason}; then {response.status}: {response.message}")
     )
+
+
+def _failed(response: Response, reason: str) -> Response:
+    return replace(response, status=CHECK_FAILED, message=reason, completed=False)
 
 
 def failures(response: Response, scene: Scene) -> Iterator[str]:
@@ -46,6 +60,26 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
     for contact in scene.contacts:
         yield from _contact_failures(response, scene, contact)
     yield from balance_failures(response, scene)
+    yield from unresolved(response, scene)
+
+
+def unresolved(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield one sentence for everything that is too large for the elements of a `response`, or too small for its numbers."""
+    deformation = response.deformation
+    if deformation is not None:
+        bent = deformation.turn > deformation.bearable
+        if bent.any():
+            most = deformation.turn.max()
+            limit = f"{deformation.bearable:g} {_first(bent, response)}"
+            yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
+        strained = deformation.strain > STRAIN
+        if strained.any():
+            yield f"forces exceed EA or GA, beyond elements of small strain, {_first(strained, response)}"
+    length = max(beam.length for beam in scene.beams)
+    for pin in scene.pins:
+        way = float(np.hypot(*np.diff(pin.points, axis=0).T).sum())
+        if 0.0 < way < MOTION * length:
+            yield f"{pin.name} moves by {way:.2g}, less than {MOTION:g} of the length, which is not resolved"
 
 
 def _numbers(response: Response) -> Iterator[tuple[str, Array]]:

@@ -1,7 +1,7 @@
 """2D solid elements with unilateral contact: the finite-element reference for beam contact."""
 
 from fem_reference.material import MATERIALS, PLANES
-from fem_reference.observe import axis_line, axis_stations, energy, nodal_stress
+from fem_reference.observe import axis_line, axis_stations, energy, fibre_stress, nodal_stress
 from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.sections import SectionForces, face_strains, section_forces
@@ -30,6 +30,7 @@ __all__ = [
     "default_penalty",
     "energy",
     "face_strains",
+    "fibre_stress",
     "nodal_stress",
     "section_forces",
     "solve",

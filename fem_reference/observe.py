@@ -38,14 +38,39 @@ def nodal_stress(result: Result, k: int) -> Floats:
 
 
 def _nodal_stress(body: Body, u: Floats) -> Floats:
-    mesh, Q = body.mesh, body.strip.frame
-    F = deformation_gradient(mesh, u, mesh.nodal_gradients)
-    P = body.law.stress(F)
-    local = np.einsum("ik...,jk...->ij...", P, F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
+    _, local = _cauchy_stress(body, u)
+    Q = body.strip.frame
     sigma = np.einsum("ai,ij...,bj->ab...", Q, local, Q)
-    components = np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1)
-    total = np.zeros((len(mesh.nodes), 3))
-    np.add.at(total, mesh.cells, components)
+    return _averaged(body, np.stack([sigma[0, 0], sigma[1, 1], sigma[0, 1]], axis=-1))
+
+
+def fibre_stress(result: Result, k: int) -> Floats:
+    """Cauchy stress along the deformed fibres of the strips at the nodes, ``(n,)``: ``t . sigma t`` with t along ``F e_x`` [Pa]."""
+    u = result.states[k].u
+    return np.concatenate([_fibre_stress(body, u[part])[:, 0] for body, part in result.model.each()])
+
+
+def _fibre_stress(body: Body, u: Floats) -> Floats:
+    F, sigma = _cauchy_stress(body, u)
+    along = F[:, 0]
+    stress = np.einsum("i...,ij...,j...->...", along, sigma, along) / np.einsum(
+        "i...,i...->...", along, along
+    )
+    return _averaged(body, stress[..., None])
+
+
+def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
+    """Deformation gradient and stress at each element's nodes, in the strip's frame."""
+    F = deformation_gradient(body.mesh, u, body.mesh.nodal_gradients)
+    sigma = np.einsum("ik...,jk...->ij...", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
+    return F, sigma
+
+
+def _averaged(body: Body, values: Floats) -> Floats:
+    """Mean over the elements that meet at a node."""
+    mesh = body.mesh
+    total = np.zeros((len(mesh.nodes), values.shape[-1]))
+    np.add.at(total, mesh.cells, values)
     return total / np.bincount(mesh.cells.ravel())[:, None]
 
 

@@ -8,6 +8,7 @@ from importlib import metadata
 from comparisons.cli import (
     compare,
     doctor,
+    extremes,
     gate,
     manual,
     reproduce,
@@ -16,6 +17,7 @@ from comparisons.cli import (
     solve,
     study,
     trade,
+    view,
 )
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
 from comparisons.files import OutputError
@@ -23,12 +25,25 @@ from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (scene_files, solve, compare, gate, reproduce, manual, study, results, trade, doctor)
+COMMANDS = (
+    scene_files,
+    solve,
+    compare,
+    view,
+    gate,
+    reproduce,
+    trade,
+    study,
+    results,
+    manual,
+    extremes,
+    doctor,
+)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command and return its exit status: 0 done, 2 bad input, 3 a solution that stopped."""
+    """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
     given = command_parser().parse_args(arguments)
     try:
         status: int = given.run(given)

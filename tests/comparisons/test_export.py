@@ -44,8 +44,20 @@ def test_vtu_reads_back_in_meshio_and_pyvista(response: Response, tmp_path: Path
 
 def test_fields_of_each_model(response: Response) -> None:
     expected = {
-        "tsm": {"displacement", "deformed", "rotation", "N", "V", "M", "beam", "arc"},
-        "solid": {"displacement", "deformed", "cauchy_stress"},
+        "tsm": {
+            "displacement",
+            "deformed",
+            "rotation",
+            "N",
+            "V",
+            "M",
+            "beam",
+            "arc",
+            "height",
+            "axial_stress_right",
+            "axial_stress_left",
+        },
+        "solid": {"displacement", "deformed", "cauchy_stress", "axial_stress"},
         "rod": {"displacement", "deformed"},
     }
     assert set(response.grid(0).point_data) == expected[response.model]

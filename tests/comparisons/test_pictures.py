@@ -14,7 +14,7 @@ from comparisons.plot import nearest_steps, plot_panels, plot_shapes
 from comparisons.render import render_panels
 from comparisons.response import Response
 from comparisons.scene import load_scene
-from comparisons.stress import LAYERS, Panel, beam_panel, solid_panel
+from comparisons.stress import LAYERS, Panel, Scale, beam_panel, solid_panel
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)
 
@@ -88,5 +88,5 @@ def test_matplotlib_stands_in_where_rendering_dies(
 
 
 def test_plot_panels_shares_one_scale(panels: list[Panel], tmp_path: Path) -> None:
-    plot_panels(panels, "stress", tmp_path / "panels.png")
+    plot_panels(panels, Scale.of(panels, "stress"), tmp_path / "panels.png")
     assert coloured(tmp_path / "panels.png") > 0.01

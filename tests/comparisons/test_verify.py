@@ -10,7 +10,7 @@ import pytest
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import load_scene
+from comparisons.scene import PinSpec, load_scene
 from comparisons.verify import CHECK_FAILED, failures, verified
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -101,3 +101,56 @@ def test_nothing_that_acts_balances(options: Options) -> None:
     assert response.completed, response.message
     kinds = [event.kind for event in response.events or () if event.kind != "pass-through"]
     assert kinds == ["touch", "slip-off", "touch", "release", "slip-off"]
+
+
+@pytest.mark.parametrize(
+    ("model", "options", "reason"),
+    [
+        ("tsm", Options(element="timoshenko", elements=2), "too few elements: one bends by 2.1 rad"),
+        ("tsm", Options(element="mixed", elements=1), "too few elements: one bends by .* rad.*UNREACHABLE"),
+        ("solid", Options(mesh=(2, 2)), "too few elements: one bends by 1.1 rad.*CUTBACK_FLOOR"),
+    ],
+)
+def test_elements_that_bend_too_far_are_not_believed(model: str, options: Options, reason: str) -> None:
+    """Forces off by 60 %, 140 % and 100 %, whether the solution completed or stopped."""
+    response = solve(replace(SCENE, load_parameters=10), model, options)
+    assert response.status == CHECK_FAILED
+    assert not response.completed
+    assert re.search(reason, response.message)
+
+
+@pytest.mark.parametrize("options", [Options(elements=2), Options(element="timoshenko", elements=5)])
+def test_as_few_elements_as_bear_it_are_believed(options: Options) -> None:
+    """Two elements of fourth order, whose forces are right to .5 %, five of second order, 6 %."""
+    response = solve(SCENE, "tsm", options)
+    assert response.completed, response.message
+    assert response.deformation is not None
+    assert 0.8 < response.deformation.turn.max() / response.deformation.bearable < 1.0
+
+
+def test_forces_beyond_the_shear_stiffness_are_not_believed() -> None:
+    """The paper's element takes F/GA for small: at 2 its force is off by a quarter; the exact element does not."""
+    beam = replace(SCENE.beams[0], poissons_ratio=None, shear_modulus=5e-2)
+    soft = replace(SCENE, beams=(beam,), load_parameters=10)
+    response = solve(soft, "tsm", Options(element="timoshenko", elements=20))
+    assert response.status == CHECK_FAILED
+    assert "forces exceed EA or GA" in response.message
+    assert solve(soft, "tsm", Options(element="exact")).completed
+
+
+@pytest.mark.parametrize("model", ["tsm", "rod"])
+def test_a_motion_below_the_resolution_is_refused(model: str) -> None:
+    """Beside the clamp it would take a finite force, and no model sees it."""
+    pin = PinSpec(name="pin", path=((1e-17, 0.0), (1e-17, 1e-18)))
+    response = solve(replace(SCENE, pins=(pin,)), model)
+    assert response.status == CHECK_FAILED
+    assert "pin moves by 1e-18" in response.message
+
+
+def test_the_last_places_of_a_stiff_axial_force_need_not_balance() -> None:
+    """L/h = 1e5: positions leave some 1e-16 EA, ten times what the bending forces are checked to."""
+    beam = replace(SCENE.beams[0], width=1e-5, height=1e-5)
+    scene = replace(SCENE, beams=(beam,), load_parameters=10)
+    response, rod = solve(scene, "tsm", Options(elements=40)), solve(scene, "rod")
+    assert response.completed, response.message
+    np.testing.assert_allclose(response.contacts[PAIR].force, rod.contacts[PAIR].force, rtol=1e-6)

@@ -39,6 +39,7 @@ def test_nodal_stress_is_the_bending_stress(problem, angle):
     x = mesh.nodes[bottom, 0]
     expected = 12 * force * (0.8 - x) * 0.01 / 0.02**4
     np.testing.assert_allclose(along[bottom][x < 0.7], expected[x < 0.7], rtol=5e-3)
+    assert fr.fibre_stress(result, 0) == pytest.approx(along, abs=2e-3 * np.abs(along).max())
     across = s * s * xx + c * c * yy - 2 * c * s * xy
     assert np.abs(across[bottom][x < 0.7]).max() < 0.02 * expected.max()
 

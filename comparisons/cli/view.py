@@ -1,0 +1,104 @@
+"""``crossval view``: the motion of a scene, in a window or as a picture and a GIF."""
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from comparisons.cli import values
+from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
+from comparisons.files import OutputError, writable_folder
+from comparisons.options import ModelError, Options
+from comparisons.scene import load_scene
+
+if TYPE_CHECKING:
+    import argparse
+
+    from comparisons.cli.outcome import Commands
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+    from comparisons.view import Series
+
+BEAMS = Options(element="mixed", elements=20)
+
+
+def add_to(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    view = commands.add_parser(
+        "view",
+        help="show the motion: beams and solid side by side, with axial stress, pins and contact forces",
+        description="Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
+        epilog=EPILOG,
+    )
+    view.add_argument(
+        "what",
+        metavar="SCENE|DIR",
+        help="a built-in scene or a TOML file; or a folder of VTU files of `compare` or `solve --vtk`",
+    )
+    view.add_argument("--out", type=Path, metavar="DIR", help="write into this folder (out/SCENE-view)")
+    view.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="of the solid")
+    view.set_defaults(run=run)
+
+
+def run(given: "argparse.Namespace") -> int:
+    """Solve or read, then show or write."""
+    folder = Path(given.what)
+    if folder.is_dir():
+        if given.mesh is not None:
+            raise ModelError("--mesh: belongs to a scene, not to a folder")
+        out = _target(given.out, folder.resolve().name)
+        from comparisons.view import read_series
+
+        return _present(read_series(folder), "axial stress", out)
+    scene = load_scene(given.what)
+    out = _target(given.out, scene.name)
+    responses = _solve(scene, given)
+    from comparisons.view import solved_series
+
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    series = [
+        solved_series(response, scene, title) for title, response in responses if len(response.load_parameter)
+    ]
+    status = exit_status(scene, [(f"{title}: ", response) for title, response in responses])
+    if not series:
+        return status
+    return max(status, _present(series, f"axial stress [{force}/{length}^2]", out))
+
+
+def _target(out: Path | None, name: str) -> Path | None:
+    """Return the folder to write to, tried out; None where a window is to be opened."""
+    if out is None and (
+        not sys.platform.startswith("linux") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
+    ):
+        return None
+    return writable_folder(out or Path("out") / f"{name}-view")
+
+
+def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Response]]":
+    """Return the responses of the models that can state the scene."""
+    from comparisons.models import solve
+
+    found = []
+    for title, model, options in (("TSM", "tsm", BEAMS), ("solid", "solid", Options(mesh=given.mesh))):
+        try:
+            found.append((title, solve(scene, model, options)))
+        except ModelError as error:
+            if model == "tsm":
+                raise
+            report(f"{title}: left out, {error}")
+    return found
+
+
+def _present(series: "list[Series]", label: str, out: Path | None) -> int:
+    from comparisons.view import film, show, write
+
+    shown = film(series, label)
+    if out is None:
+        if not show(shown):
+            raise OutputError("no window could be opened; --out DIR writes pictures instead")
+        return DONE
+    files, sentence = write(shown, out)
+    if sentence is not None:
+        report(sentence)
+    print("files:", *(f"  {path}" for path in files), sep="\n")
+    return DONE

@@ -1,0 +1,96 @@
+"""The scenes of the matrix: one cantilever of length 1 and modulus 1 along +x, clamped at the origin, unless they say otherwise."""
+
+import math
+
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
+from comparisons.scene.rules import Point
+
+SLENDERNESS = 50.0
+"""L/h where it is not what varies: that of Konyukhov and Schweizerhof's cantilever."""
+SHEAR = 1 / 2.6
+"""G/E of Poisson's ratio .3."""
+
+
+def cantilever(
+    *, length: float = 1.0, youngs_modulus: float = 1.0, slenderness: float = SLENDERNESS, **more: object
+) -> BeamSpec:
+    """Return a beam of square section; `more` goes to `BeamSpec`."""
+    h = length / slenderness
+    given: dict[str, object] = {"width": h, "height": h, "poissons_ratio": 0.3, "material": "biot-linear"}
+    return BeamSpec(
+        name="beam",
+        start=(0.0, 0.0),
+        end=(length, 0.0),
+        youngs_modulus=youngs_modulus,
+        clamped=("start",),
+        **(given | more),  # type: ignore[arg-type]
+    )
+
+
+def sheared(psi: float) -> BeamSpec:
+    """Return the cantilever with ``psi = EI/(GA L^2)``, its EA and EI those of `cantilever`."""
+    h = 1 / SLENDERNESS
+    second_moment = h**4 / 12
+    return BeamSpec(
+        name="beam",
+        start=(0.0, 0.0),
+        end=(1.0, 0.0),
+        youngs_modulus=1.0,
+        shear_modulus=second_moment / psi / h**2,
+        area=h**2,
+        second_moment=second_moment,
+        clamped=("start",),
+    )
+
+
+def rigid_in_shear(beam: BeamSpec) -> BeamSpec:
+    """Return what an Euler-Bernoulli element takes `beam` for."""
+    values = {**vars(beam), "poissons_ratio": None, "shear_modulus": 1e9 * beam.youngs_modulus}
+    return BeamSpec(**values)
+
+
+def pushed(
+    beam: BeamSpec, *path: Point, steps: int, surface: str = "axis", penalty: float | None = None
+) -> Scene:
+    """Return `beam` under a pin that follows `path` from below."""
+    return Scene(
+        name="pushed",
+        load_parameters=steps,
+        beams=(beam,),
+        pins=(PinSpec(name="pin", path=path),),
+        contacts=(ContactSpec(node="pin", beam="beam", side="right", surface=surface, penalty=penalty),),
+    )
+
+
+def half_circle(
+    beam: BeamSpec, *, steps: int = 10, surface: str = "axis", penalty: float | None = None
+) -> Scene:
+    """Return the path of Konyukhov and Schweizerhof: from the tip to where that of an exact half circle would be."""
+    below = 0.0 if surface == "axis" or beam.height is None else -beam.height / 2
+    L = beam.length
+    return pushed(
+        beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, penalty=penalty
+    )
+
+
+def raised(beam: BeamSpec, x: float, lift: float, *, steps: int = 10) -> Scene:
+    """Return a pin under the beam at `x` that moves straight up."""
+    return pushed(beam, (x, 0.0), (x, lift), steps=steps)
+
+
+def rolled_up(beam: BeamSpec, turns: int, *, steps: int = 8) -> Scene:
+    """Return `beam` under a moment at its tip that bends it to `turns` circles."""
+    moment = 2 * math.pi * turns * beam.EI / beam.length
+    return Scene(
+        name="rolled-up",
+        load_parameters=steps,
+        beams=(beam,),
+        loads=(LoadSpec(beam="beam", end="end", moment=moment),),
+    )
+
+
+def cycles(beam: BeamSpec, count: int) -> Scene:
+    """Return a pin under ``.9 L`` that touches, lifts the beam by ``.1 L`` and leaves it, `count` times; two states a cycle."""
+    L = beam.length
+    low, high = (0.9 * L, -0.1 * L), (0.9 * L, 0.1 * L)
+    return pushed(beam, low, *(high, low) * count, steps=2 * count)
