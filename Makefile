@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all bench lint format setup clean
+.PHONY: run test test-all docs bench lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -16,6 +16,10 @@ test: lint
 
 test-all: lint
 	$(PYTEST)
+
+docs: setup
+	rm -rf docs
+	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d docs/doctrees documentation docs/html
 
 bench: setup
 	$(THREADS) $(BIN)/python tests/benchmarks/bench.py --out bench.json
@@ -44,4 +48,4 @@ $(STAMP): pyproject.toml .constraints.txt
 	@touch $@
 
 clean:
-	rm -rf $(VENV) out bench.json .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) out docs documentation/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
 from comparisons.cli import main
 from comparisons.scene import load_scene
+from tests.documentation.snippets import ROOT, blocks, make_targets, run_line, run_python
 
-ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
-BLOCKS = re.findall(r"```(\w*)\n(.*?)```", README, re.DOTALL)
+BLOCKS = blocks(README)
 COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line]
 
 
@@ -31,25 +28,22 @@ SLOW = ("crossval trade", "crossval manual")
         if line.startswith("crossval")
     ],
 )
-def test_crossval_commands(line, tmp_path, monkeypatch, capsys):
+def test_crossval_commands(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(line.split()[1:]) == 0
-    out = capsys.readouterr().out
+    out = run_line(line)
     assert out
     if "--json -" in line:
         assert json.loads(out)["status"] == "COMPLETED"
 
 
 def test_make_targets_exist():
-    targets = re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     named = set(re.findall(r"(?:^|`)make ([\w-]+)", README, re.MULTILINE))
-    assert {"run", "test", "test-all", "bench"} <= named <= set(targets)
+    assert {"run", "test", "test-all", "bench"} <= named <= make_targets()
 
 
-def test_python_snippet():
+def test_python_snippet(tmp_path):
     snippet = next(text for kind, text in BLOCKS if kind == "python")
-    run = subprocess.run([sys.executable, "-c", snippet], capture_output=True, text=True, check=True)
-    assert float(run.stdout) == pytest.approx(2.288274307175e-03, rel=1e-4)
+    assert float(run_python(snippet, tmp_path)) == pytest.approx(2.288274307175e-03, rel=1e-4)
 
 
 SCENES = [text for kind, text in BLOCKS if kind == "toml"]

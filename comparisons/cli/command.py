@@ -44,7 +44,7 @@ COMMANDS = (
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
-    given = _parser().parse_args(arguments)
+    given = command_parser().parse_args(arguments)
     try:
         status: int = given.run(given)
     except (InputError, ModelError, OutputError) as error:
@@ -66,7 +66,8 @@ def main(arguments: list[str] | None = None) -> int:
     return status
 
 
-def _parser() -> argparse.ArgumentParser:
+def command_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command."""
     parser = argparse.ArgumentParser(
         prog="crossval",
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",

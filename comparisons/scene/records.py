@@ -33,14 +33,22 @@ class BeamSpec:
         Letters, digits, ``-`` and ``_``.
     start, end : (float, float)
         The ends of the undeformed axis [length].
-    youngs_modulus, shear_modulus : float
-        [force/length^2].
+    youngs_modulus : float
+        Young's modulus [force/length^2].
     poissons_ratio : float
-        Between -1 and 1/2.
-    width, height : float
-        Out of plane and in plane [length].
-    area, second_moment, shear_area : float
-        [length^2], [length^4], [length^2].
+        Poisson's ratio.
+    shear_modulus : float
+        Shear modulus, instead of `poissons_ratio` [force/length^2].
+    width : float
+        Of the section, out of plane [length].
+    height : float
+        Of the section, in plane [length].
+    area : float
+        With `second_moment`, instead of `width` and `height` [length^2].
+    second_moment : float
+        Second moment of area, with `area` [length^4].
+    shear_area : float
+        Effective shear area [length^2].
     clamped : tuple of {"start", "end"}
         Clamped ends, none by default: the short form of a `SupportSpec`.
     elements : int

@@ -122,7 +122,7 @@ def poissons_ratio(value: object) -> float:
 
 
 def whole_number(value: object, largest: int = 100_000) -> int:
-    """Accept a whole number from 1 to `largest`."""
+    """Accept a whole number from 1 to `largest`, 100,000 if not stated."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise RuleError("must be a whole number")
     if not 1 <= value <= largest:

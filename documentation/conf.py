@@ -1,0 +1,49 @@
+"""Settings of the documentation: `make docs` builds it strictly into docs/."""
+
+import logging
+import sys
+from importlib import metadata
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+for _name in ("skfem", "traitlets"):  # they tell of every mesh and every notebook
+    logging.getLogger(_name).setLevel(logging.WARNING)
+
+project = "tsm-crossval"
+author = "The tsm-crossval authors"
+copyright = author  # noqa: A001 - Sphinx's own name
+release = version = metadata.version("tsm-crossval")
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "documentation.extensions.mathml",
+    "documentation.extensions.proofs",
+    "documentation.extensions.generated",
+    "documentation.extensions.manual",
+]
+exclude_patterns = ["extensions", "static", "_generated/*.md"]  # those pages are included by others
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 60
+
+html_theme = "furo"
+html_title = "tsm-crossval"
+html_math_renderer = "mathml"
+html_copy_source = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_theme_options = {"navigation_with_keys": True}
+
+default_role = "literal"  # single backticks of docstrings name parameters as well as objects
+autodoc_typehints = "none"  # docstrings state types with shapes and units
+autodoc_member_order = "bysource"
+numpydoc_show_class_members = False
+add_module_names = False
+toc_object_entries = False

@@ -1,0 +1,52 @@
+"""The JSON file of a response, from its schema."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from documentation.extensions.markdown import table, text
+
+FILE = Path(__file__).parents[1] / "reference" / "response.schema.json"
+SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+
+
+def page() -> str:
+    """Return a table with a row for every key of the file."""
+    return table(("key", "type", "meaning"), _rows("", SCHEMA)) + "\n"
+
+
+def _rows(prefix: str, schema: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
+    for key, item in schema.get("properties", {}).items():
+        yield f"`{prefix}{key}`", _sort(item), text(item["description"])
+        yield from _inner(f"{prefix}{key}", item)
+
+
+def _inner(prefix: str, item: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield the rows of what a key holds: a table by name, a list of tables, a table."""
+    named = item.get("additionalProperties")
+    if isinstance(named, dict):
+        yield from _rows(f"{prefix}.NAME.", _resolved(named))
+    elif "properties" in item.get("items", {}):
+        yield from _rows(f"{prefix}[].", item["items"])
+    elif "properties" in item:
+        yield from _rows(f"{prefix}.", item)
+
+
+def _resolved(schema: dict[str, Any]) -> dict[str, Any]:
+    if "$ref" not in schema:
+        return schema
+    found: dict[str, Any] = SCHEMA["$defs"][schema["$ref"].rpartition("/")[2]]
+    return found
+
+
+def _sort(item: dict[str, Any]) -> str:
+    if "$ref" in item:
+        return {"history": "s numbers", "vectors": "s pairs of numbers", "support": "table"}[
+            item["$ref"].rpartition("/")[2]
+        ]
+    if "enum" in item:
+        return " or ".join(f"`{value}`" for value in item["enum"])
+    kind = item["type"]
+    names = {"object": "table", "array": "list", "string": "text", "boolean": "truth value"}
+    return " or ".join(names.get(part, part) for part in ([kind] if isinstance(kind, str) else kind))

@@ -1,0 +1,79 @@
+"""The pages that are made from the code say what the code does."""
+
+import json
+from dataclasses import fields
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+import fem_reference
+import tsm
+from comparisons.cli import main
+from comparisons.cli.command import COMMANDS
+from comparisons.scene.read import LISTS
+from documentation.extensions import api, command_line, response, scene_file, statuses
+from documentation.extensions.generated import PAGES, write_pages
+
+
+def test_every_key_of_a_scene_is_listed() -> None:
+    sections = dict(part.partition("\n")[::2] for part in scene_file.page().split("## ")[1:])
+    assert set(sections) == {"`[scene]`", *(f"`[[{kind}]]`" for kind in LISTS)}
+    for kind, record in LISTS.items():
+        rows = [line for line in sections[f"`[[{kind}]]`"].splitlines() if line.startswith("| `")]
+        assert [row.split("`")[1] for row in rows] == [item.name for item in fields(record)]
+        assert all(row.rstrip(" |").rpartition("|")[2].strip() for row in rows), "a key without a meaning"
+
+
+def test_every_command_and_option_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    page = command_line.page()
+    assert page.count("## `crossval ") >= len(COMMANDS)
+    for command in [part.partition("`")[0] for part in page.split("## `crossval ")[1:]]:
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        told = capsys.readouterr().out
+        section = page.partition(f"## `crossval {command}`")[2].partition("\n## ")[0]
+        options = {word.strip("[],") for word in told.split() if word.strip("[],").startswith("--")}
+        assert all(option in section for option in options - {"--help"} if option.isascii()), command
+
+
+def test_every_status_is_listed() -> None:
+    page = statuses.page()
+    assert all(f"`{status.name}`" in page for kind in (tsm.Status, fem_reference.Status) for status in kind)
+
+
+def test_every_public_name_is_in_the_api() -> None:
+    for package in (tsm, fem_reference):
+        page = api.page(package.__name__)
+        assert all(f":: {package.__name__}.{name}\n" in page for name in package.__all__)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "ks-cantilever --model tsm --elements 5",
+        "ks-cantilever --model rod",
+        "ks-cantilever --model elastica",
+        "ks-cantilever --model solid --mesh 16x1",
+        "double-beam --model tsm --elements 5",
+        "ks-tied-tip --model tsm --element exact",
+        "ks-cantilever --accuracy 1e-3",
+    ],
+)
+def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
+    path = tmp_path / "response.json"
+    assert main(["solve", *arguments.split(), "--json", str(path)]) == 0
+    found = json.loads(path.read_text())
+    jsonschema.Draft202012Validator.check_schema(response.SCHEMA)
+    jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
+
+
+def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path: Path) -> None:
+    write_pages(tmp_path)
+    times = {name: (tmp_path / name).stat().st_mtime_ns for name in PAGES}
+    (tmp_path / "messages.md").write_text("stale")
+    write_pages(tmp_path)
+    changed = [name for name, time in times.items() if (tmp_path / name).stat().st_mtime_ns != time]
+    assert changed == ["messages.md"]

@@ -1,0 +1,65 @@
+"""Every equation of the theory names the tests that prove it, and every test named exists."""
+
+import re
+
+import pytest
+
+from documentation.extensions.mathml import mathml
+from documentation.extensions.proofs import exists
+from tests.documentation.snippets import ROOT
+
+FOLDER = ROOT / "documentation"
+PAGES = {
+    str(path.relative_to(FOLDER)): path.read_text()
+    for path in sorted(FOLDER.rglob("*.md"))
+    if "_generated" not in path.parts
+}
+THEORY = [page for page in PAGES if page.startswith("theory/")]
+EQUATION = re.compile(r"^```\{math\}\n:label: ([\w-]+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+TEST = re.compile(r"\{test\}`([^`]+)`")
+
+
+def proofs(page: str) -> dict[str, list[str]]:
+    """Return the tests named behind every equation, up to the next heading; those of a group stand behind its last one."""
+    found: dict[str, list[str]] = {}
+    waiting: list[str] = []
+    for section in re.split(r"^#+ ", page, flags=re.MULTILINE):
+        parts = EQUATION.split(section)
+        for label, text in zip(parts[1::3], parts[3::3], strict=True):
+            waiting.append(label)
+            if names := TEST.findall(text):
+                found.update(dict.fromkeys(waiting, names))
+                waiting = []
+        assert not waiting, f"equations {waiting} name no test"
+    return found
+
+
+@pytest.mark.parametrize("page", THEORY)
+def test_every_equation_names_its_proof(page: str) -> None:
+    text = PAGES[page]
+    proven = proofs(text)
+    assert len(proven) == len(re.findall(r"^```\{math\}", text, re.MULTILINE)) > 0
+    assert all(exists(test) for tests in proven.values() for test in tests)
+
+
+def test_an_equation_without_proof_is_found() -> None:
+    equation = "```{math}\n:label: a\nx = 1\n```\n"
+    assert proofs(f"# Title\n{equation}{{test}}`t`") == {"a": ["t"]}
+    with pytest.raises(AssertionError, match="a"):
+        proofs(f"# Title\n{equation}\n# Next\n{{test}}`t`")
+
+
+def test_every_test_named_exists() -> None:
+    named = {test for text in PAGES.values() for test in TEST.findall(text)}
+    assert len(named) > 80
+    assert sorted(test for test in named if not exists(test)) == []
+
+
+def test_every_equation_becomes_mathml() -> None:
+    formulas = [formula for page in THEORY for _, formula in EQUATION.findall(PAGES[page])]
+    formulas += [formula for page in THEORY for formula in re.findall(r"\$([^$\n]+)\$", PAGES[page])]
+    assert len(formulas) > 80
+    for formula in formulas:
+        made = mathml(formula, "block")
+        assert made.startswith("<math")
+        assert "\\" not in re.sub(r"<annotation.*?</annotation>", "", made), formula
