@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all bench lint format setup clean
+.PHONY: run test test-all bench fuzz lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -19,6 +19,10 @@ test-all: lint
 
 bench: setup
 	$(THREADS) $(BIN)/python tests/benchmarks/bench.py --out bench.json
+
+fuzz: setup
+	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000
+	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
 
 lint: setup
 	$(BIN)/ruff check .
