@@ -82,11 +82,13 @@ def main() -> int:
     kinds, seconds, places = Counter[tuple[str, str]](), [(0.0, "", b"")], count()
     for part in tallies(given_.number, given_.seed):
         kinds += part.kinds
+        print(f"\r{kinds.total()} files", end="", file=sys.stderr)
         seconds = sorted(seconds + part.seconds, key=lambda row: row[0])[-5:]
         for (model, reason, data), place in zip(part.wrong, places, strict=False):
             given_.out.mkdir(parents=True, exist_ok=True)
             (given_.out / f"{place}.toml").write_bytes(data)
             print(f"WRONG {given_.out / str(place)}.toml --model {model}: {reason}", flush=True)
+    print(file=sys.stderr)
     outcomes = Counter[str]()
     for (_, kind), n in kinds.items():
         outcomes[kind] += n
