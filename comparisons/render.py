@@ -17,6 +17,7 @@ from comparisons.plot import plot_panels
 from comparisons.stress import Panel
 
 TIMEOUT = 60.0
+INSTEAD = "off-screen rendering is not available here (no OpenGL or no pyvista), matplotlib drew the picture instead"
 SOFTWARE = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}
 """Makes VTK draw in memory by libOSMesa alone."""
 
@@ -45,9 +46,7 @@ def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | N
         _write(data, panels, stress_label)
         if not any(_rendered(data, temporary, extra) for extra in ({}, SOFTWARE)):
             plot_panels(panels, stress_label, temporary)
-            return (
-                "off-screen rendering is not available here (no OpenGL), matplotlib drew the picture instead"
-            )
+            return INSTEAD
     return None
 
 
