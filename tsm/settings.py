@@ -31,7 +31,7 @@ class Settings:
     max_iterations: int = 25
     accuracy: float = 1e-9
     smallest_step: float = 1e-7
-    max_attempts: int = 2000
+    max_attempts: int = 1000
     max_chatter: int = 6
 
     def __post_init__(self) -> None:
