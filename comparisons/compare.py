@@ -9,7 +9,7 @@ from comparisons.budget import Budget, error_budget
 from comparisons.budget_plot import plot_budget, write_budget
 from comparisons.compare_report import write_comparison_page
 from comparisons.export import write_series
-from comparisons.files import writable_folder, write_text
+from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.metrics import errors
 from comparisons.models import solve
 from comparisons.options import ModelError, Options
@@ -99,7 +99,8 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
     report("measuring the error budget")
     budget = _budget(scene, rows, report)
     report("writing files")
-    return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
+    with alone_in(folder):
+        return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
 
 
 def _solve_all(scene: Scene, report: Report) -> dict[str, Response]:
