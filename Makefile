@@ -29,7 +29,7 @@ fuzz: setup
 	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
 
 platforms: setup
-	$(BIN)/nox -f tests/platforms/noxfile.py --envdir .nox
+	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox
 
 lint: setup
 	$(BIN)/ruff check .

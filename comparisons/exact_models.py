@@ -12,6 +12,7 @@ from comparisons.exact.outcome import Outcome
 from comparisons.exact.rod import RodPath, rod_under_pin
 from comparisons.exact.tied import TiedPath, rod_with_tied_tip
 from comparisons.options import ModelError, Options
+from comparisons.progress import Watch, unwatched
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene
 from comparisons.translate import RodScene, to_rod
@@ -41,7 +42,7 @@ STOPS = {
 """How an exact solution can stop."""
 
 
-def solve_rod(scene: Scene, _: Options) -> Response:
+def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
     """Solve `scene` as a Reissner rod."""
     local = to_rod(scene)
     beam, hits = local.beam, local.hits
@@ -67,7 +68,7 @@ def solve_rod(scene: Scene, _: Options) -> Response:
     return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
 
-def solve_elastica(scene: Scene, _: Options) -> Response:
+def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
     """Solve `scene` as an elastica, in closed form."""
     local = to_rod(scene)
     if local.contact is None:

@@ -8,6 +8,7 @@ from importlib import metadata
 
 from comparisons.cli import (
     compare,
+    completion,
     doctor,
     extremes,
     gate,
@@ -39,6 +40,7 @@ COMMANDS = (
     manual,
     extremes,
     doctor,
+    completion,
 )
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 OWN = ("comparisons", "tsm", "fem_reference")
