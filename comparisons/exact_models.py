@@ -32,6 +32,7 @@ class LocalStates:
     tip: Array
     iterations: NDArray[np.int64]
     shape: Callable[[int], Array]
+    slip_off: float
 
 
 STOPS = {
@@ -64,6 +65,7 @@ def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
         tip=path.tip[hits],
         iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
+        slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
     )
     return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
@@ -94,6 +96,10 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
         tip=np.array([state.tip for state in path]),
         iterations=np.zeros(len(path), dtype=np.int64),
         shape=lambda k: path[k].shape(POINTS),
+        slip_off=next(
+            (t for t, state in zip(scene.times, path, strict=True) if state.outcome is Outcome.SLIPPED),
+            np.nan,
+        ),
     )
     return _response("elastica", scene, local, states, unknowns=1, seconds=seconds)
 
@@ -135,7 +141,7 @@ def _response(
         ),
         completed=stop is None,
         load_parameter=times[:reached],
-        contacts=_contacts(scene, local, states, reached),
+        contacts=_contacts(local, states, reached),
         supports={name: support},
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
@@ -159,7 +165,7 @@ def _end(outcome: Sequence[Outcome], *, keep: bool) -> tuple[str | None, int]:
     return None, len(outcome)
 
 
-def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
+def _contacts(local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
     if local.contact is None:
         return {}
     outcome = np.array(states.outcome[:reached], dtype=object)
@@ -169,7 +175,7 @@ def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) 
         force=np.hypot(*states.force[:reached].T),
         arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
         gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
-        slip_off=float(scene.times[np.argmax(slipped)]) if slipped.any() else np.nan,
+        slip_off=states.slip_off if slipped.any() else np.nan,
         vector=local.vector(states.force[:reached]),
     )
     return {local.contact.pair: history}
