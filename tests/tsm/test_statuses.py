@@ -115,6 +115,19 @@ def test_unreachable():
     assert np.degrees(np.arctan2(y, x)) == pytest.approx(99.57, abs=0.05)
 
 
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_falling(element):
+    """A clamp that slides along y and a load along -y: a pin carries both until the beam slips off it, at a third of its way."""
+    slider = replace(
+        structure(((0.9, 0.0), (1.2, 0.0)), clamps=(replace(CLAMP, uy=None),)),
+        beams=(replace(BEAM, element=element, elements=2),),
+        loads=(tsm.Load(beam="b", end="end", force=(0.0, -0.1)),),
+    )
+    result = ends_in(Status.FALLING, slider)
+    assert len(result.load_parameter) == 3
+    np.testing.assert_allclose(result.contacts["p->b"].force, 0.1 * result.load_parameter, rtol=1e-4)
+
+
 def test_two_contacts_on_an_element_of_the_paper():
     near = ((0.86, 0.0), (0.86, 0.2))
     ends_in(Status.TWO_CONTACTS, structure(element="timoshenko", more=(near,)))
