@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all docs bench lint format setup clean
+.PHONY: run test test-all coverage docs bench lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -16,6 +16,10 @@ test: lint
 
 test-all: lint
 	$(PYTEST)
+
+# branches of elements, contact, stepping and exact answers; the modules and the bar are in pyproject.toml
+coverage: setup
+	$(PYTEST) -m "not slow" --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
 
 docs: setup
 	rm -rf docs

@@ -79,6 +79,27 @@ def test_mixed_contact_tangent_is_symmetric():
         assert np.abs(tangent - tangent.T).max() <= 1e-13 * np.abs(tangent).max()
 
 
+def test_mixed_contact_gradient_is_the_derivative_of_its_energy():
+    """With and without an offset, by central differences."""
+    rng, h = np.random.default_rng(11), 1e-6
+    for _ in range(100):
+        p, x, lever, xi, force, side, offset = random_contact(rng)
+        xi = min(max(xi, 0.01), 0.99)
+        gradient, _ = mixed_contact.response(p, x, lever, xi, force, side, offset)
+        direction = rng.normal(size=11)
+
+        def energy(step, p=p, x=x, lever=lever, xi=xi, force=force, side=side, offset=offset, d=direction):
+            moved = lever + step * (d[:2] - d[6:8])
+            return mixed_contact.energy(
+                p, x + step * d[:6], moved, xi + step * d[10] / p.l0, force + step * d[8:10], side, offset
+            )
+
+        slope = (energy(h) - energy(-h)) / (2 * h)
+        # differences to second order: a step of 1e-6 of elements as short as 0.1
+        scale = np.abs(gradient * direction).max() + abs(energy(0.0))
+        assert gradient @ direction == pytest.approx(slope, abs=1e-7 * scale)
+
+
 @pytest.mark.parametrize("name", CLOSED_FORM)
 def test_rigid_motion_gives_no_force(name):
     rng = np.random.default_rng(4)
