@@ -100,6 +100,48 @@ def test_mixed_contact_gradient_is_the_derivative_of_its_energy():
         assert gradient @ direction == pytest.approx(slope, abs=1e-7 * scale)
 
 
+def clamped_deflection(Phi, xi, eta):
+    """Deflection at xi by a unit force at eta of Timoshenko's beam with EI = l0 = 1 between clamps, from its equations.
+
+    ``M = M0 + V0 s + <s - eta>``, ``theta' = M``, ``w' = theta - M' Phi/12``.
+    """
+
+    def at(s):
+        past = max(s - eta, 0.0)
+        rotation = np.array([s, s**2 / 2, past**2 / 2])
+        return rotation, np.array([s**2 / 2, s**3 / 6 - Phi / 12 * s, past**3 / 6 - Phi / 12 * past])
+
+    end = np.array(at(1.0))
+    M0, V0 = np.linalg.solve(end[:, :2], -end[:, 2])
+    return at(xi)[1] @ [M0, V0, 1.0]
+
+
+def test_compliance_of_an_element_is_a_clamped_beams():
+    rng = np.random.default_rng(12)
+    for _ in range(100):
+        p, (xi, eta) = random_properties(rng), rng.uniform(0.05, 0.95, 2)
+        unit = p.l0**3 / p.EI
+        across = mixed_contact.cross_compliance(p, xi, eta)[0]
+        assert across == pytest.approx(unit * clamped_deflection(p.Phi, xi, eta), rel=1e-10)
+        assert mixed_contact.cross_compliance(p, eta, xi)[0] == pytest.approx(across, rel=1e-14)
+        below = mixed_contact.compliance(p, xi)[0]
+        assert below == pytest.approx(unit * clamped_deflection(p.Phi, xi, xi), rel=1e-10)
+
+
+def test_what_two_contacts_on_one_element_add_has_its_derivatives():
+    """Of ``-C12 F_1 . F_2``, in force and arc position of either contact."""
+    rng = np.random.default_rng(13)
+    for _ in range(100):
+        p, at, force = random_properties(rng), rng.uniform(0, 1, 2), rng.normal(size=(2, 2))
+        d = rng.normal(size=6)
+        xi, (first, second) = at + STEP * d[[2, 5]] / p.l0, force + STEP * d[[0, 1, 3, 4]].reshape(2, 2)
+        gradient, tangent = mixed_contact.crossing(p, tuple(xi), first, second)
+        value = -mixed_contact.cross_compliance(p, *xi)[0] * (first @ second)
+        assert gradient.real @ d == pytest.approx(value.imag / abs(STEP), rel=1e-9)
+        expected = gradient.imag / abs(STEP)
+        assert np.abs(tangent.real @ d - expected).max() <= 1e-9 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("name", CLOSED_FORM)
 def test_rigid_motion_gives_no_force(name):
     rng = np.random.default_rng(4)
