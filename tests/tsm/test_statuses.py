@@ -156,9 +156,10 @@ def test_ping_pong():
         module.chord_owner = held
 
 
-def test_chatter():
-    """A margin that opens whatever closes."""
-    stepper = Stepper(Model(structure()), tsm.Settings(max_chatter=2))
+@pytest.mark.parametrize("allowed", [1, 2, 5])
+def test_chatter(allowed):
+    """A margin that opens whatever closes: so many events are allowed at one load parameter, not one more."""
+    stepper = Stepper(Model(structure()), tsm.Settings(max_chatter=allowed))
     from tsm.events import EventKind, Margin
 
     held = stepper._measure
@@ -174,6 +175,9 @@ def test_chatter():
     stepper.margins = broken(stepper.accepted)
     steps = list(stepper.march(TENTHS))
     assert steps[-1].status is Status.CHATTER
+    stopped = steps[-1].equilibrium.state.load_parameter
+    events = [event for step in steps for event in step.events]
+    assert sum(event.load_parameter == stopped for event in events) == allowed
 
 
 def test_unbalanced():
