@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all coverage mutation docs bench lint format setup clean
+.PHONY: run test test-all coverage mutation docs bench fuzz platforms lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -32,6 +32,13 @@ docs: setup
 bench: setup
 	$(THREADS) $(BIN)/python tests/benchmarks/bench.py --out bench.json
 
+fuzz: setup
+	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000
+	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
+
+platforms: setup
+	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox
+
 lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -56,4 +63,4 @@ $(STAMP): pyproject.toml .constraints.txt
 	@touch $@
 
 clean:
-	rm -rf $(VENV) out docs documentation/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .nox out docs documentation/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -9,11 +10,12 @@ from comparisons.budget import Budget, error_budget
 from comparisons.budget_plot import plot_budget, write_budget
 from comparisons.compare_report import write_comparison_page
 from comparisons.export import write_series
-from comparisons.files import writable_folder, write_text
+from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.metrics import errors
 from comparisons.models import solve
 from comparisons.options import ModelError, Options
 from comparisons.plot import nearest_steps, plot_shapes
+from comparisons.progress import Watch, unwatched
 from comparisons.render import render_panels
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
@@ -23,6 +25,7 @@ from comparisons.table import Row, table_csv
 from comparisons.translate import to_rod
 
 Report = Callable[[str], None]
+Watching = Callable[[str], AbstractContextManager[Watch]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +65,11 @@ class Comparison:
         return [row for row in self.rows if not row.response.completed]
 
 
-def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
+def _silent(_: str) -> AbstractContextManager[Watch]:
+    return nullcontext(unwatched)
+
+
+def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _silent) -> Comparison:
     """Solve `scene` with every model that can state it and write the results to `folder`.
 
     Parameters
@@ -73,6 +80,8 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
         Made if it is not there.
     report : callable
         Takes lines about the progress.
+    watching : callable
+        ``watching(label)`` gives a context with the `Watch` of a run.
 
     Raises
     ------
@@ -84,7 +93,7 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
     rod = to_rod(scene)
     pair = None if rod.contact is None else rod.contact.pair
     folder = writable_folder(folder)
-    responses = _solve_all(scene, report)
+    responses = _solve_all(scene, report, watching)
     reference = responses[ROD.label]
     rows = [
         Row(
@@ -99,14 +108,16 @@ def compare(scene: Scene, folder: Path, report: Report) -> Comparison:
     report("measuring the error budget")
     budget = _budget(scene, rows, report)
     report("writing files")
-    return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
+    with alone_in(folder):
+        return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
 
 
-def _solve_all(scene: Scene, report: Report) -> dict[str, Response]:
+def _solve_all(scene: Scene, report: Report, watching: Watching) -> dict[str, Response]:
     responses: dict[str, Response] = {}
     for number, run in enumerate(RUNS, 1):
         try:
-            response = solve(scene, run.model, run.options)
+            with watching(f"[{number}/{len(RUNS)}] {run.label}") as watch:
+                response = solve(scene, run.model, run.options, watch)
         except ModelError as error:
             report(f"[{number}/{len(RUNS)}] {run.label}: left out, {error}")
             continue

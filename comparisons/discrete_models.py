@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.options import ModelError, Options
+from comparisons.progress import Reached, Watch, unwatched
 from comparisons.response import (
     Array,
     ContactEvent,
@@ -20,7 +21,7 @@ from comparisons.scene import Scene, SupportSpec
 from comparisons.translate import to_solid, to_structure
 
 
-def solve_tsm(scene: Scene, options: Options) -> Response:
+def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Response:
     """Solve `scene` by the tangent stiffness method.
 
     Raises
@@ -37,7 +38,7 @@ def solve_tsm(scene: Scene, options: Options) -> Response:
             raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
         settings = tsm.Settings(accuracy=options.tolerance)
     try:
-        result = tsm.solve(structure, np.array(scene.times), settings)
+        result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
     except tsm.SolveError as error:
         result = error.result
 
@@ -82,6 +83,25 @@ def _arms(result: Any, beam: str, contact: ContactHistory) -> Array:
     element = np.clip(np.searchsorted(arcs, at, side="right") - 1, 0, len(arcs) - 2)
     start, end = arcs[element], arcs[element + 1]
     return np.asarray(np.minimum(np.abs(at - start), np.abs(end - at)) * (end - start))
+
+
+def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
+    """Return what passes accepted steps on to `watch`, contacts with their elements counted from 1."""
+    first, count = {}, 0
+    for beam in structure.beams:
+        first[beam.name], count = count, count + beam.elements
+    elements = {beam.name: beam.elements for beam in structure.beams}
+
+    def told(step: Any) -> None:
+        state = step.equilibrium.state
+        touching = tuple(
+            f"{pair.name} on element {touch.element - first[pair.beam] + 1} of {elements[pair.beam]}"
+            for pair, touch in zip(structure.contacts, state.touches, strict=True)
+            if touch is not None
+        )
+        watch(Reached(state.load_parameter, step.iterations, touching))
+
+    return told
 
 
 def _event(event: Any) -> ContactEvent:
@@ -134,13 +154,20 @@ def _rows(rows: list[Any], width: int) -> Array:
     return np.array(rows, dtype=np.float64).reshape(-1, width)
 
 
-def solve_solid(scene: Scene, options: Options) -> Response:
+def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Response:
     """Solve `scene` with solid elements in contact."""
     import fem_reference
 
     problem = to_solid(scene, mesh=options.mesh)
+
+    def told(step: Any) -> None:
+        touching = tuple(
+            f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed
+        )
+        watch(Reached(step.load_parameter, step.iterations, touching))
+
     try:
-        result = fem_reference.solve(problem, np.array(scene.times))
+        result = fem_reference.solve(problem, np.array(scene.times), watch=told)
     except fem_reference.SolveError as error:
         result = error.result
 

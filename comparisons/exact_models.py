@@ -12,6 +12,7 @@ from comparisons.exact.outcome import Outcome
 from comparisons.exact.rod import RodPath, rod_under_pin
 from comparisons.exact.tied import TiedPath, rod_with_tied_tip
 from comparisons.options import ModelError, Options
+from comparisons.progress import Watch, unwatched
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene
 from comparisons.translate import RodScene, to_rod
@@ -31,6 +32,7 @@ class LocalStates:
     tip: Array
     iterations: NDArray[np.int64]
     shape: Callable[[int], Array]
+    slip_off: float
 
 
 STOPS = {
@@ -41,7 +43,7 @@ STOPS = {
 """How an exact solution can stop."""
 
 
-def solve_rod(scene: Scene, _: Options) -> Response:
+def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
     """Solve `scene` as a Reissner rod."""
     local = to_rod(scene)
     beam, hits = local.beam, local.hits
@@ -63,11 +65,12 @@ def solve_rod(scene: Scene, _: Options) -> Response:
         tip=path.tip[hits],
         iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
+        slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
     )
     return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
 
-def solve_elastica(scene: Scene, _: Options) -> Response:
+def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
     """Solve `scene` as an elastica, in closed form."""
     local = to_rod(scene)
     if local.contact is None:
@@ -93,6 +96,10 @@ def solve_elastica(scene: Scene, _: Options) -> Response:
         tip=np.array([state.tip for state in path]),
         iterations=np.zeros(len(path), dtype=np.int64),
         shape=lambda k: path[k].shape(POINTS),
+        slip_off=next(
+            (t for t, state in zip(scene.times, path, strict=True) if state.outcome is Outcome.SLIPPED),
+            np.nan,
+        ),
     )
     return _response("elastica", scene, local, states, unknowns=1, seconds=seconds)
 
@@ -134,7 +141,7 @@ def _response(
         ),
         completed=stop is None,
         load_parameter=times[:reached],
-        contacts=_contacts(scene, local, states, reached),
+        contacts=_contacts(local, states, reached),
         supports={name: support},
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
@@ -158,7 +165,7 @@ def _end(outcome: Sequence[Outcome], *, keep: bool) -> tuple[str | None, int]:
     return None, len(outcome)
 
 
-def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
+def _contacts(local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
     if local.contact is None:
         return {}
     outcome = np.array(states.outcome[:reached], dtype=object)
@@ -168,7 +175,7 @@ def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) 
         force=np.hypot(*states.force[:reached].T),
         arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
         gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
-        slip_off=float(scene.times[np.argmax(slipped)]) if slipped.any() else np.nan,
+        slip_off=states.slip_off if slipped.any() else np.nan,
         vector=local.vector(states.force[:reached]),
     )
     return {local.contact.pair: history}

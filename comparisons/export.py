@@ -5,7 +5,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from comparisons.files import replacing, write_text
+from comparisons.files import alone_in, replacing, write_text
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import Scene
 
@@ -55,13 +55,18 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     """Write one VTU of the body and one of the pins, if any, per load parameter, and ``MODEL.pvd`` that lists them.
 
-    Files of an earlier, longer series are removed.
+    Files of an earlier, longer series are removed. Of runs that write at the same time one waits for the other.
 
     Returns
     -------
     list of Path
         The body's files, in the order of the load parameters.
     """
+    with alone_in(folder):
+        return _write_series(folder, response, scene)
+
+
+def _write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     bodies: list[Path] = []
     written: set[Path] = set()
     entries: list[str] = []
@@ -76,12 +81,13 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
             entries.append(f'<DataSet timestep="{float(t)!r}" part="{part}" file={quoteattr(path.name)}/>')
             if part == 0:
                 bodies.append(path)
-    for stale in {
-        path for name in (response.model, "pin") for path in folder.glob(f"{name}-????.vtu")
-    } - written:
-        stale.unlink()
     body = "\n".join(
         ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>", *entries]
     )
     write_text(folder / f"{response.model}.pvd", body + "\n</Collection>\n</VTKFile>\n")
+    # last, so that no list names a file that is gone
+    for stale in {
+        path for name in (response.model, "pin") for path in folder.glob(f"{name}-????.vtu")
+    } - written:
+        stale.unlink()
     return bodies

@@ -1,9 +1,10 @@
 """Files that are either whole or not there."""
 
+import fcntl
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -16,11 +17,18 @@ def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name in the folder of `path`; rename it to `path` once the block has written it.
 
     The temporary name keeps the suffix, and it is removed if the block fails.
+
+    Raises
+    ------
+    OutputError
+        If there is no room for the file, or it cannot be written for another reason of the system's.
     """
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
         yield temporary
         temporary.replace(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -29,6 +37,18 @@ def write_text(path: Path, text: str) -> None:
     """Write `text` to `path` atomically."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs that write a set of files into `folder` waiting, so that sets do not mix."""
+    place = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(place, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(place)
 
 
 def writable_folder(folder: Path) -> Path:

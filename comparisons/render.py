@@ -23,7 +23,7 @@ TIMEOUT = 60.0
 """Seconds for a picture; each further frame of a film has a second more."""
 ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"})
 """Tried in turn: VTK's own choice, then drawing in memory by libOSMesa alone."""
-NO_OPENGL = "off-screen rendering is not available here (no OpenGL), matplotlib drew the picture instead"
+INSTEAD = "off-screen rendering is not available here (no OpenGL or no pyvista), matplotlib drew the picture instead"
 
 BAR = {
     "color": "black",
@@ -69,7 +69,7 @@ def render_frames(frames: Sequence[list[Panel]], scale: Scale, folder: Path) -> 
         return pictures, None
     for panels, picture in zip(frames, pictures, strict=True):
         plot_panels(panels, scale, picture)
-    return pictures, NO_OPENGL
+    return pictures, INSTEAD
 
 
 def show_frames(frames: Sequence[list[Panel]], scale: Scale) -> bool:

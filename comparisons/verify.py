@@ -21,6 +21,8 @@ STRAIN = 1.0
 """Strain beyond which no element is believed that takes strains for small."""
 MOTION = 1e-10
 """Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
+SAMPLES = 101
+"""Places on the way of a pin from load parameter to load parameter at which it is looked for."""
 
 
 def verified(response: Response, scene: Scene) -> Response:
@@ -127,16 +129,42 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
 def _passed_through(
     response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory, k: int
 ) -> bool:
-    """Whether the node of an open pair is behind the deflected axis without having slipped off the end."""
-    t = float(response.load_parameter[k])
-    if t >= contact.slip_off or spec.node not in {pin.name for pin in scene.pins}:
+    """Whether the pin of an open pair is behind the deflected axis and came there through it, not around an end.
+
+    Its way is followed back to where it was last not behind, the axis taken to move straight from load parameter to load parameter.
+    """
+    if response.load_parameter[k] >= contact.slip_off or "." in spec.node:
         return False
-    _, line = response.axis_line(spec.beam, k)
-    node = np.array(scene.pin(spec.node).position(t))
+    for last in range(k, -1, -1):
+        t, line = _moment(response, scene, spec.beam, last)
+        before, line_before = _moment(response, scene, spec.beam, last - 1)
+        for u in np.linspace(1.0, 0.0, SAMPLES):
+            node = np.array(scene.pin(spec.node).position(u * t + (1.0 - u) * before))
+            where = _whereabouts(u * line + (1.0 - u) * line_before, node, scene, spec)
+            if where != "behind":
+                return where == "before" and (last, u) != (k, 1.0)
+    return True
+
+
+def _moment(response: Response, scene: Scene, beam: str, k: int) -> tuple[float, Array]:
+    """Load parameter k and the axis of a beam there; of -1 the undeformed one."""
+    arc, line = response.axis_line(beam, max(k, 0))
+    if k >= 0:
+        return float(response.load_parameter[k]), line
+    spec = scene.beam(beam)
+    return 0.0, np.array(spec.start) + np.outer(arc, spec.direction)
+
+
+def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
+    """Where a node is: "beyond" an end of the axis, "before" it, on the stated side, or "behind" it."""
+    near = 1e-6 * scene.beam(spec.beam).length
     nearest = int(np.argmin(np.hypot(*(line - node).T)))
-    if nearest in (0, len(line) - 1):
-        return False
-    tangent, away = line[nearest + 1] - line[nearest - 1], node - line[nearest]
-    distance = (tangent[0] * away[1] - tangent[1] * away[0]) / np.hypot(*tangent)
+    first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
+    tangent, away = line[last] - line[first], node - line[nearest]
+    tangent /= np.hypot(*tangent)
+    along = float(tangent @ away)
+    if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
+        return "beyond"
+    distance = tangent[0] * away[1] - tangent[1] * away[0]
     gap = (distance if spec.side == "left" else -distance) - scene.offset(spec)
-    return bool(gap < -1e-6 * scene.beam(spec.beam).length)
+    return "behind" if gap < -near else "before"

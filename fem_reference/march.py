@@ -92,6 +92,9 @@ def _reach(
     slips: list[tuple[int, float]] = []
     order, status, longest = settings.predictor_order, Status.CONVERGED, trial
     while track.last.t < target:
+        if cutbacks + substeps >= settings.max_attempts:
+            status = Status.STEP_LIMIT
+            break
         t = track.last.t
         remaining = target - t
         # A remainder that is all but covered is taken whole, so that no sliver is left.

@@ -27,6 +27,8 @@ class Settings:
         Largest accepted mismatch of clamp reactions and contact forces, relative as above.
     min_step
         Smallest step of the load parameter.
+    max_attempts
+        Steps tried between two load parameters. The double beam takes 82 where one step is asked for.
     predictor_order
         Degree of the polynomial in the load parameter that extrapolates accepted states.
 
@@ -45,6 +47,7 @@ class Settings:
     max_penetration: float = 1e-3
     balance_tolerance: float = 1e-6
     min_step: float = 1e-6
+    max_attempts: int = 150
     predictor_order: int = 3
 
     def __post_init__(self) -> None:
@@ -58,6 +61,7 @@ class Settings:
             ("max_iterations", 1),
             ("max_contact_changes", 0),
             ("max_augmentations", 0),
+            ("max_attempts", 1),
             ("predictor_order", 0),
         ):
             value = getattr(self, field)

@@ -1,5 +1,6 @@
 """Solve a problem: march, and collect what was reached."""
 
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -18,7 +19,11 @@ VTK_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
 def solve(
-    problem: SolidProblem, load_parameters: Floats, settings: Settings | None = None, throw: bool = True
+    problem: SolidProblem,
+    load_parameters: Floats,
+    settings: Settings | None = None,
+    throw: bool = True,
+    watch: Callable[[Step], None] | None = None,
 ) -> Result:
     """Solve a problem at given load parameters.
 
@@ -32,6 +37,8 @@ def solve(
         Tolerances and limits; the defaults if None.
     throw
         Whether a solution that stops early raises.
+    watch
+        Called with the step to every load parameter.
 
     Returns
     -------
@@ -49,7 +56,11 @@ def solve(
     settings = settings or Settings()
     model = build(problem)
     begin = perf_counter()
-    steps = list(march(model, loads, settings))
+    steps = []
+    for step in march(model, loads, settings):
+        steps.append(step)
+        if watch is not None:
+            watch(step)
     result = _collect(model, steps, perf_counter() - begin)
     if throw and result.status is not Status.COMPLETED:
         raise SolveError(result)

@@ -18,3 +18,6 @@ class Status(Enum):
     AUGMENTATION_LIMIT = "augmented Lagrangian steps did not reach the requested penetration"
     UNBALANCED = "the clamps' reactions do not balance the contact forces"
     CUTBACK_FLOOR = "the load step fell below its floor"
+    STEP_LIMIT = (
+        "the load steps stayed so short that the next load parameter was not reached within their limit"
+    )

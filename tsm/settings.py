@@ -21,6 +21,8 @@ class Settings:
         angles, and forces over ``EI/L^2``.
     smallest_step : float
         Floor of the load step, as a part of the whole load.
+    max_attempts : int
+        Load steps tried between two load parameters.
     max_chatter : int
         Contact events allowed at one load parameter, per contact pair.
     """
@@ -29,6 +31,7 @@ class Settings:
     max_iterations: int = 25
     accuracy: float = 1e-9
     smallest_step: float = 1e-7
+    max_attempts: int = 1000
     max_chatter: int = 6
 
     def __post_init__(self) -> None:
@@ -36,7 +39,7 @@ class Settings:
             value = getattr(self, field)
             if not (math.isfinite(value) and least < value < 1):
                 raise ValueError(f"Settings.{field} = {value!r}: must lie between {least:g} and 1")
-        for field in ("max_iterations", "max_chatter"):
+        for field in ("max_iterations", "max_attempts", "max_chatter"):
             value = getattr(self, field)
             if value < 1:
                 raise ValueError(f"Settings.{field} = {value!r}: must be at least 1")

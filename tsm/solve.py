@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -56,6 +56,7 @@ def solve(
     settings: Settings | None = None,
     *,
     throw: bool = True,
+    watch: Callable[[Step], None] | None = None,
 ) -> Result:
     """Equilibrium at all load parameters.
 
@@ -65,6 +66,8 @@ def solve(
         As for `march`.
     throw : bool
         Whether to raise where the solution stops.
+    watch : callable, optional
+        Called with every accepted step.
 
     Returns
     -------
@@ -95,7 +98,11 @@ def solve(
     targets = checked(load_parameters)
     begin = time.perf_counter()
     model = Model(structure)
-    steps = list(Stepper(model, settings or Settings()).march(targets))
+    steps = []
+    for step in Stepper(model, settings or Settings()).march(targets):
+        steps.append(step)
+        if watch is not None:
+            watch(step)
     status = steps[-1].status
     if status is Status.CONVERGED:
         status = Status.COMPLETED

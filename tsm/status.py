@@ -14,6 +14,9 @@ class Status(Enum):
     NOT_FINITE = "a residual or an update was not finite"
     SINGULAR_TANGENT = "the tangent is singular"
     CUTBACK_FLOOR = "the load step was cut back to its floor"
+    STEP_LIMIT = (
+        "the load steps stayed so short that the next load parameter was not reached within their limit"
+    )
     INACCURATE = "the integration inside an exact element does not reach its accuracy"
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"

@@ -145,7 +145,12 @@ class Stepper:
             yield self._record(False, self.accepted.status)
             return
         for target in load_parameters.tolist():
+            attempts = 0
             while (t := self.accepted.state.load_parameter) < target:
+                if attempts == self.settings.max_attempts:
+                    yield self._record(False, Status.STEP_LIMIT)
+                    return
+                attempts += 1
                 left = target - t
                 step = min(self.step, self.guard.reach(left)) if self.guard else self.step
                 goal = target if left <= step * (1 + 1e-6) else t + step

@@ -3,10 +3,12 @@
 import argparse
 import os
 import sys
+from contextlib import suppress
 from importlib import metadata
 
 from comparisons.cli import (
     compare,
+    completion,
     doctor,
     extremes,
     gate,
@@ -38,32 +40,50 @@ COMMANDS = (
     manual,
     extremes,
     doctor,
+    completion,
 )
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
+OWN = ("comparisons", "tsm", "fem_reference")
+"""Packages whose absence is a bug and no missing library."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
     given = command_parser().parse_args(arguments)
+    status: int
     try:
-        status: int = given.run(given)
+        status = given.run(given)
+        sys.stdout.flush()
     except (InputError, ModelError, OutputError) as error:
-        print(f"crossval: {error}", file=sys.stderr)
-        return BAD_INPUT
+        status = _told(error, BAD_INPUT)
     except CalculixError as error:
-        print(f"crossval: {error}", file=sys.stderr)
-        return BAD_INPUT if error.printed is None else STOPPED
+        status = _told(error, BAD_INPUT if error.printed is None else STOPPED)
     except BrokenPipeError:
-        # whoever read the output has had enough; spare the interpreter its last flush
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
+        # whoever read the output has had enough
+        _drop_output()
+        status = DONE
     except OSError as error:
-        print(f"crossval: {error.filename or 'output'}: {error.strerror}", file=sys.stderr)
-        return BAD_INPUT
+        status = _told(f"{error.filename or 'output'}: {error.strerror}", BAD_INPUT)
+        _drop_output()
+    except ImportError as error:
+        missing = error.name or str(error).strip().partition("\n")[0]
+        if missing.startswith(OWN):
+            raise
+        status = _told(f"{missing}: cannot be imported, install tsm-crossval again", BAD_INPUT)
     except KeyboardInterrupt:
-        print("crossval: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        status = _told("interrupted", INTERRUPTED)
     return status
+
+
+def _told(reason: object, status: int) -> int:
+    print(f"crossval: {reason}", file=sys.stderr)
+    return status
+
+
+def _drop_output() -> None:
+    """Spare the interpreter a last flush that fails."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def command_parser() -> argparse.ArgumentParser:

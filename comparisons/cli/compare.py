@@ -1,9 +1,12 @@
 """``crossval compare``: one scene, every model."""
 
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli.outcome import EPILOG, exit_status, report
+from comparisons.cli.progress import watching
+from comparisons.progress import Watch
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -17,6 +20,7 @@ def add_to(commands: "Commands") -> None:
     compare = commands.add_parser("compare", help="solve a scene with every model and compare", epilog=EPILOG)
     compare.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
     compare.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE)")
+    compare.add_argument("--quiet", action="store_true", help="tell of no progress")
     compare.set_defaults(run=run)
 
 
@@ -26,7 +30,14 @@ def run(given: "argparse.Namespace") -> int:
     from comparisons.compare import ROD, compare
     from comparisons.table import table_text
 
-    found = compare(scene, given.out or Path("out") / scene.name, report)
+    def tell(line: str) -> None:
+        if not given.quiet:
+            report(line)
+
+    def watch(label: str) -> AbstractContextManager[Watch]:
+        return watching(label, quiet=given.quiet)
+
+    found = compare(scene, given.out or Path("out") / scene.name, tell, watch)
     print(table_text(found.rows, ROD.label))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     return exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])

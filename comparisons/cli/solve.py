@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
+from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
 from comparisons.options import OPTIONS, QUANTITIES, ModelError, Options
 from comparisons.scene import built_in_scenes, load_scene
@@ -47,6 +48,7 @@ def add_to(commands: "Commands") -> None:
     solve.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")
+    solve.add_argument("--quiet", action="store_true", help="no progress bar")
     solve.set_defaults(run=run)
 
 
@@ -68,7 +70,8 @@ def run(given: "argparse.Namespace") -> int:
 
     answer = _answer(scene, given)
     if answer is None:
-        response = solve(scene, given.model, _options(given))
+        with watching(given.model, quiet=given.quiet) as watch:
+            response = solve(scene, given.model, _options(given), watch)
         stated = as_json(response)
     else:
         response, scene = answer.response, answer.found.scene

@@ -138,10 +138,18 @@ class BeamSpec:
     def cross_section(self) -> tuple[float, float, float]:
         """Area, second moment of area and effective shear area."""
         if self.width and self.height:
-            A, inertia, kappa = self.width * self.height, self.width * self.height**3 / 12.0, 5.0 / 6.0
+            A, inertia, kappa = self.width * self.height, self.width * _cube(self.height) / 12.0, 5.0 / 6.0
         else:
             A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
         return A, inertia, self.shear_area or kappa * A
+
+
+def _cube(number: float) -> float:
+    """Third power; infinite where a float's own raises."""
+    try:
+        return number**3
+    except OverflowError:
+        return math.inf
 
 
 @dataclass(frozen=True, kw_only=True)

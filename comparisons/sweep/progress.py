@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from comparisons.progress import REDRAW, bar
 from comparisons.sweep.run import Progress, Tally
 
-WIDTH = 30
-REDRAW = 0.1
-"""Seconds between two pictures of the bar."""
 MILESTONES = 10
 
 
 def shown(stream: TextIO | None = None, *, quiet: bool = False) -> Progress:
-    """Return what shows progress on `stream`, standard error if not given."""
+    """Return what shows progress on `stream`, standard error if not given; nothing if `quiet`."""
     stream = stream or sys.stderr
-    return _bar(stream) if stream.isatty() and not quiet else _milestones(stream)
+    if quiet:
+        return _nothing
+    return _bar(stream) if stream.isatty() else _milestones(stream)
 
 
 @contextmanager
@@ -45,6 +45,10 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
+def _nothing(_: Tally) -> None:
+    """Show nothing."""
+
+
 def _bar(stream: TextIO) -> Progress:
     drawn = -math.inf
 
@@ -54,9 +58,8 @@ def _bar(stream: TextIO) -> Progress:
         if not last and tally.seconds - drawn < REDRAW:
             return
         drawn = tally.seconds
-        filled = WIDTH * tally.done // max(tally.total, 1)
         end = "\n" if last else ""
-        stream.write(f"\r[{'#' * filled}{'.' * (WIDTH - filled)}] {line(tally)}\x1b[K{end}")
+        stream.write(f"\r{bar(tally.done / max(tally.total, 1))} {line(tally)}\x1b[K{end}")
         stream.flush()
 
     return show

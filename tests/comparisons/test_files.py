@@ -1,11 +1,13 @@
 """Files are whole or not there."""
 
+import errno
 import os
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
-from comparisons.files import OutputError, replacing, writable_file, writable_folder, write_text
+from comparisons.files import OutputError, alone_in, replacing, writable_file, writable_folder, write_text
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
@@ -46,3 +48,29 @@ def test_a_link_is_followed_not_replaced(tmp_path: Path) -> None:
     write_text(writable_file(link), "new")
     assert link.is_symlink()
     assert target.read_text() == "new"
+
+
+def test_no_room_names_the_file(tmp_path: Path) -> None:
+    def fill() -> None:
+        with replacing(tmp_path / "a.txt"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OutputError, match=r"a\.txt: cannot be written: No space left on device"):
+        fill()
+    assert not list(tmp_path.iterdir())
+
+
+def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
+    order: list[str] = []
+
+    def write() -> None:
+        with alone_in(tmp_path):
+            order.append("second")
+
+    other = Thread(target=write)
+    with alone_in(tmp_path):
+        other.start()
+        other.join(0.2)
+        order.append("first")
+    other.join(10)
+    assert order == ["first", "second"]

@@ -118,6 +118,14 @@ def test_slip_off_leaves_a_straight_beam(model: str) -> None:
     assert response.tips["cantilever"][-1] == pytest.approx([1.0, 0.0], abs=1e-9)
 
 
+def test_rod_and_exact_elements_locate_one_slip_off() -> None:
+    scene = load_scene("cantilever-critical-area")
+    rod, exact = (solve(scene, *model).contacts for model in (("rod",), ("tsm", EXACT)))
+    [one], [other] = rod.values(), exact.values()
+    assert one.slip_off == pytest.approx(other.slip_off, rel=1e-9)
+    assert one.slip_off not in scene.times
+
+
 def test_exact_section_forces_jump_by_the_contact_force() -> None:
     response = solve(SHORT, "tsm", EXACT)
     data = response.grid(7).point_data

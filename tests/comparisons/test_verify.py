@@ -10,7 +10,7 @@ import pytest
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import PinSpec, load_scene
+from comparisons.scene import ContactSpec, PinSpec, load_scene
 from comparisons.verify import CHECK_FAILED, failures, verified
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -87,6 +87,41 @@ def test_true_responses_pass(scene: str, model: str) -> None:
 
 def test_slip_off_excuses_a_node_on_the_far_side(good: Response) -> None:
     assert verified(with_contact(without_force(good), slip_off=0.1), SCENE).completed
+
+
+AROUND = ((1.2, 0.01), (1.2, -0.1), (0.6, -0.1))
+"""Past the free end and below the beam, which it never touches."""
+
+
+@pytest.mark.parametrize("load_parameters", [1, 2, 7])
+@pytest.mark.parametrize(
+    "path", [AROUND, ((0.5, 0.01), (1.2, 0.0), (0.5, -0.1)), ((-0.2, 0.1), (-0.2, -0.1), (0.5, -0.1))]
+)
+@pytest.mark.parametrize("model", ["tsm", "rod"])
+def test_a_pin_may_come_around_an_end(
+    model: str, path: tuple[tuple[float, float], ...], load_parameters: int
+) -> None:
+    scene = replace(SCENE, load_parameters=load_parameters, **above(path))
+    response = solve(scene, model)
+    assert response.completed, response.message
+    assert not response.contacts[PAIR].force.any()
+
+
+@pytest.mark.parametrize(
+    "path", [((0.5, 0.01), (0.5, -0.2)), ((1.2, 0.01), (0.9, 0.01), (0.9, -0.1), (1.2, -0.1), (0.7, -0.1))]
+)
+def test_a_pin_may_not_come_through_the_beam(good: Response, path: tuple[tuple[float, float], ...]) -> None:
+    """Where the contact was never closed, the beam stays straight."""
+    scene = replace(SCENE, **above(path))
+    assert "far side" in verified(without_force(good), scene).message
+
+
+def above(path: tuple[tuple[float, float], ...]) -> dict[str, object]:
+    """A pin on a path that belongs above the beam."""
+    return {
+        "pins": (PinSpec(name="pin", path=path),),
+        "contacts": (ContactSpec(node="pin", beam=BEAM, side="left"),),
+    }
 
 
 def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:

@@ -111,6 +111,7 @@ def test_problem_refuses_an_end_that_starts_beyond_the_other_strip(strip):
         ("balance_tolerance", NAN),
         ("max_iterations", 0),
         ("predictor_order", -1),
+        ("max_attempts", 0),
         ("largest_growth", 0.5),
         ("max_penetration", 2.0),
     ],

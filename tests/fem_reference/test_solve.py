@@ -255,6 +255,13 @@ def test_step_floor_has_its_name_and_keeps_what_was_reached(problem):
     assert len(result.load_parameter) == len(result.states) < 10
 
 
+def test_steps_that_stay_short_run_out(problem):
+    settings = fr.Settings(max_iterations=3, max_attempts=3)
+    result = fr.solve(problem(mesh=(10, 1)), loads(2), settings, throw=False)
+    assert result.status is fr.Status.STEP_LIMIT
+    assert result.cutbacks + result.substeps == 3
+
+
 def test_full_clamp_is_stiffer(problem):
     full, rod = (
         fr.solve(problem(clamp=clamp, path=((0.8, 0.0), (0.8, 0.1))), loads(1)).contacts[PAIR].force[0]

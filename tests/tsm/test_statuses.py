@@ -71,6 +71,11 @@ def test_cutback_floor():
     ends_in(Status.CUTBACK_FLOOR, structure(), max_iterations=1, smallest_step=0.01)
 
 
+def test_step_limit():
+    """The first step is too long for two iterations."""
+    ends_in(Status.STEP_LIMIT, structure(), max_iterations=2, max_attempts=1)
+
+
 def test_singular_tangent():
     """A beam that nothing holds, pushed at its end."""
     free = tsm.Structure(

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from tsm.elements import as_printed, cantilever, chord_contact, mixed_contact
 from tsm.elements.beam import (
     Coefficients,
@@ -63,7 +65,11 @@ def _chord_normal(element_force: ElementForce) -> ContactResponse:
     def contact(
         p: Properties, x: Any, lever: Any, _xi: Any, _force: Any, side: float, offset: float
     ) -> tuple[Array, Array]:
-        return chord_contact.response(element_force, p, x, lever, side, offset)
+        try:
+            return chord_contact.response(element_force, p, x, lever, side, offset)
+        except ArithmeticError:
+            # plain numbers raise where arrays overflow or divide by zero
+            return np.full(8, np.nan), np.full((8, 8), np.nan)
 
     return contact
 

@@ -205,3 +205,9 @@ def test_records_check_themselves() -> None:
     contact = ContactSpec(node="p", beam="b", side="right")
     with pytest.raises(ValueError, match=re.escape("pin[0].start = [1.0, 1.0]: must lie on the right")):
         Scene(name="s", load_parameters=1, beams=(beam,), pins=(pin,), contacts=(contact,))
+
+
+def test_a_height_whose_third_power_overflows_is_refused() -> None:
+    text = built_in_scenes()["ks-cantilever"].replace("height = 0.02", "height = 1e120")
+    with pytest.raises(SceneError, match="EI is out of floating-point range"):
+        read_scene(text, "high.toml")

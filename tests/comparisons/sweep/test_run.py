@@ -42,7 +42,8 @@ def test_equal_cases_are_done_once_and_none_again(tmp_path: Path) -> None:
     before = {result.key: result.measurement.seconds for result in read_results(path)}
     with Store(path) as store:
         run([*CASES[:4], *CASES], store, THREAD, repeats=1, progress=told.append)
-    assert [(tally.done, tally.total) for tally in told] == [(n, 6) for n in range(2, 7)]
+    # a slow machine is told the same again by the beat
+    assert list(dict.fromkeys((tally.done, tally.total) for tally in told)) == [(n, 6) for n in range(2, 7)]
     assert told[-1].left == 0
     after = {result.key: result.measurement.seconds for result in read_results(path)}
     assert before.items() <= after.items()

@@ -1,0 +1,41 @@
+"""A bar on a terminal: how far a solution is."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from shutil import get_terminal_size
+from time import monotonic
+from typing import TextIO
+
+from comparisons.progress import REDRAW, Reached, Watch, bar, unwatched
+
+
+@contextmanager
+def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Watch]:
+    """Yield what draws a bar for one solution while it runs, and clear the line afterwards; nothing where there is no terminal.
+
+    The bar shows load parameter, Newton iterations so far and the elements in contact.
+    """
+    stream = stream or sys.stderr
+    if quiet or not stream.isatty():
+        yield unwatched
+        return
+    drawn, iterations = 0.0, 0
+
+    def show(reached: Reached) -> None:
+        nonlocal drawn, iterations
+        iterations += reached.iterations
+        if monotonic() - drawn < REDRAW:
+            return
+        drawn = monotonic()
+        t = reached.load_parameter
+        parts = [f"t = {t:.4f}", f"{iterations} iterations", *reached.contacts]
+        line = f"{label} {bar(t)} {', '.join(parts)}"
+        stream.write(f"\r{line[: get_terminal_size().columns - 1]}\x1b[K")
+        stream.flush()
+
+    try:
+        yield show
+    finally:
+        stream.write("\r\x1b[K")
+        stream.flush()

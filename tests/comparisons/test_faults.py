@@ -1,0 +1,261 @@
+"""What goes wrong around a run: signals, company, no room, no permission, no OpenGL, a missing library. Each really happens."""
+
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import meshio
+import pytest
+
+from comparisons.render import INSTEAD
+
+HERE = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+COMMAND = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
+SOLVE = ["solve", "ks-cantilever", "--model", "tsm"]
+KIB = 1024
+
+
+def begun(
+    code: str, *arguments: str, cwd: Path | None = None, stdout: int = subprocess.PIPE, **environment: str
+) -> "subprocess.Popen[str]":
+    """Start Python on some code."""
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        cwd=cwd,
+        stdout=stdout,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**HERE, **environment},
+    )
+
+
+def crossval(
+    *arguments: str, setup: str = "", stdout: int = subprocess.PIPE, **environment: str
+) -> tuple[int, str]:
+    """Run ``crossval`` after a statement; return its exit status and standard error."""
+    with begun(f"{setup}\n{COMMAND}", *arguments, stdout=stdout, **environment) as child:
+        err = child.communicate(timeout=300)[1]
+    assert "Traceback" not in err
+    return child.returncode, err
+
+
+def names(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir() if not path.name.startswith(".")}
+
+
+WRITE = """
+import sys, time
+from pathlib import Path
+from comparisons.export import write_series
+from comparisons.files import write_text
+from comparisons.models import solve
+from comparisons.scene import load_scene
+from comparisons.statement import as_json
+scene = load_scene("ks-cantilever")
+response = solve(scene, "tsm")
+text = as_json(response)
+print("ready", flush=True)
+while True:
+    write_text(Path("a.json"), text)
+    write_series(Path(), response, scene)
+"""
+
+
+def interrupted_while_writing(folder: Path, how: signal.Signals, after: float) -> None:
+    with begun(WRITE, cwd=folder) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "ready\n"
+        time.sleep(after)
+        child.send_signal(how)
+        assert child.wait(60) == -how
+
+
+def check_whole(folder: Path) -> int:
+    """Read every file with a name of its own; return their number."""
+    for path in folder.glob("[!.]*"):
+        if path.suffix == ".json":
+            assert json.loads(path.read_text())["status"] == "COMPLETED"
+        elif path.suffix == ".vtu":
+            assert len(meshio.read(path).points) > 0
+        else:
+            listed = {item.get("file") for item in ET.parse(path).iter("DataSet")}  # noqa: S314 - our own
+            assert None not in listed
+            assert {name for name in listed if name} <= names(folder)
+    return len(names(folder))
+
+
+def check_interrupts(folder: Path, times: int) -> None:
+    draw = random.Random(times)  # noqa: S311 - no secret
+    found = 0
+    for number in range(times):
+        how = draw.choice([signal.SIGINT, signal.SIGKILL])
+        place = folder / str(number)
+        place.mkdir()
+        interrupted_while_writing(place, how, draw.uniform(0.0, 0.3))
+        found += check_whole(place)
+        if how is signal.SIGINT:
+            assert not list(place.glob(".*"))
+    assert found > 0
+
+
+def test_files_are_whole_or_absent_when_interrupted(tmp_path: Path) -> None:
+    check_interrupts(tmp_path, 3)
+
+
+@pytest.mark.slow
+def test_files_are_whole_or_absent_whenever_interrupted(tmp_path: Path) -> None:
+    check_interrupts(tmp_path, 40)
+
+
+def test_interrupt_is_one_line(tmp_path: Path) -> None:
+    with begun(COMMAND, "compare", "ks-cantilever", "--out", str(tmp_path / "out")) as child:
+        assert child.stderr is not None
+        assert child.stderr.readline().startswith("[1/")
+        child.send_signal(signal.SIGINT)
+        lines = [line for line in child.stderr.read().splitlines() if not line.startswith("[")]
+    assert lines == ["crossval: interrupted"]
+    assert child.returncode == 130
+    assert not names(tmp_path / "out")
+
+
+def test_two_runs_into_one_folder(tmp_path: Path) -> None:
+    """Of different lengths: the files are those of the one that wrote last, whole."""
+    text = (Path(sys.modules["comparisons"].__path__[0]) / "scene/scenes/ks-cantilever.toml").read_text()
+    children = []
+    for steps in (7, 23):
+        scene = tmp_path / f"{steps}.toml"
+        scene.write_text(re.sub(r"load_parameters = \d+", f"load_parameters = {steps}", text))
+        arguments = ["solve", str(scene), "--model", "tsm", "--vtk", str(tmp_path / "vtk")]
+        children += [begun(COMMAND, *arguments) for _ in range(2)]
+    for child in children:
+        assert child.communicate(timeout=300)[1] == ""
+        assert child.returncode == 0
+    folder = tmp_path / "vtk"
+    check_whole(folder)
+    bodies = {name for name in names(folder) if name.startswith("tsm-")}
+    assert len(bodies) in (7, 23)
+    listed = {item.get("file") for item in ET.parse(folder / "tsm.pvd").iter("DataSet")}  # noqa: S314
+    assert listed == names(folder) - {"tsm.pvd"}
+    assert not list(folder.glob(".*"))
+
+
+@pytest.mark.slow
+def test_two_comparisons_into_one_folder(tmp_path: Path) -> None:
+    children = [begun(COMMAND, "compare", "ks-cantilever", "--out", str(tmp_path)) for _ in range(2)]
+    for child in children:
+        err = child.communicate(timeout=600)[1]
+        assert "Traceback" not in err
+        assert child.returncode == 0, err
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert all((tmp_path / name).is_file() for name in summary["files"])
+    assert not list(tmp_path.rglob(".*"))
+
+
+FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"
+
+
+@pytest.mark.parametrize(
+    ("options", "size", "file"),
+    [(["--json", "a.json"], 2 * KIB, "a.json"), (["--vtk", "v"], KIB, "v/tsm-0001.vtu")],
+)
+def test_no_room_for_a_file(
+    options: list[str], size: int, file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "v").mkdir()
+    (tmp_path / file).write_text("kept")
+    status, err = crossval(*SOLVE, *options, setup=FULL.format(size=size))
+    assert (status, err.count("\n")) == (2, 1)
+    assert re.fullmatch(rf"crossval: \S*{file}: cannot be written: File too large\n", err)
+    assert (tmp_path / file).read_text() == "kept"
+    assert {path.name for path in tmp_path.rglob("*")} == {"v", Path(file).name}
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["scenes"], [*SOLVE, "--json", "-"]])
+def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> None:
+    with Path("/dev/full").open("w") as full:
+        end = crossval(*arguments, stdout=full.fileno(), PYTHONUNBUFFERED=unbuffered)
+    assert end == (2, "crossval: output: No space left on device\n")
+
+
+@pytest.mark.parametrize("options", [["--json", "/proc/a.json"], ["--vtk", "/proc/vtk"]])
+def test_no_permission_to_write(options: list[str]) -> None:
+    """Not even the superuser writes there."""
+    status, err = crossval(*SOLVE, *options)
+    assert (status, err.count("\n")) == (2, 1)
+    assert err.startswith(
+        f"crossval: {Path(options[1]) if 'vtk' in options[0] else '/proc'}: cannot be written: "
+    )
+
+
+@pytest.mark.parametrize(
+    ("library", "arguments"),
+    [
+        ("numpy", SOLVE),
+        ("scipy", SOLVE),
+        ("skfem", ["solve", "ks-cantilever", "--model", "solid"]),
+        ("meshio", [*SOLVE, "--vtk", "DIR"]),
+    ],
+)
+def test_a_missing_library(library: str, arguments: list[str], tmp_path: Path) -> None:
+    out = tmp_path / "vtk"
+    status, err = crossval(
+        *(part.replace("DIR", str(out)) for part in arguments),
+        setup=f"import sys; sys.modules['{library}'] = None",
+    )
+    assert status == 2
+    assert re.fullmatch(rf"crossval: {library}\S*: cannot be imported, install tsm-crossval again\n", err)
+    assert not out.exists() or not list(out.iterdir())
+
+
+def test_a_missing_cluster(tmp_path: Path) -> None:
+    study = tmp_path / "s.toml"
+    study.write_text('[study]\nname = "s"\nscene = "ks-cantilever"\n[[run]]\nmodel = "rod"\n')
+    setup = "import sys; sys.modules['distributed'] = None"
+    arguments = ["study", str(study), "--out", str(tmp_path / "out"), "--cluster", "tcp://127.0.0.1:1"]
+    status, err = crossval(*arguments, setup=setup)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "install tsm-crossval[cluster]" in err
+
+
+PICTURE = """
+from pathlib import Path
+from dataclasses import replace
+from comparisons.models import solve
+from comparisons.render import render_panels
+from comparisons.scene import load_scene
+from comparisons.stress import beam_panel
+scene = replace(load_scene("ks-cantilever"), load_parameters=2)
+print(render_panels([beam_panel(solve(scene, "tsm"), scene, [1], "beams")], "stress", Path("a.png")))
+"""
+
+
+def test_no_opengl(tmp_path: Path) -> None:
+    """The system's OpenGL libraries are hidden behind files that are none."""
+    hidden = tmp_path / "lib"
+    hidden.mkdir()
+    for library in ("GL.so", "GL.so.1", "EGL.so", "EGL.so.1", "OSMesa.so", "OSMesa.so.6", "OSMesa.so.8"):
+        (hidden / f"lib{library}").touch()
+    with begun(PICTURE, cwd=tmp_path, LD_LIBRARY_PATH=str(hidden), DISPLAY="") as child:
+        out, err = child.communicate(timeout=300)
+    assert err == ""
+    assert out == f"{INSTEAD}\n"
+    assert names(tmp_path) == {"lib", "a.png"}
+
+
+def test_no_pyvista(tmp_path: Path) -> None:
+    """A package of its name that cannot be imported."""
+    (tmp_path / "pyvista.py").write_text("raise ImportError('broken')\n")
+    with begun(PICTURE, cwd=tmp_path, PYTHONPATH=os.pathsep.join([str(tmp_path), *sys.path])) as child:
+        out, err = child.communicate(timeout=300)
+    assert err == ""
+    assert out == f"{INSTEAD}\n"
+    assert (tmp_path / "a.png").is_file()

@@ -1,0 +1,96 @@
+"""What a person sees while a scene is solved, and what a shell completes."""
+
+import io
+import re
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from comparisons.cli import main
+from comparisons.cli import progress as shown
+from comparisons.cli.progress import watching
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.progress import Reached
+from comparisons.scene import load_scene
+
+SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(
+    ("model", "options"), [("tsm", Options(elements=10)), ("solid", Options(mesh=(16, 1)))]
+)
+def test_every_load_parameter_is_told_of(model: str, options: Options) -> None:
+    told: list[Reached] = []
+    response = solve(SCENE, model, options, told.append)
+    times = [reached.load_parameter for reached in told]
+    assert times == sorted(times)
+    assert set(response.load_parameter) <= set(times)
+    assert sum(reached.iterations for reached in told) == response.newton_iterations.sum()
+    place = r"pin->cantilever on element \d+ of 10" if model == "tsm" else r"pin->cantilever at 0\.\d+"
+    assert all(re.fullmatch(place, contact) for reached in told for contact in reached.contacts)
+    assert told[-1].contacts
+
+
+def test_the_element_is_that_of_the_contact() -> None:
+    told: list[Reached] = []
+    response = solve(SCENE, "tsm", Options(elements=10), told.append)
+    arc = response.contacts["pin->cantilever"].arc_position[-1]
+    assert told[-1].contacts == (f"pin->cantilever on element {int(10 * arc) + 1} of 10",)
+
+
+def test_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shown, "REDRAW", 0.0)
+    monkeypatch.setenv("COLUMNS", "200")
+    stream = Terminal()
+    with watching("solid", stream=stream) as watch:
+        watch(Reached(0.5, 7, ("pin->beam on element 3 of 10",)))
+        watch(Reached(1.0, 5, ()))
+    pictures = [picture.removesuffix("\x1b[K") for picture in stream.getvalue().split("\r")]
+    assert pictures == [
+        "",
+        "solid [###############...............] t = 0.5000, 7 iterations, pin->beam on element 3 of 10",
+        f"solid [{30 * '#'}] t = 1.0000, 12 iterations",
+        "",
+    ]
+
+
+def test_a_bar_fits_into_its_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shown, "REDRAW", 0.0)
+    monkeypatch.setenv("COLUMNS", "40")
+    stream = Terminal()
+    with watching("solid", stream=stream) as watch:
+        watch(Reached(0.5, 7, ("pin->beam on element 3 of 10",)))
+    assert max(len(picture) for picture in stream.getvalue().replace("\x1b[K", "").split("\r")) == 39
+
+
+@pytest.mark.parametrize(("stream", "quiet"), [(io.StringIO(), False), (Terminal(), True)])
+def test_nothing_elsewhere_and_where_it_is_quiet(stream: io.StringIO, quiet: bool) -> None:
+    with watching("solid", quiet=quiet, stream=stream) as watch:
+        watch(Reached(0.5, 7, ()))
+    assert stream.getvalue() == ""
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+def test_completion(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert "doctor" in script
+    # of tcsh only commands are completed
+    assert ("--accuracy" in script) == (shell != "tcsh")
+
+
+def test_bash_completes_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", "bash"]) == 0
+    script = tmp_path / "crossval"
+    script.write_text(capsys.readouterr().out)
+    ask = f"source {script}; COMP_WORDS=(crossval sol); COMP_CWORD=1; _shtab_crossval; echo ${{COMPREPLY[*]}}"
+    done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["solve"]

@@ -1,0 +1,200 @@
+"""Scene files that break something: keys, values, shapes, the syntax, or all of it at once."""
+
+import copy
+import math
+import tomllib
+from typing import Any
+
+from hypothesis import strategies as st
+
+from comparisons.scene.toml import toml_value
+from tests.fuzz.scenes import Tables, valid_scenes
+
+MOST = 12
+"""Largest number of load parameters, elements and cells that is run: more is a long solution, not a hang."""
+LARGEST = 100_000
+"""Largest such number that a scene may state."""
+
+numbers = st.one_of(
+    st.sampled_from([0.0, -0.0, -1.0, 1e-320, 5e-324, 1e-160, 1e160, 1.7e308, -1.7e308, 1.0, 0.5, 1e-9, 1e9]),
+    st.sampled_from([math.nan, math.inf, -math.inf]),
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.sampled_from([0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)]),
+)
+texts = st.one_of(
+    st.sampled_from(
+        [
+            "",
+            " ",
+            "start",
+            "end",
+            "pin",
+            "beam",
+            "a.end",
+            "x",
+            "N, m",
+            "..",
+            "a\nb",
+            "\0",
+            "\U0001d6fc",
+            "\u202e",
+            "%s{}",
+        ]
+    ),
+    st.text(max_size=12),
+)
+scalars = st.one_of(numbers, texts, st.booleans())
+values = st.recursive(
+    scalars,
+    lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(texts, inner, max_size=3)),
+    max_leaves=6,
+)
+KEYS = [
+    "name",
+    "clamped",
+    "width",
+    "height",
+    "area",
+    "second_moment",
+    "shear_area",
+    "nodes",
+    "mesh",
+    "solid_clamp",
+    "solid_element",
+    "solid_mesh_file",
+    "material",
+    "kind",
+    "free",
+    "fixed",
+    "displacement",
+    "rotation",
+    "force",
+    "moment",
+    "path",
+    "radius",
+    "start",
+    "end",
+    "surface",
+    "penalty",
+    "penetration",
+    "keep",
+    "units",
+    "youngs_modulus",
+]
+
+
+def quoted(key: str) -> str:
+    """The key as TOML writes it, bare if it can be."""
+    return key if key.isascii() and key.replace("_", "").isalnum() else toml_value(key)
+
+
+def written(value: Any) -> str:
+    """The value as TOML, inline."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{quoted(key)} = {written(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(written(item) for item in value) + "]"
+    return toml_value(value)
+
+
+def toml_text(tables: Tables) -> str:
+    """The file of a scene, however broken."""
+    lines: list[str] = []
+    for key, value in tables.items():
+        if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+            for table in value:
+                lines += [
+                    f"[[{quoted(key)}]]",
+                    *(f"{quoted(k)} = {written(v)}" for k, v in table.items()),
+                    "",
+                ]
+        elif isinstance(value, dict):
+            lines += [f"[{quoted(key)}]", *(f"{quoted(k)} = {written(v)}" for k, v in value.items()), ""]
+        else:
+            lines.insert(0, f"{quoted(key)} = {written(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _tables(scene: Tables) -> list[Tables]:
+    found = [scene]
+    for value in scene.values():
+        found += [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, dict)]
+    return [table for table in found if table]
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> str:
+    """A valid scene after one to three mutations of its keys and values."""
+    scene = copy.deepcopy(draw(valid_scenes))
+    for _ in range(draw(st.integers(1, 3))):
+        candidates = _tables(scene)
+        if not candidates:
+            break
+        _mutate(draw, draw(st.sampled_from(candidates)))
+    return toml_text(scene)
+
+
+def _mutate(draw: st.DrawFn, table: Tables) -> None:
+    """Change one key of a table."""
+    key = draw(st.sampled_from(list(table)))
+    value = table[key]
+    how = draw(
+        st.sampled_from(["value", "number", "delete", "misspell", "add", "length", "scale", "repeat", "wrap"])
+    )
+    if how == "number" and isinstance(value, list) and value and not isinstance(value[0], dict):
+        value[draw(st.integers(0, len(value) - 1))] = draw(numbers)
+    elif how == "number" and not isinstance(value, dict | list):
+        table[key] = draw(numbers)
+    elif how == "scale" and isinstance(value, float):
+        table[key] = value * 10.0 ** draw(st.integers(-300, 300))
+    elif how == "length" and isinstance(value, list):
+        table[key] = draw(st.sampled_from([value[:-1], value + value[:1], [], [value]]))
+    elif how == "repeat" and isinstance(value, list) and value and isinstance(value[0], dict):
+        table[key] = value + copy.deepcopy(value[-1:])
+    elif how == "wrap":
+        table[key] = draw(st.sampled_from([[value], {key: value}, str(value)]))
+    elif how == "add":
+        table[draw(st.one_of(st.sampled_from(KEYS), texts))] = draw(values)
+    elif how == "delete":
+        del table[key]
+    elif how == "misspell":
+        del table[key]
+        at = draw(st.integers(0, len(key) - 1))
+        table[key[:at] + draw(st.sampled_from(["", "x", "_", "é", "."])) + key[at + 1 :] or "x"] = value
+    else:
+        table[key] = draw(values)
+
+
+@st.composite
+def garbled(draw: st.DrawFn) -> bytes:
+    """The bytes of a valid scene after deletions, repetitions and insertions anywhere."""
+    data = toml_text(draw(valid_scenes)).encode()
+    for _ in range(draw(st.integers(1, 4))):
+        at = draw(st.integers(0, len(data)))
+        size = draw(st.sampled_from([0, 1, 2, 10, 100]))
+        piece = draw(st.one_of(st.binary(max_size=6), st.just(data[at : at + size]), st.just(b"[" * 500)))
+        data = data[:at] + piece + data[at + draw(st.sampled_from([0, size])) :]
+    return data
+
+
+broken_files = st.one_of(
+    mutated().map(str.encode),
+    mutated().map(str.encode),
+    mutated().map(str.encode),
+    garbled(),
+    st.binary(max_size=200),
+)
+
+
+def is_small(data: bytes) -> bool:
+    """Whether no count in the file asks for a long solution."""
+    try:
+        tables = tomllib.loads(data.decode())
+    except (ValueError, RecursionError):
+        return True
+    return not any(
+        isinstance(number, int) and MOST < number <= LARGEST
+        for table in _tables(tables)
+        for key in ("load_parameters", "elements", "mesh")
+        for number in (table.get(key) if isinstance(table.get(key), list) else [table.get(key)])
+    )

@@ -1,0 +1,35 @@
+"""The same numbers on every Python and the oldest and newest libraries: ``nox -f tests/platforms/noxfile.py``."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import nox
+
+ROOT = Path(__file__).parents[2]
+PYTHONS = ["3.11", "3.12", "3.13"]
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio")
+FIRST = {"3.13": {"numpy": "2.1.0", "scipy": "1.14.1"}}
+"""First versions with wheels for a Python that is younger than the lowest."""
+nox.options.error_on_missing_interpreters = False
+nox.options.default_venv_backend = "venv"
+
+
+def lowest(python: str) -> list[str]:
+    """Return the lowest versions that pyproject.toml allows and that have wheels."""
+    stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    bounds = dict(re.fullmatch(r"([\w-]+)>=([\d.]+)", line).groups() for line in stated)
+    return [f"{name}=={FIRST.get(python, {}).get(name, bounds[name])}" for name in LIBRARIES]
+
+
+@nox.session(python=PYTHONS)
+@nox.parametrize("versions", ["oldest", "newest"])
+def numbers(session: nox.Session, versions: str) -> None:
+    """Compare essential numbers with those stored."""
+    session.chdir(ROOT)
+    if versions == "oldest":
+        session.install("--only-binary", ":all:", *lowest(str(session.python)))
+    else:
+        session.install("--upgrade", *LIBRARIES)
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    session.run("python", "-m", "tests.platforms.numbers", env=threads)
