@@ -1,4 +1,4 @@
-"""Try a random sample of mutants on the fast tests: `python tests/mutation/sample.py --count 150 --seed 1 --out out/mutation.tsv`.
+"""Try a random sample of mutants on the fast tests: `python tests/mutation/sample.py --count 120 --seed 1 --out out/mutation.tsv`.
 
 The table names every mutant tried and the test that kills it. Mutants that survive for a reason are listed in `survivors.toml`. The exit status
 is 0 only if at least `--rate` of the sample is killed and every survivor is listed.
@@ -154,7 +154,7 @@ def _summary(tried: list[Tried], among: int, least: float) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=150, help="mutants to draw")
+    parser.add_argument("--count", type=int, default=120, help="mutants to draw")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
         "--skip", type=int, default=0, help="mutants of the sample tried elsewhere, from its start"

@@ -231,7 +231,7 @@ def test_projection_on_exact_elements_is_the_closest_point(elements):
     result = tsm.solve(rolled, TENTHS)
     model, state = result.model, result.equilibria[-1].state
     for angle in turn * np.array([0.02, 0.2, 0.45, 0.7, 0.97]):
-        for distance in (0.7 * radius, 1.1 * radius):
+        for distance in (0.3 * radius, 1.1 * radius):
             point = distance * np.sin(angle), radius - distance * np.cos(angle)
             pair = replace(model.pairs[0], pin=tsm.Pin(name="p", path=(point, (9.0, 9.0))))
             seen = project(model, pair, replace(state, load_parameter=0.0))
