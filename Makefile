@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all docs bench fuzz platforms lint format setup clean
+.PHONY: run test test-all coverage mutation docs bench fuzz platforms lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -16,6 +16,14 @@ test: lint
 
 test-all: lint
 	$(PYTEST)
+
+# branches of elements, contact, stepping and exact answers; the modules and the bar are in pyproject.toml
+coverage: setup
+	$(PYTEST) -m "not slow" --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
+
+# a random sample of faults put into these modules one at a time: whether their fast tests tell
+mutation: setup
+	$(THREADS) PYTHONPATH=. $(BIN)/python tests/mutation/sample.py --out out/mutation.tsv
 
 docs: setup
 	rm -rf docs

@@ -21,6 +21,7 @@ class Status(Enum):
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
     UNREACHABLE = "no equilibrium lies beyond: the load parameter has a limit point"
+    FALLING = "a structure that a contact slipped off was not found to come to rest"
     LOST_CONTACT = "a contact that must persist was released"
     SLIPPED_OFF = "a contact that must persist slipped off the beam"
     FOLDED = "a contact reached the held end of its beam"

@@ -49,6 +49,8 @@ _LAST_PART = 1e-2
 """A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
 _FIRST_PACE = 1e-1
 """Time of the first step of a fall."""
+_TRIALS = 100
+"""Steps of a fall at most, those taken back included: what nothing holds falls forever."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
 
@@ -325,7 +327,7 @@ class Stepper:
         while True:
             equilibrium = self._settled(state, jump=jump)
             if equilibrium is None:
-                return self.failure
+                return Status.FALLING if jump else self.failure
             state = equilibrium.state
             pulling = [
                 (normal_force(self.model, equilibrium, k), k)
@@ -372,7 +374,7 @@ class Stepper:
         """
         pace, over = _FIRST_PACE, set[int]()
         resistance = self._resistance()
-        while pace > _FIRST_PACE * 1e-9:
+        for _ in range(_TRIALS):
             at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
             equilibrium = self.newton.solve(state, drag=drag)
@@ -388,7 +390,6 @@ class Stepper:
                     state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
             else:
                 pace /= 4
-        self.failure = equilibrium.status
         return None
 
     def _resistance(self) -> Array:
@@ -413,10 +414,8 @@ class Stepper:
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""
-        for n in range(len(self.events) - 1, -1, -1):
-            if self.events[n].kind is EventKind.SLIP_OFF:
-                self.events[n] = replace(self.events[n], released=released)
-                return
+        n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
+        self.events[n] = replace(self.events[n], released=released)
 
     def _note(self, kind: EventKind, k: int, element: int, arc: float, force: float) -> None:
         pair = self.model.pairs[k]

@@ -221,6 +221,24 @@ def test_projection_is_the_closest_point():
         assert isinstance(seen, Projection)
 
 
+@pytest.mark.parametrize("elements", [1, 3])
+def test_projection_on_exact_elements_is_the_closest_point(elements):
+    """On a beam rolled up to three quarters of a circle, from points nearest to any part of it."""
+    turn = 1.5 * np.pi
+    radius = 1 / turn
+    apart = cantilever(((2.0, 0.0), (2.0, 0.1)), elements=elements, element="exact")
+    rolled = replace(apart, loads=(tsm.Load(beam="b", end="end", moment=turn * SECTION.EI),))
+    result = tsm.solve(rolled, TENTHS)
+    model, state = result.model, result.equilibria[-1].state
+    for angle in turn * np.array([0.02, 0.2, 0.45, 0.7, 0.97]):
+        for distance in (0.3 * radius, 1.1 * radius):
+            point = distance * np.sin(angle), radius - distance * np.cos(angle)
+            pair = replace(model.pairs[0], pin=tsm.Pin(name="p", path=(point, (9.0, 9.0))))
+            seen = project(model, pair, replace(state, load_parameter=0.0))
+            assert (seen.element + seen.xi) / elements == pytest.approx(angle / turn, abs=1e-9)
+            assert seen.gap == pytest.approx(distance - radius, abs=1e-9)
+
+
 def test_bad_structures_are_refused():
     good = cantilever(((0.8, 0.0), (0.8, 0.1)))
     with pytest.raises(ValueError, match="beam = 'x': names no beam"):
@@ -265,3 +283,29 @@ def test_a_beam_that_springs_back_lands_on_the_pin_below():
     assert result.contacts["p->b"].force[caught] == pytest.approx(
         alone.contacts["p->b"].force[caught], rel=1e-8
     )
+
+
+@pytest.mark.parametrize(("element", "elements"), [("mixed", 10), ("exact", 2)])
+def test_a_beam_that_springs_back_leaves_the_pin_above(element, elements):
+    """When the pin at the tip slips off, the other one would have to pull: the beam is free, and all its energy released."""
+    base = cantilever(((0.5, 0.0), (0.5, 0.01)), side="left", elements=elements, element=element)
+    both = replace(
+        base,
+        pins=(*base.pins, tsm.Pin(name="q", path=((0.93, 0.0), (0.93, 0.6)))),
+        contacts=(*base.contacts, tsm.ContactPair(node="q", beam="b")),
+    )
+    result = tsm.solve(both, TENTHS)
+    slip, release = (event for event in result.events if event.kind is not tsm.EventKind.PASS_THROUGH)
+    assert (slip.kind, slip.pair) == (tsm.EventKind.SLIP_OFF, "q->b")
+    assert (release.kind, release.pair) == (tsm.EventKind.RELEASE, "p->b")
+    assert slip.load_parameter == release.load_parameter
+    before = tsm.solve(
+        both, np.append(TENTHS[slip.load_parameter > TENTHS], slip.load_parameter * (1 - 1e-9))
+    )
+    assert release.force == pytest.approx(before.contacts["p->b"].force[-1], rel=1e-6)
+    assert slip.released == pytest.approx(before.strain_energy[-1], rel=1e-6)
+    assert result.shape("b", -1)[:, 1] == pytest.approx(0.0, abs=1e-12)
+    kept = replace(both, contacts=(replace(both.contacts[0], keep=True), both.contacts[1]))
+    stopped = tsm.solve(kept, TENTHS, throw=False)
+    assert stopped.status is tsm.Status.LOST_CONTACT
+    assert stopped.load_parameter[-1] < slip.load_parameter

@@ -91,6 +91,69 @@ def test_mixed_contact_tangent_is_symmetric():
         assert np.abs(tangent - tangent.T).max() <= 1e-13 * np.abs(tangent).max()
 
 
+def test_mixed_contact_gradient_is_the_derivative_of_its_energy():
+    """With and without an offset, by central differences."""
+    rng, h = np.random.default_rng(11), 1e-6
+    for _ in range(100):
+        p, x, lever, xi, force, side, offset = random_contact(rng)
+        xi = min(max(xi, 0.01), 0.99)
+        gradient, _ = mixed_contact.response(p, x, lever, xi, force, side, offset)
+        direction = rng.normal(size=11)
+
+        def energy(step, p=p, x=x, lever=lever, xi=xi, force=force, side=side, offset=offset, d=direction):
+            moved = lever + step * (d[:2] - d[6:8])
+            return mixed_contact.energy(
+                p, x + step * d[:6], moved, xi + step * d[10] / p.l0, force + step * d[8:10], side, offset
+            )
+
+        slope = (energy(h) - energy(-h)) / (2 * h)
+        # differences to second order: a step of 1e-6 of elements as short as 0.1
+        scale = np.abs(gradient * direction).max() + abs(energy(0.0))
+        assert gradient @ direction == pytest.approx(slope, abs=1e-7 * scale)
+
+
+def clamped_deflection(Phi, xi, eta):
+    """Deflection at xi by a unit force at eta of Timoshenko's beam with EI = l0 = 1 between clamps, from its equations.
+
+    ``M = M0 + V0 s + <s - eta>``, ``theta' = M``, ``w' = theta - M' Phi/12``.
+    """
+
+    def at(s):
+        past = max(s - eta, 0.0)
+        rotation = np.array([s, s**2 / 2, past**2 / 2])
+        return rotation, np.array([s**2 / 2, s**3 / 6 - Phi / 12 * s, past**3 / 6 - Phi / 12 * past])
+
+    end = np.array(at(1.0))
+    M0, V0 = np.linalg.solve(end[:, :2], -end[:, 2])
+    return at(xi)[1] @ [M0, V0, 1.0]
+
+
+def test_compliance_of_an_element_is_a_clamped_beams():
+    rng = np.random.default_rng(12)
+    for _ in range(100):
+        p, (xi, eta) = random_properties(rng), rng.uniform(0.05, 0.95, 2)
+        unit = p.l0**3 / p.EI
+        across = mixed_contact.cross_compliance(p, xi, eta)[0]
+        assert across == pytest.approx(unit * clamped_deflection(p.Phi, xi, eta), rel=1e-10)
+        assert mixed_contact.cross_compliance(p, eta, xi)[0] == pytest.approx(across, rel=1e-14)
+        below = mixed_contact.compliance(p, xi)[0]
+        assert below == pytest.approx(unit * clamped_deflection(p.Phi, xi, xi), rel=1e-10)
+
+
+def test_what_two_contacts_on_one_element_add_has_its_derivatives():
+    """Of ``-C12 F_1 . F_2``, in force and arc position of either contact."""
+    rng = np.random.default_rng(13)
+    for _ in range(100):
+        p, at, force = random_properties(rng), rng.uniform(0, 1, 2), rng.normal(size=(2, 2))
+        d = rng.normal(size=6)
+        xi, (first, second) = at + STEP * d[[2, 5]] / p.l0, force + STEP * d[[0, 1, 3, 4]].reshape(2, 2)
+        gradient, tangent = mixed_contact.crossing(p, tuple(xi), first, second)
+        value = -mixed_contact.cross_compliance(p, *xi)[0] * (first @ second)
+        assert gradient.real @ d == pytest.approx(value.imag / abs(STEP), rel=1e-9)
+        expected = gradient.imag / abs(STEP)
+        assert np.abs(tangent.real @ d - expected).max() <= 1e-9 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("name", CLOSED_FORM)
 def test_rigid_motion_gives_no_force(name):
     rng = np.random.default_rng(4)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import tsm
+from tsm.guard import PathGuard
+from tsm.newton import Newton
 from tsm.status import Status
 
 SECTION = tsm.Section(EA=3e4, GA=9e3, EI=1.0)
@@ -51,3 +53,25 @@ def test_load_control_ends_at_the_limit_point(count):
     assert result.status is Status.UNREACHABLE
     stopped = float(result.message.split("stopped at load parameter ")[1].split(",")[0])
     assert 40 * stopped == pytest.approx(33.87, rel=2e-3)
+
+
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_forces_change_at_the_rate_of_the_tangent(element):
+    """Under a load and a pin that rises along a slant: against differences of equilibria on both sides."""
+    problem = tsm.Structure(
+        beams=(tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=SECTION, elements=2, element=element),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=((0.8, 0.0), (0.7, 0.4))),),
+        contacts=(tsm.ContactPair(node="p", beam="b"),),
+        loads=(tsm.Load(beam="b", end="end", force=(0.5, -1.0)),),
+    )
+    dt = 1e-4
+    times = np.array([0.6 - dt, 0.6, 0.6 + dt])
+    result = tsm.solve(problem, times, tsm.Settings(tolerance=1e-13))
+    newton = Newton(result.model, tsm.Settings())
+    before, at, after = (PathGuard(newton, e.state) for e in result.equilibria)
+    slope = (after.force - before.force) / (2 * dt)
+    assert np.abs(slope).max() > 1
+    assert at.force_rate == pytest.approx(slope, abs=1e-4 * np.abs(slope).max())
+    moved = (after.state.q - before.state.q) / (2 * dt)
+    assert at.q_rate == pytest.approx(moved, abs=1e-4 * np.abs(moved).max())

@@ -468,3 +468,43 @@ def test_resampling_and_cutting_keep_the_shape():
         assert cut.profile.angle.shape == (3, order)
         assert rods.balance(cut).inside <= 1e-7
         assert np.abs(axis(rods, settled(Newton(result.model, tsm.Settings()), cut)) - shape).max() <= 1e-9
+
+
+def test_section_forces_along_the_axis_balance_the_pin():
+    """Between the clamp and the contact every section carries the pin's force and its moment, beyond it nothing."""
+    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    path = np.array([(0.83, 0.0), (0.83, 0.3)]) @ turn.T
+    beam = tsm.Beam(name="b", start=(0, 0), end=(0.8, 0.6), section=KS, elements=3, element="exact")
+    problem = tsm.Structure(
+        beams=(beam,),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=tuple(map(tuple, path))),),
+        contacts=(tsm.ContactPair(node="p", beam="b"),),
+    )
+    result = tsm.solve(problem, np.array([0.5, 1.0]))
+    assert result.status is tsm.Status.COMPLETED
+    contact, lines = result.contacts["p->b"], result.stations("b", -1)
+    assert lines.arc[0, 0] == 0.0
+    assert lines.arc[-1, 1] == pytest.approx(1.0, abs=1e-15)
+    assert lines.arc[1:, 0] == pytest.approx(lines.arc[:-1, 1], abs=1e-15)
+    assert lines.position[1:, 0] == pytest.approx(lines.position[:-1, 1], abs=1e-14)
+    assert lines.rotation[1:, 0] == pytest.approx(lines.rotation[:-1, 1], abs=1e-14)
+    nodes = result.shape("b", -1)
+    assert lines.position[-1, 1] == pytest.approx(nodes[-1, :2], abs=1e-14)
+    assert lines.rotation[-1, 1] == pytest.approx(nodes[-1, 2], abs=1e-14)
+    carried = lines.arc.mean(axis=1) < contact.arc_position[-1]
+    assert carried.any()
+    assert not carried.all()
+    angle = lines.rotation + np.arctan2(0.6, 0.8)
+    c, s = np.cos(angle), np.sin(angle)
+    axial, shear, moment = np.moveaxis(lines.forces, -1, 0)
+    force = np.stack([axial * c - shear * s, axial * s + shear * c], axis=-1)
+    push = force[0, 0]
+    assert np.hypot(*push) == pytest.approx(contact.force[-1], rel=1e-10)
+    assert force[carried] == pytest.approx(np.broadcast_to(push, force[carried].shape), rel=1e-10)
+    assert force[~carried] == pytest.approx(0.0, abs=1e-10 * contact.force[-1])
+    lever = path[-1] - lines.position
+    torque = lever[..., 0] * push[1] - lever[..., 1] * push[0]
+    scale = float(np.abs(moment).max())
+    assert moment[carried] == pytest.approx(torque[carried], abs=1e-9 * scale)
+    assert moment[~carried] == pytest.approx(0.0, abs=1e-9 * scale)

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import tsm
+from tsm.model import Model
+from tsm.stepping import Stepper
 
 PAIR = "pin->cantilever"
 RODS = tomllib.loads((Path(__file__).parents[1] / "reference" / "ks_rod.toml").read_text())
@@ -167,6 +169,19 @@ def test_march_and_solve_agree(ks):
     result = tsm.solve(ks(10), TWENTIETHS)
     assert [step.equilibrium.state.load_parameter for step in steps] == result.load_parameter.tolist()
     assert (steps[-1].equilibrium.state.q == result.equilibria[-1].state.q).all()
+
+
+def test_a_solution_goes_on_from_accepted_states_as_if_it_had_not_stopped(ks):
+    model = Model(ks(10))
+    whole, first, second = (Stepper(model, tsm.Settings()) for _ in range(3))
+    *_, end = whole.march(TWENTIETHS)
+    *_, half = first.march(TWENTIETHS[:10])
+    second.resume(list(first.history), first.step, first.orientation)
+    *_, gone_on = second.march(TWENTIETHS)
+    assert half.equilibrium.state.load_parameter == 0.5
+    assert gone_on.equilibrium.state.load_parameter == 1.0
+    np.testing.assert_array_equal(gone_on.equilibrium.state.q, end.equilibrium.state.q)
+    assert gone_on.iterations == end.iterations
 
 
 def test_pass_throughs_are_listed(ks):

@@ -120,6 +120,19 @@ def test_unreachable():
     assert np.degrees(np.arctan2(y, x)) == pytest.approx(99.57, abs=0.05)
 
 
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_falling(element):
+    """A clamp that slides along y and a load along -y: a pin carries both until the beam slips off it, at a third of its way."""
+    slider = replace(
+        structure(((0.9, 0.0), (1.2, 0.0)), clamps=(replace(CLAMP, uy=None),)),
+        beams=(replace(BEAM, element=element, elements=2),),
+        loads=(tsm.Load(beam="b", end="end", force=(0.0, -0.1)),),
+    )
+    result = ends_in(Status.FALLING, slider)
+    assert len(result.load_parameter) == 3
+    np.testing.assert_allclose(result.contacts["p->b"].force, 0.1 * result.load_parameter, rtol=1e-4)
+
+
 def test_two_contacts_on_an_element_of_the_paper():
     near = ((0.86, 0.0), (0.86, 0.2))
     ends_in(Status.TWO_CONTACTS, structure(element="timoshenko", more=(near,)))
@@ -148,9 +161,10 @@ def test_ping_pong():
         module.chord_owner = held
 
 
-def test_chatter():
-    """A margin that opens whatever closes."""
-    stepper = Stepper(Model(structure()), tsm.Settings(max_chatter=2))
+@pytest.mark.parametrize("allowed", [1, 2, 5])
+def test_chatter(allowed):
+    """A margin that opens whatever closes: so many events are allowed at one load parameter, not one more."""
+    stepper = Stepper(Model(structure()), tsm.Settings(max_chatter=allowed))
     from tsm.events import EventKind, Margin
 
     held = stepper._measure
@@ -166,6 +180,9 @@ def test_chatter():
     stepper.margins = broken(stepper.accepted)
     steps = list(stepper.march(TENTHS))
     assert steps[-1].status is Status.CHATTER
+    stopped = steps[-1].equilibrium.state.load_parameter
+    events = [event for step in steps for event in step.events]
+    assert sum(event.load_parameter == stopped for event in events) == allowed
 
 
 def test_unbalanced():

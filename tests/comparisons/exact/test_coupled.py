@@ -124,6 +124,28 @@ def test_depths_outside_the_stage_are_nan(path):
     assert wide.end_depth == pytest.approx(path.end_depth, abs=1e-12)
 
 
+def test_a_tip_that_slips_off_the_second_rod():
+    """A pin near the clamps bends the rods far: the first one's tip runs along the second to its end."""
+    scene = {"pin_x": 0.3, "spacing": 0.05}
+    end = coupled_rods([0.1], **scene, **ROD)
+    assert end.end == "tip slipped"
+    last = coupled_rods([end.end_depth - 1e-9, end.end_depth + 1e-9], **scene, **ROD)
+    assert last.tip_arc[0] == pytest.approx(1.0, abs=1e-7)
+    assert last.pin_arc[0] < 1.0
+    assert np.isnan(last.tip_arc[1])
+
+
+def test_a_pair_is_lost_at_its_fold():
+    """Where equilibrium ends, all unknowns go with the square root of the depth that is left."""
+    scene = {"pin_x": 0.3, "spacing": 0.6}
+    fold = coupled_rods([0.2], **scene, **ROD)
+    assert fold.end == "lost"
+    left = 1e-7 * np.array([25.0, 16.0, 9.0, 4.0])
+    path = coupled_rods(fold.end_depth - left, **scene, **ROD)
+    for steps in (np.diff(path.pin_arc), np.diff(path.clamp_moments[:, 0]), np.diff(path.tip[:, 0])):
+        assert steps == pytest.approx(steps[0], rel=0.02)
+
+
 def test_units(path):
     L, E = 1e-3, 1e9
     rod = {"EA": E * L**2 * ROD["EA"], "GA": E * L**2 * ROD["GA"], "EI": E * L**4 * ROD["EI"], "length": L}

@@ -85,6 +85,14 @@ def test_the_path_may_be_cut_into_any_pieces(path):
     np.testing.assert_allclose(few.force[1:], path.force[[25, 50]], rtol=1e-12)
 
 
+def test_iterations_of_all_steps_are_counted(path):
+    """A piece takes two at least, the path in one piece, which has to be cut, more than any of its parts."""
+    assert path.iterations[0] == 0
+    assert path.iterations[1:].min() >= 2
+    few = rod_with_tied_tip(TIPS[[0, 50]], **KS)
+    assert few.iterations[1] > path.iterations.max()
+
+
 def test_mirror_image(path):
     mirrored = rod_with_tied_tip(TIPS[::10] * [1.0, -1.0], **KS)
     np.testing.assert_allclose(mirrored.force * [1.0, -1.0], path.force[::10], atol=1e-13 * EI)

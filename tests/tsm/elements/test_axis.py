@@ -54,6 +54,12 @@ def test_the_whole_axis_converges_with_the_fourth_order() -> None:
     assert np.log2(coarse / fine) == pytest.approx(4, abs=0.15)
 
 
+def test_points_do_not_depend_on_how_many_are_asked_for() -> None:
+    found = pushed(STRIP, "mixed", 5)
+    (_, few), (_, many) = (found.axis_line("beam", -1, count) for count in (2, 40))
+    assert few == pytest.approx(many[::20], abs=1e-6)
+
+
 @pytest.mark.parametrize("element", ["mixed", "timoshenko", "mixed-no-bow"])
 def test_elements_meet_at_their_nodes(element: str) -> None:
     found = pushed(STRIP, element, 7)
