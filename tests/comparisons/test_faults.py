@@ -71,10 +71,13 @@ while True:
 def interrupted_while_writing(folder: Path, how: signal.Signals, after: float) -> None:
     with begun(WRITE, cwd=folder) as child:
         assert child.stdout is not None
-        assert child.stdout.readline() == "ready\n"
-        time.sleep(after)
-        child.send_signal(how)
-        assert child.wait(60) == -how
+        try:
+            assert child.stdout.readline() == "ready\n"
+            time.sleep(after)
+            child.send_signal(how)
+            assert child.wait(60) == -how
+        finally:
+            child.kill()
 
 
 def check_whole(folder: Path) -> int:
