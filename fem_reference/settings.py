@@ -47,7 +47,7 @@ class Settings:
     max_penetration: float = 1e-3
     balance_tolerance: float = 1e-6
     min_step: float = 1e-6
-    max_attempts: int = 150
+    max_attempts: int = 100
     predictor_order: int = 3
 
     def __post_init__(self) -> None:
