@@ -85,7 +85,10 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve
         rows = csr_matrix(
             (np.ones(face.size), (np.arange(face.size), face)), shape=(face.size, len(mesh.nodes))
         )
-    slopes = CubicSpline(stations, np.eye(stations.size), bc_type="not-a-knot")(stations, 1)
+    parts = (
+        stations / strip.length
+    )  # of a few stations a spline solves equations that lengths far from 1 make ill-conditioned
+    slopes = CubicSpline(parts, np.eye(parts.size), bc_type="not-a-knot")(parts, 1) / strip.length
     offsets, kernel = averaging(contact_spread(strip, contact), float(np.diff(stations).min()))
     return Curve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
 

@@ -86,7 +86,7 @@ def _axis(response: Response, beam: str, k: int) -> Array:
     from scipy.interpolate import CubicSpline
 
     arc, line = response.axis_line(beam, k)
-    return np.asarray(CubicSpline(arc, line)(arc[0] + STATIONS * (arc[-1] - arc[0])))
+    return np.asarray(CubicSpline((arc - arc[0]) / (arc[-1] - arc[0]), line)(STATIONS))
 
 
 def _stress(one: Response, other: Response, a: Ints, b: Ints, scene: Scene) -> float:

@@ -159,8 +159,8 @@ def _kept(load_parameter: Array) -> list[int]:
 
 def _axis(response: Response, beam: str, k: int) -> Array:
     arc, line = response.axis_line(beam, k)
-    stations = np.linspace(arc[0], arc[-1], STATIONS)
-    return np.asarray(CubicSpline(arc, line)(stations))
+    parts = (arc - arc[0]) / (arc[-1] - arc[0])
+    return np.asarray(CubicSpline(parts, line)(np.linspace(0.0, 1.0, STATIONS)))
 
 
 def unmeasured(status: str, message: str) -> Measurement:

@@ -209,3 +209,15 @@ def test_radius_moves_the_gap_by_itself(model, with_pin):
     point = near(model, u, 0.6, -0.05)
     sharp, round_ = (with_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
     assert sharp.gap(sharp.project(u, 0.0)) - round_.gap(round_.project(u, 0.0)) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("length", [1e-18, 1e18])
+def test_a_curve_of_three_stations_at_any_length(problem, length):
+    """The slopes of one element's curve scale with its length; scipy warned of a matrix that was ill-conditioned by units alone."""
+    sizes = {"height": 0.02, "width": 0.02, "end": (1.0, 0.0)}
+    scaled = {"height": 0.02 * length, "width": 0.02 * length, "end": (length, 0.0)}
+    path = ((1.0, 0.0), (0.5, 0.5))
+    unit = build(problem(path=path, mesh=(2, 1), element="Q1", **sizes)).pairs[0].curve
+    far = tuple((length * x, length * y) for x, y in path)
+    other = build(problem(path=far, mesh=(2, 1), element="Q1", **scaled)).pairs[0].curve
+    np.testing.assert_allclose(other.slopes * length, unit.slopes, atol=1e-12)
