@@ -159,7 +159,7 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
         del table[key]
     elif how == "misspell":
         del table[key]
-        at = draw(st.integers(0, len(key) - 1))
+        at = draw(st.integers(0, max(len(key) - 1, 0)))
         table[key[:at] + draw(st.sampled_from(["", "x", "_", "é", "."])) + key[at + 1 :] or "x"] = value
     else:
         table[key] = draw(values)
