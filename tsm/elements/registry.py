@@ -66,7 +66,8 @@ def _chord_normal(element_force: ElementForce) -> ContactResponse:
         p: Properties, x: Any, lever: Any, _xi: Any, _force: Any, side: float, offset: float
     ) -> tuple[Array, Array]:
         try:
-            return chord_contact.response(element_force, p, x, lever, side, offset)
+            with np.errstate(all="ignore"):
+                return chord_contact.response(element_force, p, x, lever, side, offset)
         except ArithmeticError:
             # plain numbers raise where arrays overflow or divide by zero
             return np.full(8, np.nan), np.full((8, 8), np.nan)
