@@ -53,8 +53,8 @@ def test_beam_tangent_is_the_derivative_of_its_force(name):
 def test_contact_whose_powers_of_the_length_cannot_be_stated_is_not_finite(name, l0):
     p = Properties(l0, 0.0, l0, 1.0, 1.0, 0.1)
     gradient, tangent = CLOSED_FORM[name].contact(p, [0.0] * 6, (-0.3 * l0, 0.1 * l0), 0.3, (0, 0), 1.0, 0.0)
-    assert not np.isfinite(gradient).all()
-    assert not np.isfinite(tangent).all()
+    assert np.isnan(gradient).any()
+    assert np.isnan(tangent).any()
 
 
 @pytest.mark.parametrize("name", CLOSED_FORM)
