@@ -18,14 +18,14 @@ repeats = 1
 [[run]]
 model = "tsm"
 element = ["mixed", "exact", "timoshenko"]
-elements = {{ from = 2, to = {last}, count = {count} }}
+elements = {{ from = 5, to = {last}, count = {count} }}
 scene.load_parameters = 5
 """
 
 
 def tiny(path: Path, count: int) -> Path:
     """Write a study of 3 `count` cases, about 10 ms each."""
-    path.write_text(STUDY.format(last=count + 1, count=count))
+    path.write_text(STUDY.format(last=count + 4, count=count))
     return path
 
 
