@@ -1,14 +1,15 @@
 """Whatever a scene file holds: done and checked, refused in one line, or stopped by name; and what is done is right."""
 
+import importlib
 import json
-import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 
+from comparisons.scene import load_scene
 from comparisons.verify import CHECK_FAILED
 from tests.fuzz.broken import toml_text
 from tests.fuzz.judge import solved
@@ -18,10 +19,10 @@ from tests.fuzz.scenes import Tables, cantilevers
 FINE, COARSE = 16, 8
 """Numbers of `mixed` elements: of fourth order, the error of the fine ones is below what the refinement changes."""
 EXACT = 1e-6
+"""Of the rod; the limit of the `mixed` elements is off by .3 times the third power of the strain besides."""
 DRAWN = settings(
     deadline=None,
     database=None,
-    derandomize=True,
     phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
@@ -44,6 +45,28 @@ def test_many_files_end_as_documented(seed: int) -> None:
     check_files(250, seed)
 
 
+def test_the_seed_alone_decides_what_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Hypothesis prefers numbers that stand in the modules imported so far, which differ from run to run."""
+
+    def drawn() -> list[Tables]:
+        found = list[Tables]()
+
+        @settings(DRAWN, max_examples=40)
+        @seed(1)
+        @given(cantilevers())
+        def draw(scene: Tables) -> None:
+            found.append(scene)
+
+        draw()
+        return found
+
+    before = drawn()
+    (tmp_path / "full_of_numbers.py").write_text(f"A = {[n + 0.5 for n in range(-50, 900)]}")
+    monkeypatch.syspath_prepend(tmp_path)
+    importlib.import_module("full_of_numbers")
+    assert drawn() == before
+
+
 def histories(data: dict[str, Any], length: float, steps: int) -> np.ndarray:
     """Contact forces, clamp moments over the length and clamp forces, at the first load parameters."""
     forces = [pair["force"] for pair in data["contacts"].values()]
@@ -53,7 +76,10 @@ def histories(data: dict[str, Any], length: float, steps: int) -> np.ndarray:
 
 
 def check_agreement(scene: Tables, folder: Path) -> int:
-    """Compare exact and mixed elements with the rod where all have reached; return how many load parameters that are."""
+    """Compare exact and mixed elements with the rod where all have reached; return how many load parameters that are.
+
+    Where the rod stops they stop too.
+    """
     file = folder / "scene.toml"
     file.write_text(toml_text(scene))
     found = []
@@ -63,19 +89,19 @@ def check_agreement(scene: Tables, folder: Path) -> int:
         if not result.is_file():
             return 0
         found.append(json.loads(result.read_text()))
+    ends = [data["status"] for data in found]
+    assert ends[0] in ("COMPLETED", CHECK_FAILED) or "COMPLETED" not in ends[1:], ends
     steps = min(len(data["load_parameter"]) for data in found)
     if steps == 0 or any(data["status"] == CHECK_FAILED for data in found):
         return 0
-    beam = scene["beam"][0]
-    length = math.dist(beam["start"], beam["end"])
-    area = beam.get("area") or beam["width"] * beam["height"]
-    EI = beam["youngs_modulus"] * (beam.get("second_moment") or beam["width"] * beam["height"] ** 3 / 12)
-    rod, exact, coarse, fine = (histories(data, length, steps) for data in found)
-    scale = max(float(np.abs(rod).max(initial=0.0)), 1e-3 * EI / length**2)
-    shear = float(np.abs(rod).max(initial=0.0)) / (0.1 * beam["youngs_modulus"] * area)
+    beam = load_scene(str(file)).beams[0]
+    rod, exact, coarse, fine = (histories(data, beam.length, steps) for data in found)
+    largest = float(np.abs(rod).max(initial=0.0))
+    scale = max(largest, 1e-3 * beam.EI / beam.length**2)
+    strain = largest / min(beam.GA, beam.EA)
     assert np.abs(exact - rod).max(initial=0.0) <= EXACT * scale
     left = np.abs(fine - rod).max(initial=0.0) - np.abs(fine - coarse).max(initial=0.0)
-    assert left <= (EXACT + shear**3) * scale
+    assert left <= (EXACT + strain**3) * scale
     return steps
 
 
@@ -83,6 +109,7 @@ def compared(number: int, folder: Path) -> int:
     total = 0
 
     @settings(DRAWN, max_examples=number)
+    @seed(1)
     @given(cantilevers())
     def run(scene: Tables) -> None:
         nonlocal total
