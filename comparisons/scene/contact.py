@@ -1,8 +1,11 @@
 """What touches beams: records, hashable, without arrays, checked when they are made."""
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
-from itertools import pairwise
+from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import Annotated
 
 from comparisons.scene import rules
@@ -60,22 +63,26 @@ class PinSpec:
         (x, y), (dx, dy) = self.start, self.displacement
         return (x, y), (x + dx, y + dy)
 
+    @cached_property
+    def _reached(self) -> tuple[float, ...]:
+        """Distance along the path at every point, each rounded once."""
+        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
+        if not math.isfinite(sum(lengths)):
+            return tuple(accumulate(lengths, initial=0.0))
+        return tuple(float(reached) for reached in accumulate(map(Fraction, lengths), initial=Fraction(0)))
+
     @property
     def corners(self) -> tuple[float, ...]:
         """The load parameters of the path's inner points."""
-        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
-        return tuple(math.fsum(lengths[:i]) / math.fsum(lengths) for i in range(1, len(lengths)))
+        return tuple(reached / self._reached[-1] for reached in self._reached[1:-1])
 
     def position(self, load_parameter: float) -> Point:
         """Return the point at the fraction `load_parameter` of the path's length."""
-        segments = [(a, b, math.dist(a, b)) for a, b in pairwise(self.points)]
-        ahead = load_parameter * math.fsum(length for _, _, length in segments)
-        for start, end, length in segments:
-            if ahead <= length:
-                u = ahead / length
-                return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
-            ahead -= length
-        return self.points[-1]
+        ahead = load_parameter * self._reached[-1]
+        k = min(max(bisect_left(self._reached, ahead), 1), len(self.points) - 1)
+        start, end = self.points[k - 1 : k + 1]
+        u = (ahead - self._reached[k - 1]) / math.dist(start, end)
+        return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
 
 
 @dataclass(frozen=True, kw_only=True)
