@@ -23,9 +23,13 @@ POINTS = 401
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LocalStates:
-    """States of a cantilever in its local frame (`RodScene`), one per load parameter; forces are those of pin or tied point."""
+    """States of a cantilever in its local frame (`RodScene`), one per load parameter; forces are those of pin or tied point.
 
-    outcome: Sequence[Outcome]
+    Of all points of the path that were visited, `hits` are those of the load parameters.
+    """
+
+    visited: Sequence[Outcome]
+    hits: NDArray[np.int64]
     force: Array
     arc_position: Array
     clamp_moment: Array
@@ -58,7 +62,8 @@ def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
         arc_position = path.arc_position
     seconds = perf_counter() - began
     states = LocalStates(
-        outcome=[path.outcome[hit] for hit in hits],
+        visited=path.outcome,
+        hits=hits,
         force=path.force[hits],
         arc_position=arc_position[hits],
         clamp_moment=path.clamp_moment[hits],
@@ -89,7 +94,8 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
         path.append(state)
     seconds = perf_counter() - began
     states = LocalStates(
-        outcome=tuple(state.outcome for state in path),
+        visited=tuple(state.outcome for state in path),
+        hits=np.arange(len(path)),
         force=np.array([state.force for state in path]),
         arc_position=np.array([state.arc_position for state in path]),
         clamp_moment=np.array([state.clamp_moment for state in path]),
@@ -110,7 +116,7 @@ def _response(
     """Turn local states into the scene's frame; what lies beyond a lost equilibrium is left out."""
     name, length = local.beam.name, local.beam.length
     times = np.array(scene.times)
-    stop, reached = _end(states.outcome, keep=local.contact is not None and local.contact.keep)
+    stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
 
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
         arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
@@ -141,7 +147,7 @@ def _response(
         ),
         completed=stop is None,
         load_parameter=times[:reached],
-        contacts=_contacts(local, states, reached),
+        contacts=_contacts(scene, local, states, reached),
         supports={name: support},
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
@@ -153,29 +159,33 @@ def _response(
     )
 
 
-def _end(outcome: Sequence[Outcome], *, keep: bool) -> tuple[str | None, int]:
+def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, int]:
     """Return why the solution stops, None if it does not, and the number of load parameters before."""
     closed = False
-    for k, state in enumerate(outcome):
+    slipped = np.searchsorted(times, states.slip_off) if keep else len(times)
+    for k, state in enumerate(states.visited):
+        before = int(np.searchsorted(states.hits, k))
+        if before > slipped:
+            break
         if state is Outcome.LOST:
-            return "LOST", k
-        if keep and closed and state is not Outcome.CONTACT:
-            return ("SLIPPED_OFF" if state is Outcome.SLIPPED else "LOST_CONTACT"), k
+            return "LOST", before
+        if keep and closed and state is Outcome.OPEN:
+            return "LOST_CONTACT", before
         closed = closed or state is Outcome.CONTACT
-    return None, len(outcome)
+    return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
 
 
-def _contacts(local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
+def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
     if local.contact is None:
         return {}
-    outcome = np.array(states.outcome[:reached], dtype=object)
+    outcome = np.array(states.visited, dtype=object)[states.hits[:reached]]
     closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
     below = -local.points[:reached, 1] - local.offset
     history = ContactHistory(
         force=np.hypot(*states.force[:reached].T),
         arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
         gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
-        slip_off=states.slip_off if slipped.any() else np.nan,
+        slip_off=states.slip_off if reached and states.slip_off <= scene.times[reached - 1] else np.nan,
         vector=local.vector(states.force[:reached]),
     )
     return {local.contact.pair: history}

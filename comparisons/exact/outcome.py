@@ -11,6 +11,6 @@ class Outcome(StrEnum):
     CONTACT = "contact"
     """The pin touches the beam; the force may be zero."""
     SLIPPED = "slipped"
-    """The pin has left the beam over its free tip."""
+    """The pin has left the beam over its free tip, and is not back below it."""
     LOST = "lost"
     """No equilibrium under the pin is connected with the straight beam; the results are nan."""

@@ -101,12 +101,14 @@ def first_state(rod: Rod, pin: Array) -> State:
 
 def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, int, float]:
     """State after a straight piece of the path, Newton iterations, and the fraction of the piece at slip-off or nan."""
-    done, step, spent = 0.0, 1.0, 0
+    done, step, spent, slip = 0.0, 1.0, 0, np.nan
     while done < 1.0:
         here = start + done * (end - start)
-        if state.outcome is Outcome.OPEN:
+        if state.outcome in (Outcome.OPEN, Outcome.SLIPPED):
             touch = _touch(here, end, rod.offset)
             if touch is None:
+                below = end[1] + rod.offset < -_TOUCH
+                state = State(Outcome.OPEN) if below else state
                 break
             done = 1.0 if touch == 1.0 else done + touch * (1.0 - done)
             state = _touching(float((start + done * (end - start))[0]))
@@ -126,13 +128,14 @@ def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, in
         if not converged:
             step /= 2.0
             if step < _SMALLEST_STEP:
-                return State(Outcome.LOST), spent, np.nan
+                return State(Outcome.LOST), spent, slip
             continue
         if rod.arc(z) > 1.0 + _TOUCH:
             slip = _slip_off(rod, state.unknowns, z, (done, following), (start, end))
-            return State(Outcome.SLIPPED), spent, slip
+            state, done = State(Outcome.SLIPPED), slip
+            continue
         state, done, step = State(Outcome.CONTACT, z), following, 2.0 * step
-    return state, spent, np.nan
+    return state, spent, slip
 
 
 def _slip_off(

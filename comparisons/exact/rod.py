@@ -45,7 +45,7 @@ class RodPath:
     iterations : ndarray of int, shape (s,)
         Newton iterations spent since the position before, rejected steps included.
     slip_off : float
-        Fraction of the path's length at which the pin leaves the rod over its tip; nan if it does not.
+        Fraction of the path's length at which the pin first leaves the rod over its tip; nan if it does not.
     unknowns : ndarray, shape (s, 2)
         `(q, ell / length)` of `comparisons.exact.reissner`.
     flexibility : Flexibility
@@ -160,7 +160,7 @@ def rod_under_pin(
         state, spent, slip = advance(rod, states[-1], start, end)
         states.append(state)
         iterations.append(spent)
-        if not np.isnan(slip):
+        if not np.isnan(slip) and np.isnan(slip_off):
             slip_off = float((distance[k] + slip * (distance[k + 1] - distance[k])) / distance[-1])
     return _collect(states, iterations, slip_off, flexibility, EI, length)
 

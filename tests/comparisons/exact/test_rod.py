@@ -1,5 +1,7 @@
 """The Reissner rod under a pin: printed values, shooting, elastica limit, energy, events, units."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -250,16 +252,29 @@ def test_touch_on_the_surface():
     np.testing.assert_allclose(path.magnitude[1:], direct.magnitude, rtol=1e-13)
 
 
-def test_slip_off_is_final_and_free():
-    path = rod_under_pin([[0.8, -0.1], [0.8, 0.7], [0.8, -0.1], [0.8, 0.1]], **KS)
-    assert path.outcome == (Outcome.OPEN, *3 * [Outcome.SLIPPED])
-    np.testing.assert_array_equal(path.magnitude, 0.0)
-    np.testing.assert_array_equal(path.tip, 4 * [[1.0, 0.0]])
+def test_slip_off_frees_the_rod_until_the_pin_comes_from_below_again():
+    points = [[0.8, -0.1], [0.8, 0.7], [0.8, 0.6], [0.8, -0.1], [0.8, 0.1], [0.8, 0.7]]
+    path = rod_under_pin(points, **KS)
+    free = [Outcome.OPEN, Outcome.SLIPPED, Outcome.SLIPPED, Outcome.OPEN]
+    assert path.outcome == (*free, Outcome.CONTACT, Outcome.SLIPPED)
+    np.testing.assert_array_equal(path.magnitude[:4], 0.0)
+    np.testing.assert_array_equal(path.tip[:4], 4 * [[1.0, 0.0]])
+    again = rod_under_pin(points[3:5], **KS)
+    assert path.magnitude[4] == pytest.approx(again.magnitude[1], rel=1e-12)
+    way = sum(abs(b[1] - a[1]) for a, b in pairwise(points))
+    assert path.slip_off * way == pytest.approx(rod_under_pin(points[:2], **KS).slip_off * 0.8, rel=1e-12)
+
+
+def test_a_pin_around_the_tip_pushes_again():
+    around = [[0.9, 0.0], [0.9, 0.8], [1.3, 0.8], [1.3, -0.2], [0.9, -0.2], [0.9, 0.1]]
+    path, again = rod_under_pin(around, **KS), rod_under_pin(around[-2:], **KS)
+    assert path.outcome[1:-1] == (*2 * [Outcome.SLIPPED], *2 * [Outcome.OPEN])
+    assert path.magnitude[-1] == pytest.approx(again.magnitude[-1], rel=1e-12)
 
 
 def test_slip_off_over_the_tip_on_the_way_down():
     path = rod_under_pin([[0.8, 0.0], [0.8, 0.3], [1.5, -0.1]], **KS)
-    assert path.outcome[-1] is Outcome.SLIPPED
+    assert path.outcome == (*2 * [Outcome.CONTACT], Outcome.OPEN)
     assert 0.3 / (0.3 + np.hypot(0.7, 0.4)) < path.slip_off < 1.0
 
 
