@@ -13,6 +13,9 @@ from fem_reference.settings import Settings
 from fem_reference.state import Condition, State, Touch, at_rest, state
 from fem_reference.status import Status
 
+_NEAR = 1e-9
+"""Turns of a pin that are as close as this to an end of a step are there."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Step:
@@ -73,7 +76,8 @@ class _Track:
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
     """Yield the accepted state at every load parameter; if one cannot be reached, a last step says why.
 
-    Between two load parameters the step is cut back to a half after a failure and doubled after a success.
+    Between two load parameters, and places where a pin turns, the step is cut back to a half after a failure and doubled after a
+    success.
     """
     track = _Track(states=(at_rest(model),))
     trial = float(load_parameters[0])
@@ -96,10 +100,11 @@ def _reach(
             status = Status.STEP_LIMIT
             break
         t = track.last.t
-        remaining = target - t
+        end = next((turn for turn in model.problem.turns if t + _NEAR < turn < target - _NEAR), target)
+        remaining = end - t
         # A remainder that is all but covered is taken whole, so that no sliver is left.
         whole = trial >= remaining * (1 - 1e-6)
-        goal = target if whole else t + trial
+        goal = end if whole else t + trial
         attempt = equilibrium(model, track.predict(model, goal, order), settings)
         iterations += attempt.iterations
         if attempt.status is Status.CONVERGED:

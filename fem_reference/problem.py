@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 
 import numpy as np
@@ -9,6 +10,9 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.checks import Point, require, require_choice, require_point, require_positive
 from fem_reference.strip import Strip
+
+TURN = 0.5
+"""Angle in radians that the path of a pin may turn by within a load step."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,9 +50,31 @@ class Pin:
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
         points = np.array(self.path, dtype=float)
-        legs = np.hypot(*np.diff(points, axis=0).T)
-        fractions = np.concatenate([[0.0], np.cumsum(legs)]) / legs.sum()
-        return np.array([np.interp(t, fractions, points[:, i]) for i in range(2)])
+        return np.array([np.interp(t, self._fractions, points[:, i]) for i in range(2)])
+
+    @cached_property
+    def _fractions(self) -> Floats:
+        """Load parameters of the path's points."""
+        legs = np.hypot(*np.diff(np.array(self.path, dtype=float), axis=0).T)
+        fractions: Floats = np.concatenate([[0.0], np.cumsum(legs)]) / legs.sum()
+        return fractions
+
+    @property
+    def turns(self) -> tuple[float, ...]:
+        """Load parameters of the points at which the path has turned by `TURN` since the last of them.
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
+        (0.5,)
+        """
+        directions = np.arctan2(*np.diff(np.array(self.path, dtype=float), axis=0).T[::-1])
+        bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
+        found, turned = [], 0.0
+        for t, bend in zip(self._fractions[1:-1].tolist(), bends.tolist(), strict=True):
+            turned += bend
+            if turned >= TURN:
+                found.append(t)
+                turned = 0.0
+        return tuple(found)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,6 +177,11 @@ class SolidProblem:
     def pin(self, name: str) -> Pin | None:
         """Return the pin called ``name``; None for a strip's end."""
         return next((pin for pin in self.pins if pin.name == name), None)
+
+    @cached_property
+    def turns(self) -> tuple[float, ...]:
+        """Load parameters at which the paths of the pins turn."""
+        return tuple(sorted({turn for pin in self.pins for turn in pin.turns}))
 
     def penalty(self, contact: Contact) -> float:
         """Contact stiffness eps of a contact [N/m]."""

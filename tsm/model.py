@@ -116,6 +116,8 @@ class Model:
         Number of banded equations.
     border : int
         Number of border unknowns: border equations, then the contacts' own unknowns.
+    turns : tuple of float
+        Load parameters at which the paths of the pins turn.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -131,6 +133,7 @@ class Model:
         longest = max(structure.beams, key=lambda beam: beam.length)
         self.length = longest.length
         self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
+        self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
         self.beams: dict[str, BeamModel] = {}

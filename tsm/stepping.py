@@ -7,6 +7,7 @@ contact is opened or closed, and the march goes on from there.
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,6 +16,7 @@ import numpy as np
 
 from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
+from tsm.crossing import crossing
 from tsm.elements.properties import Array
 from tsm.events import (
     ROUND_OFF,
@@ -51,6 +53,8 @@ _FIRST_PACE = 1e-1
 """Time of the first step of a fall."""
 _TRIALS = 100
 """Steps of a fall at most, those taken back included: what nothing holds falls forever."""
+_NEAR = 1e-9
+"""Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
 
@@ -144,7 +148,8 @@ class Stepper:
         if self.accepted.status is not Status.CONVERGED:
             yield self._record(False, self.accepted.status)
             return
-        for target in load_parameters.tolist():
+        asked = frozenset(load_parameters.tolist())
+        for target in self._ends(load_parameters.tolist()):
             attempts = 0
             while (t := self.accepted.state.load_parameter) < target:
                 if attempts == self.settings.max_attempts:
@@ -156,7 +161,8 @@ class Stepper:
                 goal = target if left <= step * (1 + 1e-6) else t + step
                 status = self._attempt(goal)
                 if status is Status.CONVERGED:
-                    yield self._record(self.accepted.state.load_parameter == target, status)
+                    reached = self.accepted.state.load_parameter
+                    yield self._record(reached == target and target in asked, status)
                 elif status is not self.failure:
                     yield self._record(False, status)
                     return
@@ -166,6 +172,15 @@ class Stepper:
                     if self.step < self.settings.smallest_step:
                         yield self._record(False, self._verdict())
                         return
+
+    def _ends(self, load_parameters: list[float]) -> list[float]:
+        """Where steps must end: at the load parameters, and where a pin turns on the way to the last of them."""
+        turns = self.model.turns
+        begin, end = self.accepted.state.load_parameter, load_parameters[-1]
+        ahead = turns[bisect_right(turns, begin + _NEAR) : bisect_left(turns, end)]
+        places = [bisect_left(load_parameters, turn - _NEAR) for turn in ahead]
+        apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + _NEAR]
+        return sorted([*load_parameters, *apart])
 
     def _verdict(self) -> Status:
         """Why no step goes on from here, as precisely as it can be told."""
@@ -199,6 +214,12 @@ class Stepper:
         reached = self._solve(goal)
         if reached is None:
             return self.failure
+        crossed = crossing(self.model, self.accepted.state, reached.state)
+        if crossed is not None and crossed[0] > self.accepted.state.load_parameter:
+            return self._attempt(crossed[0])
+        if crossed is not None:
+            touch = next(m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, crossed[1]))
+            return self._switch(self.accepted, [touch])
         events = broken(self.margins, self._measure(reached))
         if not events and not self._balanced(reached):
             return Status.UNBALANCED

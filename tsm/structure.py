@@ -6,9 +6,12 @@ Everything here is immutable, holds plain numbers and checks itself; nothing is 
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import pairwise
+from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import Literal
 
 from tsm.elements import ELEMENTS
@@ -25,6 +28,10 @@ def _check(ok: bool, owner: str, field: str, value: object, rule: str) -> None:
 
 def _between(a: Point, b: Point, part: float) -> Point:
     return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
+
+
+def _direction(a: Point, b: Point) -> float:
+    return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
 def _finite(*values: float) -> bool:
@@ -202,6 +209,10 @@ class Load:
         _check(_finite(self.moment), owner, "moment", self.moment, "must be finite")
 
 
+TURN = 0.5
+"""Angle in radians that the path of a pin may turn by within a load step."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Pin:
     """A control node: a frictionless point that follows a prescribed path.
@@ -229,21 +240,46 @@ class Pin:
             owner, "path", self.path, "must not repeat a point at once",
         )  # fmt: skip
 
+    @cached_property
+    def _reached(self) -> list[float]:
+        """Distance along the path at every corner, each rounded once."""
+        legs = [math.dist(a, b) for a, b in pairwise(self.path)]
+        if not math.isfinite(sum(legs)):
+            return list(accumulate(legs, initial=0.0))
+        return [float(reached) for reached in accumulate(map(Fraction, legs), initial=Fraction(0))]
+
     @property
     def length(self) -> float:
         """Length of the path."""
-        return sum(math.dist(a, b) for a, b in zip(self.path, self.path[1:], strict=False))
+        return self._reached[-1]
+
+    def _leg(self, load_parameter: float) -> int:
+        """Number of the leg at a load parameter, at a corner that of the leg before it."""
+        at = bisect_left(self._reached, load_parameter * self.length)
+        return min(max(at, 1), len(self.path) - 1) - 1
 
     def velocity(self, load_parameter: float) -> Point:
         """Derivative of the position in the load parameter, at a corner that of the leg before it."""
-        left = load_parameter * self.length
-        a, b = self.path[:2]
-        for a, b in zip(self.path, self.path[1:], strict=False):
-            left -= math.dist(a, b)
-            if left <= 0:
-                break
+        k = self._leg(load_parameter)
+        a, b = self.path[k : k + 2]
         speed = self.length / math.dist(a, b)
         return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
+
+    @property
+    def turns(self) -> tuple[float, ...]:
+        """Load parameters of the corners at which the path has turned by `TURN` since the last of them.
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
+        (0.5,)
+        """
+        found, turned = [], 0.0
+        legs = pairwise(self.path)
+        for done, ((a, b), (_, c)) in zip(self._reached[1:], pairwise(legs), strict=False):
+            turned += abs(math.remainder(_direction(b, c) - _direction(a, b), math.tau))
+            if turned >= TURN:
+                found.append(done / self.length)
+                turned = 0.0
+        return tuple(found)
 
     def position(self, load_parameter: float) -> Point:
         """Position at a load parameter in [0, 1].
@@ -251,13 +287,9 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
         (2.0, 1.0)
         """
-        left = load_parameter * self.length
-        for a, b in zip(self.path[:-2], self.path[1:-1], strict=True):
-            leg = math.dist(a, b)
-            if left <= leg:
-                return _between(a, b, left / leg)
-            left -= leg
-        a, b = self.path[-2:]
+        k = self._leg(load_parameter)
+        a, b = self.path[k : k + 2]
+        left = load_parameter * self.length - self._reached[k]
         return _between(a, b, left / math.dist(a, b))
 
 

@@ -135,6 +135,42 @@ def test_a_passed_pin_is_armed_again_when_it_returns():
     assert result.contacts["p->b"].force[-1] > 0
 
 
+@pytest.mark.parametrize("element", ["exact", "mixed", "timoshenko"])
+@pytest.mark.parametrize("end", [(-0.7, -0.4), (-0.19, -0.0667), (1.4, -0.1)])
+def test_a_pin_that_is_past_an_end_after_one_step_met_the_beam_on_its_way(element, end):
+    """Where it ends it is nowhere over the beam, and no gap tells of the contact."""
+    structure = cantilever(((0.3, 0.1), end), element=element, side="left")
+    one, many = (tsm.solve(structure, times, throw=False) for times in ([1.0], np.arange(1, 101) / 100))
+    met = 0.1 / (0.1 - end[1])
+    for result in (one, many):
+        assert result.events[0].kind is tsm.EventKind.TOUCH
+        assert result.events[0].load_parameter == pytest.approx(met, abs=1e-12)
+        assert result.events[0].arc_position == pytest.approx(0.3 + met * (end[0] - 0.3), abs=1e-12)
+    if element == "exact":
+        assert (one.status, kinds(one)) == (many.status, kinds(many))
+
+
+@pytest.mark.parametrize("element", ["exact", "mixed"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        ((0.122, 0.0), (0.214, 0.471), (-0.212, 0.622), (0.088, 0.422)),
+        ((0.5, -0.1), (0.8, 0.5), (1.1, 0.5), (0.7, 0.2)),
+        ((1.0, 0.0), (1.001, 0.085), (0.771, 0.085)),
+        ((0.9, -0.1), (0.9, 0.3), (0.9, -0.1)),
+    ],
+)
+def test_one_load_step_follows_a_path_that_turns(element, path):
+    """The step ends where the path turns: what lies between its ends may be a slip-off, or the whole of a contact."""
+    one, many = (
+        tsm.solve(cantilever(path, element=element, elements=20), times)
+        for times in ([1.0], np.arange(1, 201) / 200)
+    )
+    assert kinds(one) == kinds(many)
+    force, expected = one.contacts["p->b"].force[-1], many.contacts["p->b"].force[-1]
+    assert force == pytest.approx(expected, abs=1e-8)
+
+
 @pytest.mark.parametrize("x", [0.5, np.nextafter(0.5, 0), np.nextafter(0.5, 1), 0.05, 1e-3])
 @pytest.mark.parametrize("element", ["mixed", "timoshenko"])
 def test_pins_on_nodes_and_near_the_clamp(x, element):

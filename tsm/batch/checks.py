@@ -48,7 +48,10 @@ def follows(equations: Equations, front: Front, which: Array) -> Array:
 def eventless(
     equations: Equations, front: Front, which: Array, normal: Array, arc: Array, tolerance: float
 ) -> Array:
-    """Whether no contact opened or closed on the way to equilibria with given contact forces and arc positions."""
+    """Whether surely no contact opened or closed on the way to equilibria with given contact forces and arc positions.
+
+    A node behind its line past an end of the beam may have come there through the beam, which the stepper looks into.
+    """
     at, numbers, length = front.at, front.numbers, front.numbers.length[which]
     soft = np.minimum(1.0, ROUND_OFF / np.maximum(tolerance, numbers.noise[which]))
     inside = np.minimum(arc, numbers.span[:, which] - arc) / length
@@ -59,7 +62,7 @@ def eventless(
         if len(waiting):
             seen = project(equations, numbers, at, k, which[waiting])
             small = ROUND_OFF * length[waiting]
-            kept[k, waiting] = (seen.overshoot > small) | (seen.gap >= -small)
+            kept[k, waiting] = seen.gap >= -small
     whole: Array = kept.all(axis=0)
     return whole
 

@@ -1,7 +1,7 @@
 """March of many structures: one iteration of Newton's method for all of them at a time, each on its own step.
 
 A structure whose iteration ends accepts its configuration and sets off for its next load parameter while the others still
-iterate. Whatever is not plain (a step that does not converge soon, a contact that opens or closes, a change of the
+iterate. Whatever is not plain (a step that does not converge soon, a contact that opens or closes, a pin that turns, a change of the
 determinant's sign) is left to the `Stepper`: it goes on from the last accepted configurations to the next prescribed load parameter,
 and hands the structure back. So there is one stepper, and a batch finds what it finds.
 """
@@ -70,6 +70,11 @@ class March:
         self.equations = Equations(model)
         self.record = empty(model, len(structures), len(targets))
         self.steppers: dict[int, Stepper] = {}
+        self.turns = {
+            n: turns
+            for n, one in enumerate(structures)
+            if (turns := [t for pin in one.pins for t in pin.turns])
+        }
         self.soon = min(_SOON, settings.max_iterations)
 
     def run(self) -> Record:
@@ -261,6 +266,17 @@ class March:
         reaction = steps[-1].equilibrium.system.nodal[self.model.fixed]
         self._enter(front, which, reaction[:, None])
 
+    def _turning(self, front: Front, which: Array, t: Array) -> Array:
+        """Whether a pin turns on the way from the load parameters t to the goals, shape (m,)."""
+        places, goals = front.structure[which].tolist(), front.goal[which].tolist()
+        return np.array(
+            [
+                any(now < turn < goal for turn in self.turns.get(n, ()))
+                for n, now, goal in zip(places, t.tolist(), goals, strict=True)
+            ],
+            dtype=bool,
+        )
+
     def _depart(self, front: Front, which: Array) -> None:
         """Set off for the next prescribed load parameters, as far as the steps go, where there is one."""
         which = which[front.target[which] < len(self.targets)]
@@ -270,6 +286,11 @@ class March:
         t = front.history.t[newest(front.history, which), which]
         left, step = goal - t, front.step[which]
         front.goal[which] = np.where(left <= step * (1 + 1e-6), goal, t + step)
+        turning = self._turning(front, which, t)
+        for n in which[turning].tolist():
+            self._alone(front, n)
+        self._depart(front, which[turning])
+        which = which[~turning]
         predict(self.equations, front, which)
         front.iteration[which] = 0
         front.residual[which] = np.inf

@@ -1,0 +1,58 @@
+"""Crossings: a node that goes through a touched line within a step and lies past an end of the beam after it.
+
+After such a step the node is nowhere over the beam, so that no gap tells of the contact on the way.
+"""
+
+from __future__ import annotations
+
+from scipy.optimize import brentq
+
+from tsm.contact import Projection, project
+from tsm.events import ROUND_OFF
+from tsm.model import Model, PairModel
+from tsm.predictor import extrapolate
+from tsm.state import State
+
+
+def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
+    """First crossing between two configurations with the same closed contacts.
+
+    The configuration is taken to move straight from one to the other; the touched line goes on beyond the beam's ends as a tangent.
+
+    Parameters
+    ----------
+    model : Model
+        The structure.
+    before, after : State
+        Accepted configuration, and one at a later load parameter.
+
+    Returns
+    -------
+    tuple or None
+        Load parameter and number of the pair.
+    """
+    found = []
+    for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
+        if after.touches[k] is None and armed and not _over(model, last := project(model, pair, after)):
+            t = _passage(model, pair, before, after, last.gap)
+            if t is not None:
+                found.append((t, k))
+    return min(found, default=None)
+
+
+def _over(model: Model, seen: Projection) -> bool:
+    return seen.overshoot <= ROUND_OFF * model.length
+
+
+def _passage(model: Model, pair: PairModel, before: State, after: State, gap: float) -> float | None:
+    """Load parameter at which the gap goes through zero over the beam."""
+    t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
+
+    def seen(t: float) -> Projection:
+        return project(model, pair, extrapolate(model, [before, after], t))
+
+    first = project(model, pair, before)
+    if gap >= -small or first.gap < -small:
+        return None
+    t = t0 if first.gap <= small else float(brentq(lambda t: seen(t).gap, t0, t1, xtol=1e-15))
+    return t if _over(model, first if t == t0 else seen(t)) else None
