@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,30 +121,57 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
     dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(closed)
     if spec.keep and dropped.any():
         yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
-    for k in np.flatnonzero(~closed):
-        if _passed_through(response, scene, spec, contact, int(k)):
-            yield f"{spec.pair} is open with the node on the far side at load parameter {response.load_parameter[k]:.6g}"
-            return
+    through = _passed_through(response, scene, spec, contact)
+    if through is not None:
+        yield f"{spec.pair} is open and its node goes through the beam up to load parameter {through:.6g}"
 
 
 def _passed_through(
-    response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory, k: int
-) -> bool:
-    """Whether the pin of an open pair is behind the deflected axis and came there through it, not around an end.
+    response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory
+) -> float | None:
+    """Load parameter up to which the pin of an open pair went through the deflected axis, not around an end; None if it did not.
 
-    Its way is followed back to where it was last not behind, the axis taken to move straight from load parameter to load parameter.
+    Its way is followed from load parameter to load parameter, the axis taken to move straight. From a closed contact it is followed
+    only where it ends behind the axis, and not at all over a slip-off.
     """
-    if response.load_parameter[k] >= contact.slip_off or "." in spec.node:
+    if "." in spec.node:
+        return None
+    closed = contact.force > 0.0
+    start = scene.pin(spec.node).position(0.0)
+    where = _whereabouts(_moment(response, scene, spec.beam, -1)[1], np.array(start), scene, spec)
+    for k, t in enumerate(map(float, response.load_parameter)):
+        if t >= contact.slip_off:
+            return None
+        if closed[k]:
+            where = "before"
+            continue
+        now = _moment(response, scene, spec.beam, k)
+        last, where = where, _whereabouts(now[1], np.array(scene.pin(spec.node).position(t)), scene, spec)
+        if k > 0 and closed[k - 1] and where != "behind":
+            continue
+        if _goes_through(_moment(response, scene, spec.beam, k - 1), now, last, scene, spec):
+            return t
+    return None
+
+
+def _goes_through(
+    before: tuple[float, Array], after: tuple[float, Array], where: str, scene: Scene, spec: ContactSpec
+) -> bool:
+    """Whether a pin, which is first `where`, goes through the axis on the way between two moments."""
+    (t, line), (t_after, line_after) = before, after
+    parts = np.linspace(0.0, 1.0, SAMPLES)
+    pin, touched = scene.pin(spec.node), np.concatenate([line, line_after])
+    nodes = np.array([pin.position(float((1.0 - u) * t + u * t_after)) for u in parts])
+    apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
+    if apart.max() > scene.offset(spec):
         return False
-    for last in range(k, -1, -1):
-        t, line = _moment(response, scene, spec.beam, last)
-        before, line_before = _moment(response, scene, spec.beam, last - 1)
-        for u in np.linspace(1.0, 0.0, SAMPLES):
-            node = np.array(scene.pin(spec.node).position(u * t + (1.0 - u) * before))
-            where = _whereabouts(u * line + (1.0 - u) * line_before, node, scene, spec)
-            if where != "behind":
-                return where == "before" and (last, u) != (k, 1.0)
-    return True
+    for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
+        moved = (1.0 - u) * line + u * line_after
+        last, where = where, _whereabouts(moved, node, scene, spec)
+        hidden = where == "beyond" and _cuts(_surface(moved, scene, spec), start, node)
+        if last == "before" and (where == "behind" or hidden):
+            return True
+    return False
 
 
 def _moment(response: Response, scene: Scene, beam: str, k: int) -> tuple[float, Array]:
@@ -153,6 +181,27 @@ def _moment(response: Response, scene: Scene, beam: str, k: int) -> tuple[float,
         return float(response.load_parameter[k]), line
     spec = scene.beam(beam)
     return 0.0, np.array(spec.start) + np.outer(arc, spec.direction)
+
+
+def _surface(line: Array, scene: Scene, spec: ContactSpec) -> Array:
+    """Where the node of a contact lies that touches, for every point of the axis."""
+    tangent = np.gradient(line, axis=0)
+    left = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.hypot(*tangent.T)[:, None]
+    surface: Array = line + (1.0 if spec.side == "left" else -1.0) * scene.offset(spec) * left
+    return surface
+
+
+def _cuts(line: Array, start: Array, end: Array) -> bool:
+    """Whether the way from start to end cuts a polyline."""
+    pieces, way = np.diff(line, axis=0), end - start
+    sides = [_cross(pieces, node - line[:-1]) > 0.0 for node in (start, end)]
+    beside = _cross(way, line - start) > 0.0
+    return bool(((sides[0] != sides[1]) & (beside[:-1] != beside[1:])).any())
+
+
+def _cross(a: Array, b: Array) -> Array:
+    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
 
 
 def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
