@@ -4,11 +4,19 @@ Clamp at the origin, undeformed rod along +x; the tip turns freely, so the inter
 
     theta(s) = int_0^s m,   m(s) = int_s^1 r' x n,   r' = (1 + N/EA) d1 + (Q/GA) d2,   N = n.d1,  Q = n.d2
 
-with lengths in units of the rod's length L, forces in EI/L^2, moments in EI/L. Collocation at Gauss points turns both integrals into
-matrices; the unknowns are theta at the points and n, the equations those above and `int_0^1 r' = tip`. The solution is analytic, so
-the error falls faster than any power of the number of points. A compressed rod buckles sideways within a thousandth of its length,
-and a long step would miss that: a step is halved unless the prediction along the tangent to the path is small, the corrections fall
-monotonically from a smaller first one, and the determinant of the derivative keeps its sign (it changes where stability is lost).
+with lengths in units of the rod's length L, forces in EI/L^2, moments in EI/L. At Gauss points both integrals are matrices; the
+unknowns are m at the points and n, the equations those above and `int_0^1 (r' - e1) = tip - e1` (differences, since a slender rod's
+axial force is its stretch, 1e-7 L, times EA). They make the energy stationary, least in m and largest in n,
+
+    Pi(m, n) = 1/2 int m^2 - int (N + N^2/2 EA + Q^2/2 GA) + n.tip
+
+so the state is stable among its neighbours with the same tip if and only if the Hessian has just two negative eigenvalues. The
+solution is analytic, so the error falls faster than any power of the number of points; a taut rod bends in a layer
+`1/sqrt(n)` at the clamp, where a slender rod therefore has more of them.
+
+A compressed rod buckles sideways within a thousandth of its length, and a long step would miss that: a step is shortened until the
+prediction along the tangent to the path is small, and halved unless the first correction is smaller, every other at most half
+of the one before, and the Hessian that of a stable state at the prediction and after every correction.
 """
 
 from dataclasses import dataclass
@@ -16,18 +24,19 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from comparisons.exact.checks import require_positive
+from comparisons.exact.graded import GradedGrid, graded_grid
 from comparisons.exact.outcome import Outcome
 from comparisons.exact.reissner import Flexibility
 
 Array = NDArray[np.float64]
 
-_POINTS = 48
-_SMALLEST_STEP = 1e-9
+_POINTS = 64
+_SMALLEST_STEP = 1e-14  # part of what is done of a piece of the path, of 1e-12 at least
 _PREDICTION = 0.1  # rad, or a part of the force
+_CORRECTION = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +60,7 @@ class TiedPath:
     iterations : ndarray of int, shape (s,)
         Newton iterations spent since the position before, rejected steps included.
     unknowns : ndarray, shape (s, points + 2)
-        Rotations at the collocation points and the force in units of `EI/length^2`.
+        Moments at the Gauss points in units of `EI/length` and the force in units of `EI/length^2`.
     flexibility : Flexibility
         Of the rod.
     length : float
@@ -76,130 +85,123 @@ class TiedPath:
         -------
         ndarray, shape (n, 3)
         """
-        tangent = _tangents(self.unknowns[k], self.flexibility).tangent
-        moment = _GRID.from_right @ _cross(tangent, self.unknowns[k, -2:])
+        rod = _rod(self.flexibility)
+        moment = self.unknowns[k, :-2]
+        tangent = _fields(self.unknowns[k], rod).strain + np.array([1.0, 0.0])
         values = np.column_stack([self.length * tangent, moment])
-        return np.asarray(_integrals(2.0 * np.linspace(0.0, 1.0, n) - 1.0, _GRID) @ values)
+        return np.asarray(rod.grid.integrals(np.linspace(0.0, 1.0, n)) @ values)
 
 
-class _Grid(NamedTuple):
-    """Gauss points on (0, 1) with weights, and the integrals from 0 to every point and from every point to 1."""
+class _Rod(NamedTuple):
+    """Dimensionless rod and where its moments are."""
 
-    coefficients: Array
-    weights: Array
-    from_left: Array
-    from_right: Array
+    flexibility: Flexibility
+    grid: GradedGrid
 
 
-def _grid(points: int) -> _Grid:
-    x, w = legendre.leggauss(points)
-    degree = np.arange(points)
-    coefficients = (2 * degree[:, None] + 1) / 2.0 * legendre.legvander(x, points - 1).T * w
-    bare = _Grid(coefficients, w / 2.0, np.zeros(0), np.zeros(0))
-    left = _integrals(x, bare)
-    return bare._replace(from_left=left, from_right=w / 2.0 - left)
+def _rod(flexibility: Flexibility) -> _Rod:
+    """Grade the points so that a rod stretched to twice its length bends over as many of them as 1/12 of even ones."""
+    slenderness = min(flexibility.stretch**-0.5, 1e6) if flexibility.stretch > 0.0 else 1e6
+    return _Rod(flexibility, graded_grid(_POINTS, float(np.log1p(slenderness / 12.0))))
 
 
-def _integrals(x: Array, grid: _Grid) -> Array:
-    """Return the matrix from values at the points to the integrals from 0 to `(1 + x)/2`: `P_k` has `(P_k+1 - P_k-1)/(2 k + 1)`."""
-    points = len(grid.weights)
-    P = legendre.legvander(x, points)
-    primitive = np.column_stack([x + 1.0, (P[:, 2:] - P[:, :-2]) / (2 * np.arange(1, points) + 1)])
-    return np.asarray(primitive @ grid.coefficients / 2.0)
+class _Fields(NamedTuple):
+    """At the Gauss points: `r' - e1` (n, 2), its derivatives in theta (n, 2) and in n (n, 2, 2); `r' x n` (n,) and its derivative in theta.
 
+    The derivative of `r' x n` in n is that of r' in theta.
+    """
 
-_GRID = _grid(_POINTS)
-
-
-class _Tangents(NamedTuple):
-    """At the collocation points: `r'` (n, 2), its derivative in theta (n, 2) and in the force (n, 2, 2)."""
-
-    tangent: Array
+    strain: Array
     turned: Array
     by_force: Array
+    torque: Array
+    stiffening: Array
 
 
-def _tangents(z: Array, flexibility: Flexibility) -> _Tangents:
-    a, b = flexibility.stretch, flexibility.shear
-    theta, force = z[:-2], z[-2:]
+def _fields(z: Array, rod: _Rod) -> _Fields:
+    a, b = rod.flexibility.stretch, rod.flexibility.shear
+    theta, force = rod.grid.from_left @ z[:-2], z[-2:]
     d1 = np.stack([np.cos(theta), np.sin(theta)], axis=1)
     d2 = np.stack([-d1[:, 1], d1[:, 0]], axis=1)
-    N, Q = (d1 @ force)[:, None], (d2 @ force)[:, None]
-    return _Tangents(
-        tangent=(1.0 + a * N) * d1 + b * Q * d2,
-        turned=(a - b) * Q * d1 + (1.0 + (a - b) * N) * d2,
+    N, Q = d1 @ force, d2 @ force
+    stretch = 1.0 + (a - b) * N
+    turn = np.stack([-2.0 * np.sin(theta / 2.0) ** 2, d1[:, 1]], axis=1)
+    return _Fields(
+        strain=turn + (a * N)[:, None] * d1 + (b * Q)[:, None] * d2,
+        turned=((a - b) * Q)[:, None] * d1 + stretch[:, None] * d2,
         by_force=a * d1[:, :, None] * d1[:, None, :] + b * d2[:, :, None] * d2[:, None, :],
+        torque=Q * stretch,
+        stiffening=(a - b) * Q**2 - N * stretch,
     )
 
 
-def _cross(left: Array, right: Array) -> Array:
-    return np.asarray(left[..., 0] * right[..., 1] - left[..., 1] * right[..., 0])
+def _equations(z: Array, displacement: Array, rod: _Rod) -> tuple[Array, Array]:
+    """Gradient (n + 2,) and Hessian of the energy with the tip displaced by `displacement`."""
+    weights, left = rod.grid.weights, rod.grid.from_left
+    fields = _fields(z, rod)
+    n = len(weights)
+    gradient, hessian = np.empty(n + 2), np.empty((n + 2, n + 2))
+    gradient[:n] = weights * z[:n] - left.T @ (weights * fields.torque)
+    gradient[n:] = displacement - weights @ fields.strain
+    hessian[:n, :n] = np.diag(weights) - (left.T * (weights * fields.stiffening)) @ left
+    hessian[:n, n:] = -left.T @ (weights[:, None] * fields.turned)
+    hessian[n:, :n] = hessian[:n, n:].T
+    hessian[n:, n:] = -np.tensordot(weights, fields.by_force, 1)
+    return gradient, hessian
 
 
-def _residual(z: Array, tip: Array, flexibility: Flexibility) -> tuple[Array, Array]:
-    """Residual (n + 2,) and its derivative."""
-    force = z[-2:]
-    state = _tangents(z, flexibility)
-    twice = _GRID.from_left @ _GRID.from_right
-    torque = _cross(state.tangent, force)
-    torque_by_force = _cross(np.moveaxis(state.by_force, 1, 2), force)
-    torque_by_force += np.stack([-state.tangent[:, 1], state.tangent[:, 0]], axis=1)
-    n = len(z) - 2
-    matrix = np.empty((n + 2, n + 2))
-    matrix[:n, :n] = np.eye(n) - twice * _cross(state.turned, force)
-    matrix[:n, n:] = -twice @ torque_by_force
-    matrix[n:, :n] = _GRID.weights * state.turned.T
-    matrix[n:, n:] = np.tensordot(_GRID.weights, state.by_force, 1)
-    return np.concatenate([z[:-2] - twice @ torque, _GRID.weights @ state.tangent - tip]), matrix
+def _stable(hessian: Array) -> bool:
+    """Whether the energy is least in the moments for the given tip; rows are scaled, since EA and EI are far apart."""
+    largest = np.abs(hessian).max(axis=1)
+    if not np.all(np.isfinite(hessian)) or largest.min() == 0.0:
+        return False
+    scale = 1.0 / np.sqrt(largest)
+    values = np.linalg.eigvalsh(scale[:, None] * hessian * scale)
+    return bool(values[1] < 0.0 < values[2])
 
 
-def _size(change: Array, z: Array) -> float:
+def _size(change: Array, z: Array, rod: _Rod) -> float:
     """Largest change of a rotation, or of the force over itself."""
-    return float(max(np.abs(change[:-2]).max(), np.hypot(*change[-2:]) / (1.0 + np.hypot(*z[-2:]))))
+    rotation = np.abs(rod.grid.from_left @ change[:-2]).max()
+    return float(max(rotation, np.hypot(*change[-2:]) / (1.0 + np.hypot(*z[-2:]))))
 
 
-def _stability(matrix: Array) -> float:
-    """Sign of the determinant: it changes where the energy stops being least among neighbours with the same tip."""
-    return float(np.linalg.slogdet(matrix)[0])
-
-
-def _follow(z: Array, start: Array, end: Array, flexibility: Flexibility) -> tuple[Array | None, int]:
-    """Unknowns with the tip at `end` from those with it at `start`, None if the step is too long, and iterations."""
-    _, matrix = _residual(z, start, flexibility)
-    stability = _stability(matrix)
-    ahead = np.zeros(len(z))
-    ahead[-2:] = end - start
-    allowed = _PREDICTION
-    change = np.asarray(np.linalg.solve(matrix, ahead), dtype=np.float64)
-    for iteration in range(12):
-        size = _size(change, z)
+def _correct(z: Array, displacement: Array, rod: _Rod) -> tuple[Array | None, int]:
+    """Unknowns for a displacement of the tip from nearby ones, None if they are too far off, and Newton iterations."""
+    allowed = _CORRECTION
+    for iteration in range(1, 13):
+        gradient, hessian = _equations(z, displacement, rod)
+        if not _stable(hessian):
+            return None, iteration
+        change = np.asarray(-np.linalg.solve(hessian, gradient), dtype=np.float64)
+        size = _size(change, z, rod)
         if not size <= allowed:
             return None, iteration
         z = z + change
         if size < 1e-11:
-            return (z if _stability(matrix) == stability else None), iteration
+            return z, iteration
         allowed = size / 2.0
-        residual, matrix = _residual(z, end, flexibility)
-        if not np.all(np.isfinite(matrix)) or _stability(matrix) == 0.0:
-            return None, iteration + 1
-        change = np.asarray(-np.linalg.solve(matrix, residual), dtype=np.float64)
-    return None, iteration + 1
+    return None, iteration
 
 
-def _advance(z: Array, start: Array, end: Array, flexibility: Flexibility) -> tuple[Array | None, int]:
-    """Unknowns after a straight piece of the tip's path, None if not reached, and Newton iterations."""
+def _advance(z: Array, start: Array, end: Array, rod: _Rod) -> tuple[Array | None, int]:
+    """Unknowns after a straight piece of the tip's displacement, None if not reached, and Newton iterations."""
     done, step, spent = 0.0, 1.0, 0
+    ahead = np.zeros(len(z))
+    ahead[-2:] = start - end
     while done < 1.0:
-        following = min(done + step, 1.0)
-        here, there = (start + part * (end - start) for part in (done, following))
-        found, iterations = _follow(z, here, there, flexibility)
+        _, hessian = _equations(z, start + done * (end - start), rod)
+        if step < _SMALLEST_STEP * max(done, 1e-12) or not _stable(hessian):
+            return None, spent
+        tangent = np.asarray(np.linalg.solve(hessian, ahead), dtype=np.float64)
+        step = min(step, _PREDICTION / max(_size(tangent, z, rod), _PREDICTION))
+        following = done + step if step < 1.0 - done else 1.0
+        found, iterations = _correct(z + (following - done) * tangent, start + following * (end - start), rod)
         spent += iterations
         if found is not None:
             z, done, step = found, following, 2.0 * step
         else:
             step = (following - done) / 2.0
-            if step < _SMALLEST_STEP:
-                return None, spent
     return z, spent
 
 
@@ -239,20 +241,21 @@ def rod_with_tied_tip(points: ArrayLike, *, EA: float, GA: float, EI: float, len
     if np.hypot(*(points[0] - [length, 0.0])) > 1e-12 * length:
         raise ValueError(f"points[0] = {points[0]}: must be the undeformed tip, ({length}, 0)")
     flexibility = Flexibility(stretch=EI / length**2 / EA, shear=EI / length**2 / GA)
+    rod = _rod(flexibility)
     states: list[Array | None] = [np.zeros(_POINTS + 2)]
     iterations = [0]
-    for start, end in pairwise(points / length):
-        state, spent = (None, 0) if states[-1] is None else _advance(states[-1], start, end, flexibility)
+    for start, end in pairwise(points / length - [1.0, 0.0]):
+        state, spent = (None, 0) if states[-1] is None else _advance(states[-1], start, end, rod)
         states.append(state)
         iterations.append(spent)
-    return _collect(points, states, iterations, flexibility, EI, length)
+    return _collect(points, states, iterations, rod, EI, length)
 
 
 def _collect(
     points: Array,
     states: list[Array | None],
     iterations: list[int],
-    flexibility: Flexibility,
+    rod: _Rod,
     EI: float,
     length: float,
 ) -> TiedPath:
@@ -260,16 +263,17 @@ def _collect(
     z = np.array([np.full(_POINTS + 2, np.nan) if state is None else state for state in states])
     force = z[:, -2:] * EI / length**2
     tip = np.where(np.isnan(force), np.nan, points)
-    moment = [_GRID.from_right @ _cross(_tangents(one, flexibility).tangent, one[-2:]) for one in z]
     return TiedPath(
         outcome=tuple(Outcome.LOST if state is None else Outcome.CONTACT for state in states),
         force=force,
         clamp_force=-force,
-        clamp_moment=-_cross(tip, force),
+        clamp_moment=(0.0 - np.array([_fields(one, rod).torque for one in z]) @ rod.grid.weights)
+        * EI
+        / length,
         tip=tip,
-        tip_rotation=np.array(moment) @ _GRID.weights,
+        tip_rotation=z[:, :-2] @ rod.grid.weights,
         iterations=np.array(iterations, dtype=np.int64),
         unknowns=z,
-        flexibility=flexibility,
+        flexibility=rod.flexibility,
         length=length,
     )

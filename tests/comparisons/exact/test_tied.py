@@ -1,4 +1,4 @@
-"""The rod with a tied tip: integration from the clamp, energy, limits known in closed form, symmetry, units."""
+"""The rod with a tied tip: integration from the clamp, energy, limits known in closed form, slender rods, stability, symmetry, units."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from comparisons.exact.outcome import Outcome
-from comparisons.exact.tied import rod_with_tied_tip
+from comparisons.exact.reissner import Flexibility
+from comparisons.exact.tied import _equations, _rod, _stable, rod_with_tied_tip
 
 EI = 2.8e-4
 KS = {"EA": 8.4, "GA": 5 / 6 * 2.1e4 / 2.6 * 4e-4, "EI": EI, "length": 1.0}
@@ -91,6 +92,97 @@ def test_iterations_of_all_steps_are_counted(path):
     assert path.iterations[1:].min() >= 2
     few = rod_with_tied_tip(TIPS[[0, 50]], **KS)
     assert few.iterations[1] > path.iterations.max()
+
+
+def slender(slenderness):
+    """Stiffnesses over EI of a rectangular section of height `1/slenderness`."""
+    EA = 12.0 * slenderness**2
+    return {"EA": EA, "GA": EA / 3.12, "EI": 1.0, "length": 1.0}
+
+
+def tied_strip(EA, rise):
+    """Force on the tip and clamp moment of a tensioned beam, `w'''' = N w''`, with `N = EA/2 int w'^2`: right to slope^2."""
+    arcs, weights = np.polynomial.legendre.leggauss(40)
+
+    def excess(N):
+        k = np.sqrt(N)
+        slope = rise / (1.0 - np.tanh(k) / k)
+        return N - EA * weights @ (slope * (1.0 - np.cosh(k * (1.0 - arcs) / 2.0) / np.cosh(k))) ** 2 / 4.0
+
+    N = brentq(excess, 1e-6, 1e3, xtol=1e-14, rtol=1e-14)
+    slope = rise / (1.0 - np.tanh(np.sqrt(N)) / np.sqrt(N))
+    return [N, N * slope], -np.sqrt(N) * np.tanh(np.sqrt(N)) * slope
+
+
+@pytest.mark.parametrize(("slenderness", "rise"), [(593.2, 1e-3), (593.2, 1e-5), (1e4, 1e-4), (1e5, 1e-5)])
+def test_a_slender_rod_moved_sideways_is_stretched_in_few_iterations(slenderness, rise):
+    found = rod_with_tied_tip([[1.0, 0.0], [1.0, rise]], **slender(slenderness))
+    force, moment = tied_strip(12.0 * slenderness**2, rise)
+    np.testing.assert_allclose(found.force[1], force, rtol=5e-6)
+    assert found.clamp_moment[1] == pytest.approx(moment, rel=5e-6)
+    assert found.iterations[1] < 80
+
+
+@pytest.mark.parametrize("slenderness", [1e3, 1e4, 1e5])
+@pytest.mark.parametrize("tip", [(1.0, 0.8), (1.02, -0.7), (0.9, 0.7), (1.0, 0.01), (1.3, 0.1)])
+def test_a_taut_slender_rod_bends_in_a_layer_at_its_clamp(slenderness, tip):
+    """`m^2/2 + N + N^2/2 EA + Q^2/2 GA` is the same along the rod; far from the clamp `theta'' = 0`, so `Q (1 + (1/EA - 1/GA) N) = 0`."""
+    rod = slender(slenderness)
+    found = rod_with_tied_tip([(1.0, 0.0), tip], **rod)
+    assert found.outcome[1] is Outcome.CONTACT
+    N, Q = found.force[1]
+    tension = np.hypot(N, Q)
+    layer = found.clamp_moment[1] ** 2 / 2.0
+    clamp = Q**2 / 2.0 * (1.0 / rod["GA"] - 1.0 / rod["EA"]) - Q**2 / (tension + N)
+    assert layer == pytest.approx(-clamp, rel=1e-10)
+    assert found.tip_rotation[1] == pytest.approx(np.arctan2(Q, N), rel=2e-9)
+    moment = found.tip[1, 0] * Q - found.tip[1, 1] * N
+    assert found.clamp_moment[1] == pytest.approx(-moment, rel=1e-8)
+    assert found.iterations[1] < 1500
+
+
+@pytest.mark.parametrize("imperfection", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("slenderness", [20.0, 1e3, 1e5])
+def test_a_long_step_does_not_cross_to_the_other_side_of_buckling(slenderness, imperfection):
+    rod = slender(slenderness)
+    tip = np.array([-0.3, imperfection])
+    times = np.concatenate([np.geomspace(1e-3 / rod["EA"], 0.1, 200), [1.0]])
+    cut = rod_with_tied_tip([(1.0, 0.0), *([1.0, 0.0] + times[:, None] * tip)], **rod)
+    whole = rod_with_tied_tip([(1.0, 0.0), tip + np.array([1.0, 0.0])], **rod)
+    np.testing.assert_allclose(whole.force[-1], cut.force[-1], rtol=1e-10)
+    assert whole.shape(1, 3)[1, 1] < 0.0
+
+
+def test_a_straight_rod_is_stable_below_the_first_critical_load_only():
+    """Between the second and the third, two eigenvalues have passed through zero, and the determinant has its first sign again."""
+    rod = _rod(Flexibility(stretch=1e-9, shear=0.0))
+    critical = [
+        brentq(lambda k: np.tan(k) - k, *bracket) ** 2 for bracket in [(4.4, 4.6), (7.6, 7.8), (10.8, 10.95)]
+    ]
+    loads = [0.999 * critical[0], 1.001 * critical[0], 1.001 * critical[1], 1.001 * critical[2]]
+    stable, signs = [], []
+    for load in loads:
+        z = np.zeros(len(rod.grid.weights) + 2)
+        z[-2] = -load
+        _, hessian = _equations(z, np.array([-load * 1e-9, 0.0]), rod)
+        stable.append(_stable(hessian))
+        signs.append(np.linalg.slogdet(hessian)[0])
+    assert stable == [True, False, False, False]
+    assert signs == [1.0, -1.0, 1.0, -1.0]
+
+
+@pytest.mark.parametrize("k", [1, 20, 50])
+def test_the_hessian_is_the_derivative_of_the_gradient(path, k):
+    rod, step = _rod(path.flexibility), 1e-6
+    z, at = path.unknowns[k], path.tip[k] - [1.0, 0.0]
+    gradient, hessian = _equations(z, at, rod)
+    np.testing.assert_allclose(gradient, 0.0, atol=1e-12)
+    columns = [
+        (_equations(z + step * one, at, rod)[0] - _equations(z - step * one, at, rod)[0]) / (2.0 * step)
+        for one in np.eye(len(z))
+    ]
+    np.testing.assert_allclose(hessian, np.transpose(columns), atol=1e-9)
+    np.testing.assert_array_equal(hessian[:-2, -2:], hessian[-2:, :-2].T)
 
 
 def test_mirror_image(path):
