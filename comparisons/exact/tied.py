@@ -16,7 +16,7 @@ solution is analytic, so the error falls faster than any power of the number of 
 
 A compressed rod buckles sideways within a thousandth of its length, and a long step would miss that: a step is shortened until the
 prediction along the tangent to the path is small, and halved unless the first correction is smaller, every other at most half
-of the one before, and the Hessian that of a stable state at the prediction and after every correction.
+of the one before, and the Hessian at every iterate that of a stable state.
 """
 
 from dataclasses import dataclass

@@ -57,6 +57,10 @@ _STAGES: dict[str, tuple[list[str], list[str]]] = {
         ["tests/comparisons/exact/test_coupled.py"],
     ),
     "comparisons/exact/coupled.py": (["tests/comparisons/exact/test_coupled.py"], []),
+    "comparisons/exact/graded.py": (
+        ["tests/comparisons/exact/test_graded.py"],
+        ["tests/comparisons/exact/test_tied.py"],
+    ),
     "comparisons/exact/tied.py": (["tests/comparisons/exact/test_tied.py"], []),
     "comparisons/exact/elastica.py": (["tests/comparisons/exact/test_elastica.py"], _PIN),
     "comparisons/exact/": (_PIN, ["tests/comparisons/exact"]),
