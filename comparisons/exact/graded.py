@@ -1,8 +1,8 @@
 """Integrals along a rod from values at Gauss points that crowd towards its clamp.
 
 The Gauss points lie on (0, 1) in `xi`; `s = (exp(g xi) - 1)/(exp(g) - 1)` with grading g puts the finest spacing at s = 0. A
-polynomial in xi is integrated exactly up to the points' degree, and `from_right` is the adjoint of `from_left`,
-`weights * from_right = (weights * from_left)^T` (row by row), so that what is symmetric as an integral is symmetric as a matrix.
+polynomial in xi is integrated exactly up to the points' degree, and `from_left^T` is its adjoint: of weighted values it makes weighted
+integrals from every point to 1, so that what is symmetric as an integral is symmetric as a matrix.
 """
 
 from typing import NamedTuple
@@ -15,12 +15,11 @@ Array = NDArray[np.float64]
 
 
 class GradedGrid(NamedTuple):
-    """Points on (0, 1) (n,), weights (n,), and the matrices (n, n) to the integrals from 0 to every point and from every point to 1."""
+    """Points on (0, 1) (n,), weights (n,), and the matrix (n, n) to the integrals from 0 to every point."""
 
     arcs: Array
     weights: Array
     from_left: Array
-    from_right: Array
     grading: float
 
     def integrals(self, arcs: ArrayLike) -> Array:
@@ -33,12 +32,10 @@ def graded_grid(points: int, grading: float) -> GradedGrid:
     """Lay `points` Gauss points graded by `grading > 0`, the logarithm of the ratio of spacings at both ends."""
     x, w = legendre.leggauss(points)
     density = _density(points, grading)
-    left = _integrals(x, points) * density
     return GradedGrid(
         arcs=np.expm1(grading * (x + 1.0) / 2.0) / np.expm1(grading),
         weights=w / 2.0 * density,
-        from_left=left,
-        from_right=w / 2.0 * density - left,
+        from_left=_integrals(x, points) * density,
         grading=grading,
     )
 

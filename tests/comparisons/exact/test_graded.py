@@ -9,12 +9,13 @@ GRADINGS = [1e-9, 1.0, 4.0, 9.0]
 
 
 @pytest.mark.parametrize("grading", GRADINGS)
-def test_the_matrices_integrate_from_both_ends(grading: float) -> None:
+def test_the_matrix_and_its_adjoint_integrate_from_both_ends(grading: float) -> None:
     grid = graded_grid(64, grading)
     values = np.exp(-3.0 * grid.arcs)
     left = -np.expm1(-3.0 * grid.arcs) / 3.0
     np.testing.assert_allclose(grid.from_left @ values, left, rtol=1e-11, atol=1e-14)
-    np.testing.assert_allclose(grid.from_right @ values, -np.expm1(-3.0) / 3.0 - left, atol=1e-13)
+    from_right = grid.from_left.T @ (grid.weights * values) / grid.weights
+    np.testing.assert_allclose(from_right, -np.expm1(-3.0) / 3.0 - left, atol=1e-13)
     assert grid.weights @ values == pytest.approx(-np.expm1(-3.0) / 3.0, rel=1e-13)
 
 
@@ -27,11 +28,3 @@ def test_a_layer_of_a_ten_thousandth_needs_grading() -> None:
         errors.append(np.abs(1e4 * found + np.expm1(-1e4 * arcs)).max())
     assert errors[1] < 1e-10
     assert errors[0] > 1e-2
-
-
-@pytest.mark.parametrize("grading", GRADINGS)
-def test_the_integral_to_the_right_is_the_adjoint_of_that_from_the_left(grading: float) -> None:
-    grid = graded_grid(48, grading)
-    left = grid.weights[:, None] * grid.from_left
-    right = grid.weights[:, None] * grid.from_right
-    np.testing.assert_allclose(right, left.T, atol=1e-15)
