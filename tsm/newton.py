@@ -105,6 +105,11 @@ class Newton:
         self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
         self.own_per_limit = np.concatenate([np.empty(0), *own])
 
+    def apart(self, one: State, other: State) -> float:
+        """Largest difference of two states, in largest Newton steps."""
+        moved = (other.q - one.q)[self.model.free] * self.per_limit
+        return float(np.abs(moved).max(initial=0.0))
+
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
         largest = float(np.abs(system.residual * self.scale).max())

@@ -30,6 +30,7 @@ from tsm.events import (
     normal_force,
     passed,
 )
+from tsm.fall import Fall, met
 from tsm.guard import SHORT, PathGuard
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
@@ -37,7 +38,6 @@ from tsm.predictor import extrapolate
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
-from tsm.system import Drag
 
 MEMORY = 4
 """States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
@@ -47,12 +47,6 @@ _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
 FAR = 1.0
 """Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
-_LAST_PART = 1e-2
-"""A touch within a jump is located to this part of the lost force; the path of a jump is not the load's."""
-_FIRST_PACE = 1e-1
-"""Time of the first step of a fall."""
-_TRIALS = 100
-"""Steps of a fall at most, those taken back included: what nothing holds falls forever."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
@@ -263,17 +257,12 @@ class Stepper:
         """
         if self.driven:
             return False
-        if not self.model.whole and self._apart(predicted, found.state) > FAR:
+        if not self.model.whole and self.newton.apart(predicted, found.state) > FAR:
             return True
         first, last = found.orientation
         if not self.mixed or (self.orientation or first) == last:
             return False
-        return self._apart(self.accepted.state, found.state) > SHORT
-
-    def _apart(self, one: State, other: State) -> float:
-        """Largest difference of two states, in largest Newton steps."""
-        moved = (other.q - one.q)[self.model.free] * self.newton.per_limit
-        return float(np.abs(moved).max(initial=0.0))
+        return self.newton.apart(self.accepted.state, found.state) > SHORT
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -380,58 +369,14 @@ class Stepper:
         equilibrium = self.newton.solve(state)
         self.iterations += equilibrium.iterations
         found = equilibrium.status is Status.CONVERGED
-        if jump and not (
-            found and self._apart(state, equilibrium.state) <= FAR and not self._met(equilibrium)
-        ):
-            return self._fall(state)
+        near = found and self.newton.apart(state, equilibrium.state) <= FAR
+        if jump and not (near and not met(self._measure(equilibrium))):
+            fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
+            rest = fall.rest(state)
+            self.iterations += fall.iterations
+            return rest
         self.failure = equilibrium.status
         return equilibrium if found else None
-
-    def _fall(self, state: State) -> Equilibrium | None:
-        """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; what it falls on, it touches.
-
-        A dead load in place of the lost contact may have no equilibrium nearby where the contact had one; moving against a drag, the
-        structure goes down in energy by steps as short as need be.
-        """
-        pace, over = _FIRST_PACE, set[int]()
-        resistance = self._resistance()
-        for _ in range(_TRIALS):
-            at_rest = pace > _FIRST_PACE * 1e8
-            drag = None if at_rest else Drag(resistance / pace, state.q)
-            equilibrium = self.newton.solve(state, drag=drag)
-            self.iterations += equilibrium.iterations
-            met = self._met(equilibrium) if equilibrium.status is Status.CONVERGED else []
-            if equilibrium.status is Status.CONVERGED and not met:
-                if at_rest:
-                    return equilibrium
-                state, pace = equilibrium.state, 10 * pace
-                over = self._facing(equilibrium)
-            elif met and self._apart(state, equilibrium.state) < _LAST_PART:
-                for margin in met:
-                    state = self._close(state, replace(margin, value=0.0) if margin.pair in over else margin)
-            else:
-                pace /= 4
-        return None
-
-    def _resistance(self) -> Array:
-        """Drag of the nodes, in proportion to the lengths of their elements; per time that is counted in beams falling under ``EI/L^2``."""
-        model, l0 = self.model, self.model.properties.l0
-        share = (
-            np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates))
-            / model.length
-        )
-        per_way = np.zeros(model.dof_count)
-        unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
-        per_way[: 3 * len(share)] = (share[:, None] * unit).ravel()
-        return per_way
-
-    def _facing(self, equilibrium: Equilibrium) -> set[int]:
-        """Open pairs whose node is over its beam."""
-        return {m.pair for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < 1.0}
-
-    def _met(self, equilibrium: Equilibrium) -> list[Margin]:
-        """Open pairs whose gap has closed."""
-        return [m for m in self._measure(equilibrium) if m.kind is EventKind.TOUCH and m.value < -ROUND_OFF]
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""

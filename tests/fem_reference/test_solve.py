@@ -236,6 +236,14 @@ def test_slip_off_the_tip_is_named_where_the_elastica_has_it(problem):
     assert len(result.contacts[PAIR].force) == len(result.displacement) == 10
 
 
+def test_one_load_step_follows_a_path_that_turns(problem):
+    """Where it ends the pin could press the strip, which it has left on the way up."""
+    bent = problem(path=((0.9, 0.0), (0.9, 0.6), (0.7, 0.2)), mesh=(20, 1))
+    one, many = (fr.solve(bent, loads(n), throw=False) for n in (1, 20))
+    assert one.status is many.status is fr.Status.LOST_CONTACT
+    assert one.reached == pytest.approx(many.reached, abs=1e-5)
+
+
 @pytest.mark.parametrize("n", [1, 7])
 def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact(problem, n):
     """A KS path drawn on to x = -0.1, where the undeformed strip is not: the contact is followed until it slips."""

@@ -1,0 +1,87 @@
+"""Falls: where a structure comes to rest when a contact that held it slips off.
+
+A dead load in place of the lost contact may have no equilibrium nearby where the contact had one; moving against a drag, the structure
+goes down in energy by steps as short as need be. What it falls on, it touches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tsm.elements.properties import Array
+from tsm.events import ROUND_OFF, EventKind, Margin
+from tsm.model import Model
+from tsm.newton import Equilibrium, Newton
+from tsm.state import State
+from tsm.status import Status
+from tsm.system import Drag
+
+_LAST_PART = 1e-2
+"""A touch within a fall is located to this part of the lost force; the path of a fall is not the load's."""
+_FIRST_PACE = 1e-1
+"""Time of the first step of a fall."""
+_TRIALS = 100
+"""Steps of a fall at most, those taken back included: what nothing holds falls forever."""
+
+
+@dataclass(kw_only=True)
+class Fall:
+    """One fall.
+
+    Attributes
+    ----------
+    newton : Newton
+        Of the structure.
+    measure : callable
+        Margins of an equilibrium.
+    close : callable
+        State with an open pair closed.
+    iterations : int
+        Newton iterations spent.
+    """
+
+    newton: Newton
+    measure: Callable[[Equilibrium], list[Margin]]
+    close: Callable[[State, Margin], State]
+    iterations: int = 0
+
+    def rest(self, state: State) -> Equilibrium | None:
+        """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; None if nothing holds it."""
+        pace, over = _FIRST_PACE, set[int]()
+        resistance = _resistance(self.newton.model)
+        for _ in range(_TRIALS):
+            at_rest = pace > _FIRST_PACE * 1e8
+            drag = None if at_rest else Drag(resistance / pace, state.q)
+            equilibrium = self.newton.solve(state, drag=drag)
+            self.iterations += equilibrium.iterations
+            margins = self.measure(equilibrium) if equilibrium.status is Status.CONVERGED else []
+            landed = met(margins)
+            if equilibrium.status is Status.CONVERGED and not landed:
+                if at_rest:
+                    return equilibrium
+                state, pace = equilibrium.state, 10 * pace
+                over = {m.pair for m in margins if m.kind is EventKind.TOUCH and m.value < 1.0}
+            elif landed and self.newton.apart(state, equilibrium.state) < _LAST_PART:
+                for margin in landed:
+                    state = self.close(state, replace(margin, value=0.0) if margin.pair in over else margin)
+            else:
+                pace /= 4
+        return None
+
+
+def met(margins: list[Margin]) -> list[Margin]:
+    """Open pairs whose gap has closed."""
+    return [m for m in margins if m.kind is EventKind.TOUCH and m.value < -ROUND_OFF]
+
+
+def _resistance(model: Model) -> Array:
+    """Drag of the nodes, in proportion to the lengths of their elements; per time that is counted in beams falling under ``EI/L^2``."""
+    l0 = model.properties.l0
+    share = np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates))
+    per_way = np.zeros(model.dof_count)
+    unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
+    per_way[: 3 * len(share)] = (share[:, None] / model.length * unit).ravel()
+    return per_way
