@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _TOUCH = 1e-12  # distance, in lengths of the rod, below which the pin touches
 _SMALLEST_STEP = 1e-9
+_MOST_ITERATIONS = 3000  # on a straight piece: one that needs more closes in on a place without equilibrium
 
 
 class State(NamedTuple):
@@ -72,12 +73,13 @@ def newton(rod: Rod, z: Array, pin: Array) -> tuple[Array, int, bool]:
     return z, iteration, False
 
 
-def _touch(start: Array, end: Array, offset: float) -> float | None:
-    """Fraction of the way at which the pin reaches the straight rod from below."""
+def _touch(outcome: Outcome, start: Array, end: Array, offset: float) -> float | None:
+    """Fraction of the way at which the pin reaches the straight rod from below, or leaves its surface, along which it came, upwards."""
     gap_start, gap_end = -(start[1] + offset), -(end[1] + offset)
-    if gap_start <= _TOUCH or gap_end > _TOUCH:
+    along = outcome is Outcome.OPEN and abs(gap_start) <= _TOUCH and gap_end < -_TOUCH
+    if not along and (gap_start <= _TOUCH or gap_end > _TOUCH):
         return None
-    fraction = min(gap_start / (gap_start - gap_end), 1.0)
+    fraction = 0.0 if along else min(gap_start / (gap_start - gap_end), 1.0)
     x = start[0] + fraction * (end[0] - start[0])
     return float(fraction) if 0.0 < x <= 1.0 + _TOUCH else None
 
@@ -105,7 +107,7 @@ def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, in
     while done < 1.0:
         here = start + done * (end - start)
         if state.outcome in (Outcome.OPEN, Outcome.SLIPPED):
-            touch = _touch(here, end, rod.offset)
+            touch = _touch(state.outcome, here, end, rod.offset)
             if touch is None:
                 below = end[1] + rod.offset < -_TOUCH
                 state = State(Outcome.OPEN) if below else state
@@ -127,7 +129,7 @@ def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, in
         spent += iterations
         if not converged:
             step /= 2.0
-            if step < _SMALLEST_STEP:
+            if step < _SMALLEST_STEP or spent > _MOST_ITERATIONS:
                 return State(Outcome.LOST), spent, slip
             continue
         if rod.arc(z) > 1.0 + _TOUCH:

@@ -252,6 +252,20 @@ def test_touch_on_the_surface():
     np.testing.assert_allclose(path.magnitude[1:], direct.magnitude, rtol=1e-13)
 
 
+def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
+    """It passes the clamp .05 % of the length above: strains grow without bound, and steps shrink without end."""
+    path = rod_under_pin([[0.25, 0.0], [-0.209, 0.001]], EA=3e4, GA=2.5e5, EI=1.0, length=1.0)
+    assert path.outcome[-1] is Outcome.LOST
+    assert path.iterations[-1] < 5000
+
+
+def test_a_pin_that_comes_along_the_surface_from_beyond_the_tip_pushes():
+    path = rod_under_pin([[1.2, -0.01], [0.8, -0.01], [0.8, 0.1]], offset=0.01, **KS)
+    direct = rod_under_pin([[0.8, -0.01], [0.8, 0.1]], offset=0.01, **KS)
+    assert path.outcome == (Outcome.OPEN, Outcome.OPEN, Outcome.CONTACT)
+    assert path.magnitude[2] == pytest.approx(direct.magnitude[1], rel=1e-13)
+
+
 def test_slip_off_frees_the_rod_until_the_pin_comes_from_below_again():
     points = [[0.8, -0.1], [0.8, 0.7], [0.8, 0.6], [0.8, -0.1], [0.8, 0.1], [0.8, 0.7]]
     path = rod_under_pin(points, **KS)
