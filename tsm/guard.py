@@ -39,7 +39,8 @@ class PathGuard:
         assembler, model = newton.assembler, newton.model
         system = assembler.linearise(state)
         solved = assembler.solve(system, -assembler.rate(state))
-        self.rates: Array | None = None if solved is None else solved.x[:, 1]
+        rates = None if solved is None else solved.x[:, 1]
+        self.rates: Array | None = rates if rates is not None and np.isfinite(rates).all() else None
         self.system = system
         q = assembler.prescribed_rate()
         if self.rates is not None:

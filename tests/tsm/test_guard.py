@@ -75,3 +75,23 @@ def test_forces_change_at_the_rate_of_the_tangent(element):
     assert at.force_rate == pytest.approx(slope, abs=1e-4 * np.abs(slope).max())
     moved = (after.state.q - before.state.q) / (2 * dt)
     assert at.q_rate == pytest.approx(moved, abs=1e-4 * np.abs(moved).max())
+
+
+@pytest.mark.parametrize("value", [np.inf, np.nan])
+def test_a_tangent_without_finite_rates_is_not_followed(value, monkeypatch):
+    """Stiffnesses a hundred decades apart: the factors are finite, the rates are not."""
+    result = tsm.solve(pushed_in(5), [0.1])
+    newton, state = Newton(result.model, tsm.Settings()), result.equilibria[-1].state
+    solve = newton.assembler.solve
+
+    def overflowing(system, right):
+        solved = solve(system, right)
+        solved.x[0, 1] = value
+        return solved
+
+    monkeypatch.setattr(newton.assembler, "solve", overflowing)
+    guard = PathGuard(newton, state)
+    assert guard.rates is None
+    assert guard.speed == np.inf
+    assert guard.reach(0.3) == 0.3
+    assert np.isfinite(guard.predicted(0.2).q).all()
