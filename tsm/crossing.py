@@ -54,5 +54,9 @@ def _passage(model: Model, pair: PairModel, before: State, after: State, gap: fl
     first = project(model, pair, before)
     if gap >= -small or first.gap < -small:
         return None
-    t = t0 if first.gap <= small else float(brentq(lambda t: seen(t).gap, t0, t1, xtol=1e-15))
-    return t if _over(model, first if t == t0 else seen(t)) else None
+    if first.gap <= small:
+        return t0 if _over(model, first) else None
+    if not seen(t0).gap > 0.0 > seen(t1).gap:
+        return None
+    t = float(brentq(lambda t: seen(t).gap, t0, t1, xtol=1e-15))
+    return t if _over(model, seen(t)) else None
