@@ -19,7 +19,8 @@ from tests.fuzz.scenes import Tables, cantilevers
 FINE, COARSE = 16, 8
 """Numbers of `mixed` elements: of fourth order, the error of the fine ones is below what the refinement changes."""
 EXACT = 1e-6
-"""Of the rod; the limit of the `mixed` elements is off by .3 times the third power of the strain besides."""
+"""Of the rod. `mixed` elements are off by .3 times the third power of the shear strain besides, and by up to half its square where a contact
+lies inside the element at the clamp, which refinement does not take away evenly."""
 DRAWN = settings(
     deadline=None,
     database=None,
@@ -101,7 +102,7 @@ def check_agreement(scene: Tables, folder: Path) -> int:
     strain = largest / min(beam.GA, beam.EA)
     assert np.abs(exact - rod).max(initial=0.0) <= EXACT * scale
     left = np.abs(fine - rod).max(initial=0.0) - np.abs(fine - coarse).max(initial=0.0)
-    assert left <= (EXACT + strain**3) * scale
+    assert left <= (EXACT + strain**2 / 2) * scale
     return steps
 
 
