@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 import tsm
+from comparisons.files import write_text
 from comparisons.scene import load_scene
 from comparisons.sweep import measure
 from comparisons.trade.points import cheapest
@@ -38,7 +39,7 @@ class Gate:
 
     @property
     def met(self) -> bool:
-        return self.value >= self.bar if self.at_least else self.value <= self.bar
+        return bool(self.value >= self.bar if self.at_least else self.value <= self.bar)
 
     def __str__(self) -> str:
         relation = ">=" if self.at_least else "<="
@@ -340,6 +341,17 @@ def import_time(gates: list[Gate], times: dict[str, float]) -> None:
     gates.append(Gate("seconds to import tsm", ours - bare, 0.5, False))
 
 
+def recorded(gates: list[Gate], times: dict[str, float]) -> str:
+    """What was measured, and where, as JSON."""
+    record = {
+        "machine": platform.platform(),
+        "python": platform.python_version(),
+        "gates": [vars(gate) | {"value": float(gate.value), "met": gate.met} for gate in gates],
+        "seconds": times,
+    }
+    return json.dumps(record, indent=1) + "\n"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("bench.json"))
@@ -362,15 +374,7 @@ def main() -> None:
         print(gate)
     for name, value in times.items():
         print(f"         {name}: {1e3 * value:.3g} ms")
-    record = {
-        "machine": platform.platform(),
-        "python": platform.python_version(),
-        "gates": [vars(gate) | {"met": gate.met} for gate in gates],
-        "seconds": times,
-    }
-    part = out.with_name(out.name + ".part")
-    part.write_text(json.dumps(record, indent=1) + "\n")
-    part.replace(out)
+    write_text(out, recorded(gates, times))
 
 
 if __name__ == "__main__":
