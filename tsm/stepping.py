@@ -275,6 +275,9 @@ class Stepper:
                 found = locate((t, before), (goal, after), self._solve, self._measure)
             if found is None:
                 return self.failure
+            if after.kind is EventKind.TOUCH and before.value < 1.0 and found[1].value < -ROUND_OFF:
+                self.failure = Status.ITERATION_LIMIT
+                return self.failure
             if first is None or found[0].state.load_parameter < first[0].state.load_parameter:
                 first = found
         assert first is not None, "events is not empty"
