@@ -14,7 +14,7 @@ from comparisons.verify import CHECK_FAILED
 from tests.fuzz.broken import toml_text
 from tests.fuzz.judge import solved
 from tests.fuzz.run import tally
-from tests.fuzz.scenes import Tables, cantilevers
+from tests.fuzz.scenes import Tables, cantilevers, stacks
 
 FINE, COARSE = 16, 8
 """Numbers of `mixed` elements: of fourth order, the error of the fine ones is below what the refinement changes."""
@@ -127,3 +127,40 @@ def test_answers_are_the_rods(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_many_answers_are_the_rods(tmp_path: Path) -> None:
     assert compared(200, tmp_path) > 200
+
+
+def check_stack(scene: Tables, folder: Path) -> int:
+    """Compare exact elements with mixed ones, whose error refinement tells, in contact between beams; return 1 if all complete."""
+    file = folder / "scene.toml"
+    file.write_text(toml_text(scene))
+    found = []
+    for model in ("tsm --element exact", f"tsm --elements {COARSE}", f"tsm --elements {FINE}"):
+        outcome, result = solved(file, *model.split())
+        assert outcome.wrong is None, outcome.wrong
+        if outcome.kind != "done":
+            return 0
+        found.append(json.loads(result.read_text()))
+    beams = load_scene(str(file)).beams
+    weakest = min(beam.EI / beam.length**2 for beam in beams)
+    exact, coarse, fine = (
+        np.array([pair["force"] for pair in data["contacts"].values()], dtype=float) for data in found
+    )
+    scale = max(np.abs(exact).max(initial=0.0), 1e-3 * weakest)
+    refined = np.abs(fine - coarse).max(initial=0.0)
+    assert np.abs(fine - exact).max(initial=0.0) <= 1e-2 * scale + 2 * refined
+    return 1
+
+
+@pytest.mark.slow
+def test_beams_in_contact_agree(tmp_path: Path) -> None:
+    total = 0
+
+    @settings(DRAWN, max_examples=60)
+    @seed(1)
+    @given(stacks())
+    def run(scene: Tables) -> None:
+        nonlocal total
+        total += check_stack(scene, tmp_path)
+
+    run()
+    assert total > 20
