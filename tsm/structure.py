@@ -79,7 +79,7 @@ class Section:
         return cls(
             EA=youngs_modulus * area,
             GA=shear_modulus * area * 5 / 6,
-            EI=youngs_modulus * width * height**3 / 12,
+            EI=youngs_modulus * width * height * height * height / 12,
         )
 
 

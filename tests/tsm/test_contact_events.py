@@ -287,6 +287,9 @@ def test_bad_structures_are_refused():
         tsm.Structure(beams=(*good.beams, *good.beams))
     with pytest.raises(ValueError, match="must be positive"):
         tsm.Section(EA=1.0, GA=-1.0, EI=1.0)
+    for height in (1e-200, 1e200):
+        with pytest.raises(ValueError, match=r"EI = .*: must be positive and finite"):
+            tsm.Section.rectangle(width=1.0, height=height, youngs_modulus=1.0, shear_modulus=1.0)
     with pytest.raises(ValueError, match="must differ"):
         tsm.Beam(name="b", start=(0, 0), end=(0, 0), section=SECTION)
     with pytest.raises(ValueError, match="must be one of mixed"):
