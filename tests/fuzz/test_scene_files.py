@@ -18,6 +18,7 @@ from tests.fuzz.scenes import Tables, cantilevers, stacks
 
 FINE, COARSE = 16, 8
 """Numbers of `mixed` elements: of fourth order, the error of the fine ones is below what the refinement changes."""
+BEAMS = ("tsm --element exact", f"tsm --elements {COARSE}", f"tsm --elements {FINE}")
 EXACT = 1e-6
 """Of the rod. `mixed` elements are off by .3 times the third power of the shear strain besides, and by up to half its square where a contact
 lies inside the element at the clamp, which refinement does not take away evenly."""
@@ -76,20 +77,28 @@ def histories(data: dict[str, Any], length: float, steps: int) -> np.ndarray:
     return np.array([row[:steps] for row in (*forces, *moments, *held)], dtype=float)
 
 
+def answers(scene: Tables, file: Path, *models: str) -> list[dict[str, Any]]:
+    """What every model says of a scene; nothing if one refuses it."""
+    file.write_text(toml_text(scene))
+    found = []
+    for model in models:
+        outcome, result = solved(file, *model.split())
+        assert outcome.wrong is None, outcome.wrong
+        if not result.is_file():
+            return []
+        found.append(json.loads(result.read_text()))
+    return found
+
+
 def check_agreement(scene: Tables, folder: Path) -> int:
     """Compare exact and mixed elements with the rod where all have reached; return how many load parameters that are.
 
     Where the rod stops they stop too.
     """
     file = folder / "scene.toml"
-    file.write_text(toml_text(scene))
-    found = []
-    for model in ("rod", "tsm --element exact", f"tsm --elements {COARSE}", f"tsm --elements {FINE}"):
-        outcome, result = solved(file, *model.split())
-        assert outcome.wrong is None, outcome.wrong
-        if not result.is_file():
-            return 0
-        found.append(json.loads(result.read_text()))
+    found = answers(scene, file, "rod", *BEAMS)
+    if not found:
+        return 0
     ends = [data["status"] for data in found]
     assert ends[0] in ("COMPLETED", CHECK_FAILED) or "COMPLETED" not in ends[1:], ends
     steps = min(len(data["load_parameter"]) for data in found)
@@ -132,14 +141,9 @@ def test_many_answers_are_the_rods(tmp_path: Path) -> None:
 def check_stack(scene: Tables, folder: Path) -> int:
     """Compare exact elements with mixed ones, whose error refinement tells, in contact between beams; return 1 if all complete."""
     file = folder / "scene.toml"
-    file.write_text(toml_text(scene))
-    found = []
-    for model in ("tsm --element exact", f"tsm --elements {COARSE}", f"tsm --elements {FINE}"):
-        outcome, result = solved(file, *model.split())
-        assert outcome.wrong is None, outcome.wrong
-        if outcome.kind != "done":
-            return 0
-        found.append(json.loads(result.read_text()))
+    found = answers(scene, file, *BEAMS)
+    if not found or any(data["status"] != "COMPLETED" for data in found):
+        return 0
     beams = load_scene(str(file)).beams
     weakest = min(beam.EI / beam.length**2 for beam in beams)
     exact, coarse, fine = (
