@@ -197,7 +197,8 @@ def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> _Sy
 def _with_rods(assembler: Assembler, state: State, system: Linearisation, multipliers: int) -> _Symmetric:
     """The same with exact elements, whose own tangent gives way to their second variation."""
     model, k, energy = assembler.model, assembler.k, assembler.model.force_scale * assembler.model.length
-    assert model.rods is not None and system.rods is not None, "the model has exact elements"
+    assert model.rods is not None, "the model has exact elements"
+    assert system.rods is not None, "the model has exact elements"
     found = variation(model.rods, state, system.rods)
     border, before = model.border, 36 * len(model.closed)
     extra = sum(slot < 0 for part in found.bordered for slot in part.slots)

@@ -84,7 +84,7 @@ class _Pieces(NamedTuple):
 
     Attributes
     ----------
-    count : ndarray of int, shape (s,)
+    counts : ndarray of int, shape (s,)
         Pieces of every segment.
     short : ndarray of bool, shape (p,)
         Those that keep their moment.
@@ -94,7 +94,7 @@ class _Pieces(NamedTuple):
         The same with the moment at the start as the last unknown; of other pieces unused.
     """
 
-    count: Array
+    counts: Array
     short: Array
     hessian: Array
     with_moment: Array
@@ -114,7 +114,7 @@ def variation(rods: Rods, state: State, balance: RodBalance) -> Variation:
     """
     pieces = _pieces(rods, state, balance)
     place, cuts = balance.entry.place, dict(profile_of(state).cuts)
-    first = np.concatenate([[0], np.cumsum(pieces.count)])
+    first = np.concatenate([[0], np.cumsum(pieces.counts)])
     at = first[place.first]
     tangent = _plain(pieces.hessian[at])
     many = first[place.last + 1] - at > 1
@@ -220,8 +220,8 @@ def _bordered(
     """Matrix of an element of several pieces; its stations are the contacts and where a segment is divided."""
     place, model = balance.entry.place, rods.model
     first, last = int(place.first[element]), int(place.last[element])
-    counts = pieces.count[first : last + 1].tolist()
-    begin = int(pieces.count[:first].sum())
+    counts = pieces.counts[first : last + 1].tolist()
+    begin = int(pieces.counts[:first].sum())
     short = pieces.short[begin : begin + sum(counts)].tolist()
     size = OWN + 4 * len(pairs) + sum(counts) - len(counts) + sum(short)
     matrix = np.zeros((size, size))
