@@ -199,7 +199,8 @@ def _with_rods(assembler: Assembler, state: State, system: Linearisation, multip
     model, k, energy = assembler.model, assembler.k, assembler.model.force_scale * assembler.model.length
     assert model.rods is not None, "the model has exact elements"
     assert system.rods is not None, "the model has exact elements"
-    found = variation(model.rods, state, system.rods)
+    known = system.tangent.rods if model.coefficients or "tangent" in system.__dict__ else None
+    found = variation(model.rods, state, system.rods, known.transfer if known else None)
     border, before = model.border, 36 * len(model.closed)
     extra = sum(slot < 0 for part in found.bordered for slot in part.slots)
     right, corner = np.zeros((model.equations + 1, border + extra)), np.eye(border + extra)

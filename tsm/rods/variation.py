@@ -13,6 +13,7 @@ shows in the matrix; each component of n and F takes one negative eigenvalue of 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.rods.assembly import RodBalance, Rods, profile_of, touch_of
-from tsm.rods.layout import OWN
+from tsm.rods.layout import CUT, OWN
 from tsm.rods.shape import plain_shape
 from tsm.state import State
 
@@ -40,7 +41,6 @@ _PULL = np.zeros((OWN, OWN))
 _PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
 _PULL[[3, 4, 0, 1], [0, 1, 3, 4]] = -1
 _PULL[5, 5] = 1
-_NODES = np.array([0, 1, 2, 6, 7, 8])
 
 
 class Bordered(NamedTuple):
@@ -88,19 +88,16 @@ class _Pieces(NamedTuple):
         Pieces of every segment.
     short : ndarray of bool, shape (p,)
         Those that keep their moment.
-    hessian : ndarray, shape (p, 5, 5)
-        Of G; of short pieces unused.
-    with_moment : ndarray, shape (p, 6, 6)
-        The same with the moment at the start as the last unknown; of other pieces unused.
+    hessian : ndarray, shape (p, 6, 6)
+        Of G; of short pieces with the moment at the start as the last unknown.
     """
 
     counts: Array
     short: Array
     hessian: Array
-    with_moment: Array
 
 
-def variation(rods: Rods, state: State, balance: RodBalance) -> Variation:
+def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
     """Second variation at a state in equilibrium.
 
     Parameters
@@ -111,61 +108,64 @@ def variation(rods: Rods, state: State, balance: RodBalance) -> Variation:
         In equilibrium.
     balance : RodBalance
         Their residual there.
+    transfer : ndarray, shape (s, 4, 7), optional
+        Of the segments there, see `rod.Condensed`, where it is known.
     """
-    pieces = _pieces(rods, state, balance)
-    place, cuts = balance.entry.place, dict(profile_of(state).cuts)
-    first = np.concatenate([[0], np.cumsum(pieces.counts)])
-    at = first[place.first]
-    tangent = _plain(pieces.hessian[at])
-    many = first[place.last + 1] - at > 1
-    bordered = tuple(
-        _bordered(rods, state, balance, pieces, int(e), cuts.get(int(e), ())) for e in np.flatnonzero(many)
-    )
+    pieces = _pieces(rods, state, balance, transfer)
+    place, cuts = balance.entry.place, profile_of(state).cuts
+    begin = np.concatenate([[0], np.cumsum(pieces.counts)])
+    first = begin[place.first]
+    many = (begin[place.last + 1] - first > 1).nonzero()[0].tolist()
+    tangent = np.empty((len(first), OWN, OWN))
+    if len(many) < len(first):
+        tangent[:] = _PULL
+        tangent[:, _NODAL[:, None], _NODAL] += pieces.hessian[first, :4, :4]
+        tangent = _without_force(tangent)
+    pairs = dict(cuts)
+    bordered = tuple(_bordered(rods, state, balance, pieces, e, pairs.get(e, ())) for e in many)
     for part in bordered:
         tangent[part.element] = part.matrix[:OWN, :OWN]
     return Variation(tangent, bordered)
 
 
-def _plain(hessian: Array) -> Array:
-    """Tangents (r, 9, 9) of elements of one piece, their force eliminated."""
-    tangent = np.empty((len(hessian), OWN, OWN))
-    tangent[:] = _PULL
-    tangent[:, _NODAL[:, None], _NODAL] += hessian[:, :4, :4]
-    return _without_force(tangent)
-
-
 def _without_force(tangent: Array) -> Array:
     """Eliminate the rows 3 and 4 of matrices (..., n, n); a unit matrix takes their place."""
     of_force = tangent[..., 3:5, :].copy()
+    xx, xy, yy = of_force[..., 0, 3], of_force[..., 0, 4], of_force[..., 1, 4]
+    adjoint = np.array([[yy, -xy], [-xy, xx]]) / (xx * yy - xy * xy)
     of_force[..., 3:5] = 0.0
-    solved = np.linalg.solve(tangent[..., 3:5, 3:5], of_force)
-    tangent = tangent - np.swapaxes(of_force, -1, -2) @ solved
+    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (np.moveaxis(adjoint, (0, 1), (-2, -1)) @ of_force)
     tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
     tangent[..., [3, 4], [3, 4]] = 1.0
     return tangent
 
 
-def _pieces(rods: Rods, state: State, balance: RodBalance) -> _Pieces:
+def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
     entry = balance.entry
     at, of, start, moment, end = entry.at, entry.of, entry.start, entry.moment, entry.end
-    arrival, gain = balance.arrival, entry.gain
-    length = at.length[:, 0]
-    falling = (of.gq * of.q - of.N * of.turn).max(axis=1) * length * length * at.flexibility.bend[:, 0]
-    count = np.ones(len(length), dtype=int)
+    arrival, gain, bend = balance.arrival, entry.gain, entry.at.flexibility.bend[:, 0]
+    length, whole = at.length[:, 0], rods.length[entry.place.owner]
+    falling = (of.gq * of.q - of.N * of.turn).max(axis=1) * length * length * bend
+    counts = np.ones(len(length), dtype=int)
     if falling.max() > _LONGEST:
         long = falling > _LONGEST
-        count[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
-        at, start, moment, end = _divided(rods, state, balance, count)
-        of = rod.field(at)
-        arrival, gain = rod.arrival(at, of, start, moment, end), of.sums[0, :, 0] * at.length[:, 0]
-    transfer = rod.condense(at, of, arrival, moment).transfer
-    bent = (moment[:, 0] + gain) * at.flexibility.bend[:, 0]
-    short = np.abs(at.length[:, 0]) < _SHORT * rods.length[np.repeat(entry.place.owner, count)]
-    hessian, with_moment = np.zeros((len(short), 5, 5)), np.zeros((len(short), 6, 6))
-    hessian[~short] = _hessian(transfer[~short], bent[~short])
+        counts[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
+        at, start, moment, end = _divided(rods, state, balance, counts)
+        of, transfer = rod.field(at), None
+        length, whole, bend = at.length[:, 0], np.repeat(whole, counts), np.repeat(bend, counts)
+        arrival, gain = rod.arrival(at, of, start, moment, end), of.sums[0, :, 0] * length
+    if transfer is None:
+        transfer = rod.condense(at, of, arrival, moment).transfer
+    bent = (moment[:, 0] + gain) * bend
+    short = np.abs(length) < _SHORT * whole
+    hessian = np.zeros((len(short), 6, 6))
     if short.any():
-        with_moment[short] = _hessian_with_moment(transfer[short], bent[short])
-    return _Pieces(count, short, hessian, with_moment)
+        long = ~short
+        hessian[short] = _hessian_with_moment(transfer[short], bent[short])
+        hessian[long, :5, :5] = _hessian(transfer[long], bent[long])
+    else:
+        hessian[:, :5, :5] = _hessian(transfer, bent)
+    return _Pieces(counts, short, hessian)
 
 
 def _divided(
@@ -220,44 +220,58 @@ def _bordered(
     """Matrix of an element of several pieces; its stations are the contacts and where a segment is divided."""
     place, model = balance.entry.place, rods.model
     first, last = int(place.first[element]), int(place.last[element])
-    counts = pieces.counts[first : last + 1].tolist()
+    counts = tuple(pieces.counts[first : last + 1].tolist())
     begin = int(pieces.counts[:first].sum())
-    short = pieces.short[begin : begin + sum(counts)].tolist()
-    size = OWN + 4 * len(pairs) + sum(counts) - len(counts) + sum(short)
-    matrix = np.zeros((size, size))
-    matrix[:OWN, :OWN] = _PULL
-    rows = np.eye(size)
-    slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + 4)]
-    slots += [-1] * (size - OWN - len(slots))
-    force, angle, piece = rows[3:5].copy(), rows[2], begin
-    own_angle = OWN + 4 * len(pairs)
-    own_moment = size - sum(short)
-    for segment, count in enumerate(counts):
-        own, ahead = OWN + 4 * segment, segment < len(pairs)
-        length = (rows[own + 2] if ahead else 0.0) - (rows[own - 2] if segment else 0.0)
-        for part in range(count):
-            arriving = rows[own + 3] if ahead else rows[8]
-            if part < count - 1:
-                arriving, own_angle = rows[own_angle], own_angle + 1
-            inputs = [angle, arriving, *force, np.zeros(size) + length / count]
-            of = pieces.hessian[piece]
-            if pieces.short[piece]:
-                inputs, of = [*inputs, rows[own_moment]], pieces.with_moment[piece]
-                own_moment += 1
-            by = np.array(inputs)
-            matrix += by.T @ of @ by
-            angle, piece = arriving, piece + 1
-        if ahead:
-            k, pull = pairs[segment], slice(own, own + 2)
-            matrix[pull, 6:8] -= np.eye(2)
-            matrix[6:8, pull] -= np.eye(2)
-            if model.pairs[k].reach:
-                selectors = np.array([rows[own + 3], *force, *rows[pull]])
-                matrix += _surface(
-                    touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, selectors
-                )
-            force -= rows[pull]
+    own = slice(begin, begin + sum(counts))
+    short = tuple(pieces.short[own].tolist())
+    fixed, inputs, directions = _stations(counts, short)
+    matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
+    for n, k in enumerate(pairs):
+        if model.pairs[k].reach:
+            matrix += _surface(touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, directions[n])
+    slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
+    slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
+
+
+@lru_cache(maxsize=64)
+def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, Array, Array]:
+    """What is constant in an element whose segments have `counts` pieces, some of them short.
+
+    Returns
+    -------
+    fixed : ndarray, shape (n, n)
+        Second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``.
+    inputs : ndarray, shape (pieces, 6, n)
+        Angles at both ends, force, length, and of short pieces moment, by the element's unknowns.
+    directions : ndarray, shape (contacts, 5, n)
+        Angle, force before and contact force of every contact by the same.
+    """
+    contacts, pieces = len(counts) - 1, sum(counts)
+    own_angle = OWN + CUT * contacts
+    own_moment = own_angle + pieces - len(counts)
+    rows = np.eye(own_moment + sum(short))
+    fixed, inputs = np.zeros_like(rows), np.zeros((pieces, 6, len(rows)))
+    fixed[:OWN, :OWN] = _PULL
+    directions = np.zeros((contacts, 5, len(rows)))
+    force, angle, arc, piece = rows[3:5].copy(), rows[2], np.zeros(len(rows)), 0
+    for segment, count in enumerate(counts):
+        own, ahead = OWN + CUT * segment, segment < contacts
+        ends = rows[own + 2] if ahead else np.zeros(len(rows))
+        for part in range(count):
+            arriving = rows[own_angle] if part < count - 1 else rows[own + 3] if ahead else rows[8]
+            own_angle += part < count - 1
+            inputs[piece, :5] = [angle, arriving, *force, (ends - arc) / count]
+            if short[piece]:
+                inputs[piece, 5] = rows[own_moment]
+                own_moment += 1
+            angle, piece = arriving, piece + 1
+        arc = ends
+        if ahead:
+            fixed[[own, own + 1, 6, 7], [6, 7, own, own + 1]] -= 1
+            directions[segment] = [rows[own + 3], *force, *rows[own : own + 2]]
+            force -= rows[own : own + 2]
+    return fixed, inputs, directions
 
 
 def _surface(
