@@ -355,21 +355,26 @@ class Assembler:
 
     def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
         """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
-        from scipy.sparse import block_array, coo_array
         from scipy.sparse.linalg import splu
+
+        try:
+            lu = splu(self.whole(tangent))
+        except RuntimeError:
+            return None
+        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
+        x = self._with_units(lu.solve(given))
+        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+
+    def whole(self, tangent: Bordered) -> Any:
+        """Tangent as one sparse matrix, by columns."""
+        from scipy.sparse import block_array, coo_array
 
         banded = self.model.banded
         columns, entries = np.nonzero(tangent.band)
         rows = columns + entries - 2 * self.k
         band = coo_array((tangent.band[columns, entries], (rows, columns)), shape=(banded, banded))
         right, below = coo_array(tangent.right[:banded]), coo_array(tangent.below[:, :banded])
-        try:
-            lu = splu(block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc"))
-        except RuntimeError:
-            return None
-        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
-        x = self._with_units(lu.solve(given))
-        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+        return block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc")
 
 
 def _exchanges(order: Array) -> Array:
