@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from tsm.contact import arc_position, project
+from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
 
@@ -156,6 +157,9 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
             found.append(
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
+            if pair.pair.offset > 0:
+                room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
+                found.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
             seen = project(model, pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length

@@ -15,7 +15,7 @@ from tsm.contact import arc_position, project
 from tsm.critical import CriticalPoint
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
-from tsm.model import BeamModel, Model
+from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces

@@ -432,6 +432,8 @@ class Stepper:
             assert touch is not None, "only a closed contact opens"
             arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
+            if margin.kind is EventKind.LINE_CONTACT:
+                return Status.LINE_CONTACT
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
                 return refused
