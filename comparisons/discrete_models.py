@@ -12,6 +12,7 @@ from comparisons.response import (
     Array,
     ContactEvent,
     ContactHistory,
+    CriticalPoint,
     Deformation,
     Grid,
     Response,
@@ -32,11 +33,11 @@ def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Respo
     import tsm
 
     structure = to_structure(scene, elements=options.elements, element=options.element)
-    settings = tsm.Settings()
+    settings = tsm.Settings(branch=options.branch or "stop")
     if options.tolerance is not None:
         if options.element != "exact":
             raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
-        settings = tsm.Settings(accuracy=options.tolerance)
+        settings = replace(settings, accuracy=options.tolerance)
     try:
         result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
     except tsm.SolveError as error:
@@ -241,6 +242,11 @@ def _response(
         wall_seconds=result.wall_seconds,
         axis_line=axis_line,
         grid=grid,
+        index=result.index,
+        critical=tuple(
+            CriticalPoint(kind=point.kind.value, load_parameter=point.load_parameter, mode=point.mode)
+            for point in result.critical
+        ),
     )
 
 
