@@ -50,10 +50,12 @@ def drawn_structure(rng: np.random.Generator, element: str, *, offset: bool = Fa
         supports.append(tsm.Support(beam=beams[-1].name, end="end", rotation=[0.0, None][rng.integers(2)]))
     elif rng.random() < 0.5:
         free = {"ux": None, "rotation": [0.0, None][rng.integers(2)]}
-        supports.append(tsm.Support(beam="b0", end="end", uy=float(rng.choice([0.0, rng.uniform(-0.3, 0.3)])), **free))
+        supports.append(
+            tsm.Support(beam="b0", end="end", uy=float(rng.choice([0.0, rng.uniform(-0.3, 0.3)])), **free)
+        )
     pins, contacts = [], []
     depth = float(rng.uniform(0.001, 0.05)) if offset else 0.0
-    for n in range(int(rng.integers(0, 4))):
+    for n in range(int(rng.choice([0, 0, 1, 1, 2, 3]))):
         place, side = float(rng.uniform(0.15, 0.95)), str(rng.choice(["left", "right"]))
         start = (place, -depth if side == "right" else depth)
         by = rng.uniform(-0.3, 0.3, 2)
@@ -65,29 +67,50 @@ def drawn_structure(rng: np.random.Generator, element: str, *, offset: bool = Fa
         lean = float(rng.uniform(-0.3, 0.3))
         other = replace(beams[0], name="b9", start=(place + lean, up), end=(place, depth))
         beams.append(replace(other, section=drawn_section(rng)))
-        supports.append(tsm.Support(beam="b9", end="start", uy=float(rng.uniform(-0.2, 0.1)), rotation=[0.0, None][rng.integers(2)]))
+        supports.append(
+            tsm.Support(
+                beam="b9",
+                end="start",
+                uy=float(rng.uniform(-0.2, 0.1)),
+                rotation=[0.0, None][rng.integers(2)],
+            )
+        )
         contacts.append(tsm.ContactPair(node="b9.end", beam="b0", side="left", offset=depth))
     strength = section.EI * 10 ** float(rng.uniform(0, 2.3))
-    direction = math.pi + float(rng.normal(0, 0.5))
+    crooked = float(rng.integers(2))
+    direction = math.pi + crooked * float(rng.normal(0, 0.5))
     end = ("b0" if kind == "leaning" else beams[-1].name), "end"
     if kind == "frame":
         end = beams[-1].name, "start"
     force = (strength * math.cos(direction), strength * math.sin(direction))
     if kind == "frame":
         force = (force[1], -abs(force[0]))
-    loads = [tsm.Load(beam=end[0], end=end[1], force=force, moment=float(rng.normal(0, section.EI)))]
+    loads = [
+        tsm.Load(beam=end[0], end=end[1], force=force, moment=crooked * float(rng.normal(0, section.EI)))
+    ]
     return tsm.Structure(
-        beams=tuple(beams), supports=tuple(supports), pins=tuple(pins), contacts=tuple(contacts), loads=tuple(loads)
+        beams=tuple(beams),
+        supports=tuple(supports),
+        pins=tuple(pins),
+        contacts=tuple(contacts),
+        loads=tuple(loads),
     )
 
 
-def drawn_equilibrium(rng: np.random.Generator, structure: tsm.Structure) -> tuple[Newton, Equilibrium] | None:
+def drawn_equilibrium(
+    rng: np.random.Generator, structure: tsm.Structure
+) -> tuple[Newton, Equilibrium] | None:
     """An equilibrium of it, from a few long steps; None if they fail, or a contact leaves its beam or carries no force."""
     model = Model(structure)
     newton = Newton(model, Settings(max_iterations=40))
     state = initial_state(model)
+    stray = rng.normal(0, float(rng.choice([0.0, 0.3, 1.0])), model.dof_count)
+    stray[model.fixed] = 0.0
     for t in np.linspace(0, 1, int(rng.integers(2, 12)))[1:]:
-        found = newton.solve(newton.prescribed(state, float(t)))
+        start = newton.prescribed(state, float(t))
+        if t == 1:
+            start = replace(start, q=start.q + stray)
+        found = newton.solve(start)
         if found.status is not Status.CONVERGED:
             return None
         state = found.state
@@ -128,5 +151,40 @@ def segments_of(newton: Newton, found: Equilibrium) -> tuple[list[Segment], set]
                     force=tuple(shape.force[:, s].tolist()),
                 )
             )
-    fixed = {("turn", dof // 3) if dof % 3 == 2 else ("place", dof // 3, dof % 3) for dof in model.fixed.tolist()}
+    fixed = {
+        ("turn", dof // 3) if dof % 3 == 2 else ("place", dof // 3, dof % 3) for dof in model.fixed.tolist()
+    }
     return segments, fixed
+
+
+def tangent_index(newton: Newton, found: Equilibrium, rng: np.random.Generator) -> int:
+    """Index of a model without exact elements, from the dense Hessian in displacements and arc positions alone.
+
+    The contacts' forces are eliminated by their flexibilities, a little increased; the tangent is held against its residual.
+    """
+    model, state, assembler = newton.model, found.state, newton.assembler
+    L, F = model.length, model.force_scale
+    whole = assembler.whole(assembler.linearise(state).tangent).toarray()
+    own = [
+        slot
+        for pair, t in zip(model.pairs, state.touches, strict=True)
+        if t
+        for slot in range(pair.slot, pair.slot + 3)
+    ]
+    kept = [*range(model.equations), *(model.equations + np.array(own, dtype=int))]
+    K = whole[np.ix_(kept, kept)]
+    assert np.abs(K - K.T).max() <= 1e-9 * np.abs(K).max()
+    direction = rng.standard_normal(model.unknowns) * 1e-6
+    ahead, back = (newton.update(state, sign * direction, found.system) for sign in (1, -1))
+    along = (assembler.linearise(ahead).residual - assembler.linearise(back).residual) / 2
+    found_along = whole @ direction
+    assert np.abs((along - found_along)[kept]).max() <= 1e-5 * np.abs(found_along).max()
+    units = np.concatenate([np.array([L, L, 1.0])[model.kind], *([F, F, L] for t in state.touches if t)])
+    plain = (K + K.T) / 2 * np.outer(units, units) / (F * L)
+    force = np.concatenate([np.zeros(model.equations), np.tile([1, 1, 0], len(own) // 3)]).astype(bool)
+    A, G, C = plain[np.ix_(~force, ~force)], plain[np.ix_(force, ~force)], -plain[np.ix_(force, force)]
+    soft = C + 1e-8 * np.eye(len(C))
+    if len(C) and np.linalg.eigvalsh(soft)[0] <= 0:
+        return int((np.linalg.eigvalsh(plain) < 0).sum()) - len(C)
+    reduced = A + G.T @ np.linalg.solve(soft, G)
+    return int((np.linalg.eigvalsh((reduced + reduced.T) / 2) < 0).sum())

@@ -82,9 +82,7 @@ def tables(degree: int, points: int) -> tuple[Array, Array, Array]:
     at = (x + 1) / 2
     to = np.linalg.inv(legendre.legvander(2 * nodes - 1, degree))
     values = legendre.legvander(2 * at - 1, degree) @ to
-    slopes = np.stack(
-        [2 * legendre.legval(2 * at - 1, legendre.legder(column)) for column in to.T], axis=1
-    )
+    slopes = np.stack([2 * legendre.legval(2 * at - 1, legendre.legder(column)) for column in to.T], axis=1)
     return w / 2, values, slopes
 
 
@@ -97,9 +95,7 @@ def gradient(z: Array, stiffness: tuple) -> Array:
     N, Q, m = EA * stretch, GA * shear, EI * turn / h
     X, Y = N * c - Q * s, N * s + Q * c
     energy = (N * stretch + Q * shear + m * turn / h) / 2
-    return np.array(
-        [X, Y, h * (N * shear - Q * (1 + stretch)), m, energy - (X * dx + Y * dy + m * turn) / h]
-    )
+    return np.array([X, Y, h * (N * shear - Q * (1 + stretch)), m, energy - (X * dx + Y * dy + m * turn) / h])
 
 
 def field_hessian(gradient: Callable, z: Array, stiffness: tuple) -> Array:
@@ -230,7 +226,10 @@ def mixed_index(
     pull = np.kron(np.array([[0, 0, -1], [0, 0, 1], [-1, 1, 0]]), np.eye(2))
     multipliers = 0
     for number, segment in enumerate(segments):
-        h, forces = np.full(len(w), segment.length / elements), np.multiply.outer(segment.force, np.ones(len(w)))
+        h, forces = (
+            np.full(len(w), segment.length / elements),
+            np.multiply.outer(segment.force, np.ones(len(w))),
+        )
         own = [("force", number, c) for c in range(2)]
         for e in range(elements):
             theta = segment.shape((e + nodes) / elements)[1]
@@ -247,8 +246,10 @@ def mixed_index(
         contact = segment.contacts[1]
         if contact is not None:
             lever = [("force", contact.arc, c) for c in range(2)]
-            touching = [("place", contact.touching, c) if contact.touching is not None else None for c in range(2)]
-            assembly.add([*places[2:], *touching, *lever], -pull)
+            touching = [
+                ("place", contact.touching, c) if contact.touching is not None else None for c in range(2)
+            ]
+            assembly.add([*places[2:], *touching, *lever], pull)
             multipliers += 2
             if contact.reach:
                 angle = float(segment.shape(np.array([1.0]))[1][0])
