@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from tests.tsm.reissner_hessian import Contact, Segment
 from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
-from tsm.rods.shape import plain_shape
+from tsm.rods.shape import RodShape, plain_shape
 from tsm.settings import Settings
 from tsm.status import Status
 
@@ -26,7 +28,7 @@ def drawn_section(rng: np.random.Generator) -> tsm.Section:
 
 def drawn_structure(rng: np.random.Generator, element: str, *, offset: bool = False) -> tsm.Structure:
     """A column, a frame, or two beams of which one leans on the other; with pins, loads and moved supports."""
-    kind = rng.choice(["column", "frame", "leaning"])
+    kind = rng.choice(["column", "frame", "leaning"], p=[0.6, 0.2, 0.2])
     corners = [(0.0, 0.0), (1.0, 0.0)]
     if kind == "frame":
         corners += [(1.0 + float(rng.uniform(-0.5, 0.5)), float(rng.uniform(-1, -0.5)))]
@@ -42,7 +44,7 @@ def drawn_structure(rng: np.random.Generator, element: str, *, offset: bool = Fa
             elements=int(rng.integers(1 if element == "exact" else 4, finest + 1)),
             element=element,
         )
-        for n, (a, b) in enumerate(zip(corners[:-1], corners[1:], strict=True))
+        for n, (a, b) in enumerate(pairwise(corners))
     ]
     rotation = [0.0, None][int(rng.random() < 0.3)] if kind == "frame" else 0.0
     supports = [tsm.Support(beam="b0", end="start", rotation=rotation)]
@@ -51,14 +53,19 @@ def drawn_structure(rng: np.random.Generator, element: str, *, offset: bool = Fa
     elif rng.random() < 0.5:
         free = {"ux": None, "rotation": [0.0, None][rng.integers(2)]}
         supports.append(
-            tsm.Support(beam="b0", end="end", uy=float(rng.choice([0.0, rng.uniform(-0.3, 0.3)])), **free)
+            tsm.Support(
+                beam="b0",
+                end="end",
+                uy=float(rng.choice([0.0, rng.uniform(-0.3, 0.3)], p=[0.7, 0.3])),
+                **free,
+            )
         )
     pins, contacts = [], []
     depth = float(rng.uniform(0.001, 0.05)) if offset else 0.0
     for n in range(int(rng.choice([0, 0, 1, 1, 2, 3]))):
         place, side = float(rng.uniform(0.15, 0.95)), str(rng.choice(["left", "right"]))
         start = (place, -depth if side == "right" else depth)
-        by = rng.uniform(-0.3, 0.3, 2)
+        by = rng.uniform(-0.3, 0.3, 2) * rng.choice([1.0, 0.01])
         pins.append(tsm.Pin(name=f"p{n}", path=(start, (start[0] + 0.3 * by[0], start[1] + by[1]))))
         on = "b0" if corners[0] == (0.0, 0.0) else "b1"
         contacts.append(tsm.ContactPair(node=f"p{n}", beam=on, side=side, offset=depth))
@@ -147,7 +154,7 @@ def segments_of(newton: Newton, found: Equilibrium) -> tuple[list[Segment], set]
                     ends=(names[n], names[n + 1]),
                     contacts=(contacts[n], contacts[n + 1]),
                     length=float(shape.length[s]),
-                    shape=lambda part, s=s: (lambda at: (at.position, at.angle))(shape.within(s, part)),
+                    shape=partial(_within, shape, s),
                     force=tuple(shape.force[:, s].tolist()),
                 )
             )
@@ -155,6 +162,11 @@ def segments_of(newton: Newton, found: Equilibrium) -> tuple[list[Segment], set]
         ("turn", dof // 3) if dof % 3 == 2 else ("place", dof // 3, dof % 3) for dof in model.fixed.tolist()
     }
     return segments, fixed
+
+
+def _within(shape: RodShape, segment: int, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    at = shape.within(segment, part)
+    return at.position, at.angle
 
 
 def tangent_index(newton: Newton, found: Equilibrium, rng: np.random.Generator) -> int:
