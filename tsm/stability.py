@@ -27,6 +27,8 @@ from tsm.system import Assembler, Linearisation
 _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-13
 """Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
+_SOFT = 1e5
+"""Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
 _IDLE = 1e-9
 """Force of a closed contact, over ``EI/L^2``, that does not push."""
 _TURNS = 4
@@ -273,7 +275,9 @@ def _negatives(symmetric: _Symmetric) -> int | None:
         if not len(corner):
             return 0
         inside, _ = dpbtrs(factor, right, lower=1)
-        return _negatives_dense(corner - right.T @ inside)
+        reduced = corner - right.T @ inside
+        if np.abs(reduced).max() < _SOFT:
+            return _negatives_dense(reduced)
     count, width = band.shape[1], len(corner)
     whole = np.zeros((count + width, count + width))
     for k, diagonal in enumerate(band[:count]):
