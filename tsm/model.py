@@ -200,6 +200,20 @@ class Model:
         return kind
 
     @cached_property
+    def units(self) -> Array:
+        """Units of the unknowns, from the longest beam and the largest ``EI/L^2``."""
+        L, F = self.length, self.force_scale
+        own = [[F, F, L, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
+        return np.concatenate([np.array([L, L, 1.0, F, F, F * L])[self.kind], *own])
+
+    @cached_property
+    def row_units(self) -> Array:
+        """Units of the equations."""
+        L, F = self.length, self.force_scale
+        own = [[L, L, F, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
+        return np.concatenate([np.array([F, F, F * L, L, L, 1.0])[self.kind], *own])
+
+    @cached_property
     def whole(self) -> bool:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
         return len(self.exact) == len(self.beams) and not len(self.closed)

@@ -12,21 +12,23 @@ contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968), 
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpbtrf, dpbtrs, dsytrf
 
 from tsm.elements.properties import Array
-from tsm.model import Model
 from tsm.rods.layout import OWN
-from tsm.rods.variation import variation
+from tsm.rods.variation import Bordered, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
 _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-13
 """Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
+_SOFT = 1e5
+"""Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
 _IDLE = 1e-9
 """Force of a closed contact, over ``EI/L^2``, that does not push."""
 _TURNS = 4
@@ -62,16 +64,19 @@ class _Symmetric(NamedTuple):
     band : ndarray, shape (k + 1, n)
         LAPACK's lower band storage.
     right : ndarray, shape (n, b)
-        Border columns.
+        Border columns, for plain numbers as unknowns.
     corner : ndarray, shape (b, b)
-        Where they meet.
+        Where they meet, likewise.
+    units : ndarray, shape (n,)
+        Of the unknowns of the band, over the root of an energy.
     multipliers : int
-        Unknowns that are forces.
+        Unknowns that are forces or moments.
     """
 
     band: Array
     right: Array
     corner: Array
+    units: Array
     multipliers: int
 
 
@@ -147,8 +152,7 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
     from scipy.sparse.linalg import splu
 
     model, tangent = assembler.model, assembler.whole(system.tangent)
-    columns = _units(model)
-    rows = 1 / _row_units(model)
+    columns, rows = model.units, 1 / model.row_units
     plain = tangent.multiply(rows[:, None]).multiply(columns).tocoo()
     size = plain.shape[0]
     unit = np.append(np.zeros(size), 1.0)
@@ -177,101 +181,108 @@ def _bordered(plain: Any, column: Array, row: Array) -> Any:
 
 
 def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> _Symmetric | None:
-    """Symmetric tangent, the border in plain numbers; None where the tangent is not symmetric."""
-    model, k = assembler.model, assembler.k
-    closed = sum(touch is not None for touch in state.touches)
-    if any(t is not None and pair.slot < 0 for pair, t in zip(model.pairs, state.touches, strict=True)):
-        return None
+    """Symmetric tangent, None where the tangent is not symmetric."""
+    model, closed = assembler.model, 0
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is not None:
+            if pair.slot < 0:
+                return None
+            closed += 1
+    units = model.units / math.sqrt(model.force_scale * model.length)
     if model.rods is not None:
-        return _with_rods(assembler, state, system, 2 * closed)
-    tangent, units = system.tangent, _units(model)[model.banded :]
-    energy = model.force_scale * model.length
+        return _with_rods(assembler, state, system, units, 2 * closed)
+    tangent, beside = system.tangent, units[model.banded :]
     return _Symmetric(
-        tangent.band[:, 2 * k :].T / energy,
-        tangent.right[: model.banded] * (units / energy),
-        tangent.corner * np.outer(units, units / energy),
-        2 * closed,
+        band=tangent.band[:, 2 * assembler.k :].T,
+        right=tangent.right[: model.banded] * beside,
+        corner=tangent.corner * beside * beside[:, None],
+        units=units[: model.banded],
+        multipliers=2 * closed,
     )
 
 
-def _with_rods(assembler: Assembler, state: State, system: Linearisation, multipliers: int) -> _Symmetric:
+def _with_rods(
+    assembler: Assembler, state: State, system: Linearisation, units: Array, multipliers: int
+) -> _Symmetric:
     """The same with exact elements, whose own tangent gives way to their second variation."""
-    model, k, energy = assembler.model, assembler.k, assembler.model.force_scale * assembler.model.length
+    model = assembler.model
     assert model.rods is not None, "the model has exact elements"
     assert system.rods is not None, "the model has exact elements"
     known = system.tangent.rods if model.coefficients or "tangent" in system.__dict__ else None
     found = variation(model.rods, state, system.rods, known.transfer if known else None)
-    border, before = model.border, 36 * len(model.closed)
-    extra = sum(slot < 0 for part in found.bordered for slot in part.slots)
-    right, corner = np.zeros((model.equations + 1, border + extra)), np.eye(border + extra)
-    values, band = found.tangent.reshape(len(found.tangent), -1).T, np.zeros(assembler.band_size)
+    border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
+    moments = [part.moments for part in found.bordered]
+    angles = [part.slots.count(-1) - part.moments for part in found.bordered]
+    right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
+    corner = np.eye(right.shape[1])
+    values = found.tangent.reshape(len(found.tangent), -1).T
     if model.coefficients:
         tangent = system.tangent
         assert tangent.rods is not None, "the model has exact elements"
-        values, band = values - tangent.rods.tangent, tangent.band.ravel()
+        values = values - tangent.rods.tangent
         right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     flat = values.ravel()
-    band = band + np.bincount(assembler.scatter[before:], flat, assembler.band_size + 1)[:-1]
-    if model.border_dofs:
+    band = np.bincount(assembler.scatter[before:], flat, assembler.band_size + 1)[:-1].reshape(
+        model.banded, -1
+    )
+    if model.coefficients:
+        band = band + system.tangent.band
+    if aside:
         added = np.bincount(assembler.scatter_right[before:], flat, assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
-    units, own_units = _units(model), np.ones(extra)
     spare = border
     for part in found.bordered:
-        own = []
-        for slot in part.slots:
-            own.append(model.border_dofs + slot if slot >= 0 else spare)
-            spare += slot < 0
+        own, spare = _columns(part, aside, spare)
         right[:, own] = corner[own] = corner[:, own] = 0.0
-        right[np.ix_(model.equation[model.exact_dofs[:, part.element]], own)] = part.matrix[:OWN, OWN:]
-        corner[np.ix_(own, own)] = part.matrix[OWN:, OWN:]
-        own_units[spare - border - part.moments : spare - border] = energy
-        multipliers += part.moments
+        right[model.equation[model.exact_dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
+        corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
-        if touch is not None and pair.cuts and pair.node >= 0:
+        if pair.node >= 0 and pair.cuts and touch is not None:
             for i in range(2):
-                right[model.equation[3 * pair.node + i], model.border_dofs + pair.slot + i] += 1
-    aside = model.border_dofs
+                right[model.equation[3 * pair.node + i], aside + pair.slot + i] += 1
     if aside:
         corner[:aside] = right[model.banded : model.equations]
         corner[:, :aside] = corner[:aside].T
-    units = np.concatenate([units[model.banded :], own_units])
+    # angles inside the elements, and moments
+    energy = model.force_scale * model.length
+    own_units = [
+        [1 / math.sqrt(energy)] * a + [math.sqrt(energy)] * m for a, m in zip(angles, moments, strict=True)
+    ]
+    beside = np.concatenate([units[model.banded :], *own_units])
     return _Symmetric(
-        band.reshape(model.banded, -1)[:, 2 * k :].T / energy,
-        right[: model.banded] * (units / energy),
-        corner * np.outer(units, units / energy),
-        multipliers,
+        band=band[:, 2 * assembler.k :].T,
+        right=right[: model.banded] * beside,
+        corner=corner * beside * beside[:, None],
+        units=units[: model.banded],
+        multipliers=multipliers + sum(moments),
     )
 
 
-def _units(model: Model) -> Array:
-    """Units of the unknowns: the longest beam's length, the largest ``EI/L^2``."""
-    L, F = model.length, model.force_scale
-    own = [[F, F, L, 1.0][: pair.element_type.contact_unknowns] for pair in model.pairs]
-    return np.concatenate([np.array([L, L, 1.0, F, F, F * L])[model.kind], *own])
-
-
-def _row_units(model: Model) -> Array:
-    """Units of the equations."""
-    L, F = model.length, model.force_scale
-    own = [[L, L, F, 1.0][: pair.element_type.contact_unknowns] for pair in model.pairs]
-    return np.concatenate([np.array([F, F, F * L, L, L, 1.0])[model.kind], *own])
+def _columns(part: Bordered, aside: int, spare: int) -> tuple[Array, int]:
+    """Places of an element's unknowns in the border, and the next free one."""
+    own = np.array(part.slots) + aside
+    new = np.array(part.slots) < 0
+    count = int(np.count_nonzero(new))
+    own[new] = np.arange(spare, spare + count)
+    return own, spare + count
 
 
 def _negatives(symmetric: _Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
-    band, right, corner, _ = symmetric
+    band, right, corner, units, _ = symmetric
     factor, info = dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
         if not len(corner):
             return 0
         inside, _ = dpbtrs(factor, right, lower=1)
-        return _negatives_dense(corner - right.T @ inside)
+        reduced = corner - right.T @ inside
+        if np.abs(reduced).max() < _SOFT:
+            return _negatives_dense(reduced)
     count, width = band.shape[1], len(corner)
     whole = np.zeros((count + width, count + width))
     for k, diagonal in enumerate(band[:count]):
-        whole[range(k, count), range(count - k)] = diagonal[: count - k]
-    whole[count:, :count], whole[count:, count:] = right.T, corner
+        whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
+    whole[count:, :count], whole[count:, count:] = right.T * units, corner
     return _negatives_dense(whole)
 
 
@@ -280,7 +291,7 @@ def _negatives_dense(matrix: Array) -> int | None:
     factors, exchanges, _ = dsytrf(matrix, lower=1)
     single = exchanges > 0
     pivots = factors.diagonal()[single]
-    smallest = len(matrix) * _EPS * np.abs(matrix.diagonal()).max(initial=0.0)
+    smallest = _EPS * np.abs(matrix.diagonal()).max(initial=0.0)
     if not np.isfinite(factors).all() or (np.abs(pivots) <= smallest).any():
         return None
     # the pivots of two rows are indefinite

@@ -270,7 +270,9 @@ class Rods:
         for part in cut:
             e = part.element
             tangent[e], carried[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
-        return RodTangent(carried, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer)
+        return RodTangent(
+            carried, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer
+        )
 
     def _cut(
         self, state: State, element: int, pairs: tuple[int, ...], balance: RodBalance, transfer: Array

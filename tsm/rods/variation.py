@@ -132,9 +132,12 @@ def _without_force(tangent: Array) -> Array:
     """Eliminate the rows 3 and 4 of matrices (..., n, n); a unit matrix takes their place."""
     of_force = tangent[..., 3:5, :].copy()
     xx, xy, yy = of_force[..., 0, 3], of_force[..., 0, 4], of_force[..., 1, 4]
-    adjoint = np.array([[yy, -xy], [-xy, xx]]) / (xx * yy - xy * xy)
+    adjoint = np.empty_like(of_force[..., 3:5])
+    adjoint[..., 0, 0], adjoint[..., 1, 1] = yy, xx
+    adjoint[..., 0, 1] = adjoint[..., 1, 0] = -xy
+    adjoint /= (xx * yy - xy * xy)[..., None, None]
     of_force[..., 3:5] = 0.0
-    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (np.moveaxis(adjoint, (0, 1), (-2, -1)) @ of_force)
+    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (adjoint @ of_force)
     tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
     tangent[..., [3, 4], [3, 4]] = 1.0
     return tangent
@@ -228,7 +231,9 @@ def _bordered(
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
     for n, k in enumerate(pairs):
         if model.pairs[k].reach:
-            matrix += _surface(touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, directions[n])
+            matrix += _surface(
+                touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, directions[n]
+            )
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
     slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
