@@ -1,5 +1,6 @@
 """2D solid elements with unilateral contact: the finite-element reference for beam contact."""
 
+from fem_reference.critical import CriticalPoint
 from fem_reference.material import MATERIALS, PLANES
 from fem_reference.observe import axis_line, axis_stations, energy, fibre_stress, nodal_stress
 from fem_reference.problem import Contact, EndLoad, Pin, SolidProblem, default_penalty
@@ -16,6 +17,7 @@ __all__ = [
     "PLANES",
     "Contact",
     "ContactHistory",
+    "CriticalPoint",
     "EndLoad",
     "Pin",
     "Result",

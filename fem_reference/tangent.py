@@ -59,33 +59,43 @@ class Tangent:
     def correction(self, R: Floats) -> Correction | None:
         """Newton's correction for the residual ``R`` ``(m,)``; None if the contacts leave it undetermined."""
         miss = np.concatenate([touch.mismatch * _FIRST for touch in self.at.closed] or [np.zeros(0)])
-        return self._respond(R, np.zeros_like(miss), miss, augmented=False)
+        return self._correction(self._respond(R, np.zeros_like(miss), miss, augmented=False))
 
     def rate(self, before: float, after: float) -> Correction | None:
         """Change per load parameter, with the pins' mean velocity between two load parameters."""
         p = np.concatenate([_own_motion(touch, before, after) for touch in self.at.closed] or [np.zeros(0)])
         R = -self.model.expansion.T @ self.model.load.ravel()
-        return self._respond(R, p, np.zeros_like(p), augmented=True)
+        return self._correction(self._respond(R, p, np.zeros_like(p), augmented=True))
+
+    def inverse(self, right: Floats) -> Floats | None:
+        """Product ``(m,)`` of the inverse Hessian and ``right``; None if it is singular."""
+        none = np.zeros(self.U.shape[1])
+        found = self._respond(-right, none, none, augmented=True)
+        return None if found is None else found[0]
 
     def solve(self, right: Floats) -> Floats:
         """Solve with the bodies' own stiffness: ``right`` is ``(m,)`` or ``(m, c)``."""
         return _solve(self.model, self.factors, right)
 
-    def _respond(self, R: Floats, p: Floats, miss: Floats, *, augmented: bool) -> Correction | None:
-        """Solve the linearised equations: ``du = Y z - K^-1 R``, z being dlam and ``lam H (U^T du + p)`` of each contact."""
-        y, closed = self.solve(R), self.at.closed
+    def _respond(
+        self, R: Floats, p: Floats, miss: Floats, *, augmented: bool
+    ) -> tuple[Floats, Floats] | None:
+        """Unknowns ``Y z - K^-1 R`` and forces dlam; z is dlam and ``lam H (U^T du + p)`` of each contact."""
+        y, closed = self.solve(R) if R.any() else R, self.at.closed
         if not closed:
-            return Correction(u=self.expanded(-y), forces=np.zeros(0))
+            return -y, np.zeros(0)
         A = block_diag(*(touch.force * touch.curvature - np.outer(_FIRST, _FIRST) for touch in closed))
         C = [0.0 if augmented and _removed(touch.pair) else 1 / touch.pair.penalty for touch in closed]
         flexibility = np.concatenate([[c, 1.0, 1.0] for c in C])
+        matrix = np.diag(flexibility) - A @ (self.U.T @ self.Y)
         try:
-            z = np.linalg.solve(
-                np.diag(flexibility) - A @ (self.U.T @ self.Y), A @ (p - self.U.T @ y) - miss
-            )
+            z = np.linalg.solve(matrix, A @ (p - self.U.T @ y) - miss)
         except np.linalg.LinAlgError:
             return None
-        return Correction(u=self.expanded(self.Y @ z - y), forces=z[::3])
+        return self.Y @ z - y, z[::3]
+
+    def _correction(self, found: tuple[Floats, Floats] | None) -> Correction | None:
+        return None if found is None else Correction(u=self.expanded(found[0]), forces=found[1])
 
     def expanded(self, unknowns: Floats) -> Floats:
         """Displacements ``(n, 2)`` from unknowns."""
