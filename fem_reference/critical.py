@@ -12,12 +12,14 @@ from fem_reference.settings import Settings
 from fem_reference.state import State, residual, state
 from fem_reference.status import Status
 from fem_reference.tangent import Tangent, linearise
-from fem_reference.track import Accepted, accept, departure, predict
+from fem_reference.track import Accepted, accept, predict
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
 _SEARCH = 60
 _PRECISION = 1e-10
 """Largest change of a located load parameter or amplitude, relative, that ends a search."""
+_CLOSE = 1e-5
+"""Relative distance of a bifurcation's load parameter within which no state is looked for."""
 _FIRST_AMPLITUDE = 1e-2
 """Displacement along the mode with which a branch is entered, relative to the length."""
 
@@ -55,42 +57,51 @@ class Located:
 def bifurcation(model: Model, a: Accepted, b: Accepted, settings: Settings) -> Located | None:
     """Locate the change of index between two states of one branch; None if what lies between is not on it.
 
-    The eigenvalue that vanishes is followed: halves until the index changes by one, then the chord's root.
+    Halves until the index changes by one, then chords of the eigenvalue that vanishes. Closer than `_CLOSE` the rate along
+    the null vector is round-off: the root is that of the polynomial through the last states.
     """
     low, high = a, b
     values: list[tuple[float, float]] = []
-    for _ in range(_SEARCH):
-        t = 0.5 * (low.at.t + high.at.t)
-        if len(values) >= 2:
-            (t1, m1), (t2, m2) = values[-2:]
-            chord = t2 - m2 * (t2 - t1) / (m2 - m1) if m2 != m1 else t
-            if abs(chord - t2) <= _PRECISION * abs(t2):
-                break
-            width = high.at.t - low.at.t
-            t = min(max(chord, low.at.t + 1e-3 * width), high.at.t - 1e-3 * width)
+    root = 0.5 * (low.at.t + high.at.t)
+    while high.at.t - low.at.t > _PRECISION * high.at.t and len(values) < _SEARCH:
+        t = min(max(root, low.at.t), high.at.t)
         middle = _between(model, low, high, t, settings)
         if middle is None:
             return None
-        sign = 1.0 if middle.index == low.index else -1.0
         value, _ = smallest(model, middle.tangent)
-        values = [*values, (t, value)] if value * sign > 0 and abs(high.index - low.index) == 1 else []
+        single = abs(high.index - low.index) == 1 and (value > 0) == (middle.index == min(a.index, b.index))
+        values = [*values, (value, t)] if single else []
         low, high = (middle, high) if middle.index == low.index else (low, middle)
-        if high.at.t - low.at.t <= _PRECISION * high.at.t:
+        last, root = root, _root(values[-4:]) if len(values) > 1 else 0.5 * (low.at.t + high.at.t)
+        if len(values) > 2 and abs(root - last) <= _CLOSE * root:
             break
-    near = low if not values or values[-1][0] <= low.at.t else high
+    near = low if root - low.at.t <= high.at.t - root else high
     _, vector = smallest(model, near.tangent)
-    chord = 0.5 * (low.at.t + high.at.t) if len(values) < 2 else chord
-    return Located(point=_point(model, BIFURCATION, chord, vector), near=near, vector=vector)
+    return Located(point=_point(model, BIFURCATION, root, vector), near=near, vector=vector)
+
+
+def _root(values: list[tuple[float, float]]) -> float:
+    """Load parameter at which the eigenvalue vanishes, by inverse interpolation of ``(value, t)``."""
+    total = 0.0
+    for number, (value, t) in enumerate(values):
+        others = [other for k, (other, _) in enumerate(values) if k != number]
+        total += t * float(np.prod([other / (other - value) for other in others]))
+    return total
 
 
 def _between(model: Model, a: Accepted, b: Accepted, t: float, settings: Settings) -> Accepted | None:
+    """State between two others that departs little from their chord; None if there is none.
+
+    Rates are no measure here: next to a critical point they are round-off along the null vector.
+    """
     attempt = equilibrium(model, predict(model, (a,), t, 1), settings)
     found = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
     if found is None or found.closed != a.closed:
         return None
-    floor = noise(model, settings)
-    steps = (departure(a, found, floor), departure(found, b, floor))
-    return found if max(steps) <= settings.largest_departure else None
+    d = b.at.u - a.at.u
+    off = found.at.u - a.at.u - (t - a.at.t) / (b.at.t - a.at.t) * d
+    near = np.linalg.norm(off) <= settings.largest_departure * np.linalg.norm(d) + noise(model, settings)
+    return found if near else None
 
 
 def noise(model: Model, settings: Settings) -> float:
@@ -146,7 +157,9 @@ def limit_point(model: Model, states: tuple[Accepted, ...], settings: Settings) 
     if near is None:
         return None
     _, vector = smallest(model, near.tangent)
-    return Located(point=_point(model, LIMIT, best[2].t, vector), near=near, vector=vector)
+    # Where the load has no component along the null vector, the rate has none either.
+    share = abs(float(np.sum(vector * c)))
+    return Located(point=_point(model, LIMIT, best[2].t, vector), near=near, vector=vector) if share > 0.5 else None
 
 
 def _along(
