@@ -5,12 +5,15 @@ from fem_reference.model import Model
 from fem_reference.settings import Settings
 from fem_reference.state import State, Touch
 from fem_reference.status import Status
-from fem_reference.track import Accepted, accept, predict
+from fem_reference.track import KEPT, Accepted, accept, predict
 
 _SEARCH = 40
-_PRECISION = 1e-10
-_SHORT_OF = 0.1
-"""Part of the way to the predicted event that is left at every step of the search: it is approached from one side."""
+_CLOSE = 1e-5
+"""Relative distance to the event at which its place is extrapolated."""
+_TIGHT = 0.05
+"""Clearance below which contact along a line is looked for."""
+_FAR = 20.0
+"""Steps ahead of the last one within which a root is looked for."""
 
 
 def clearance(touch: Touch) -> float:
@@ -37,44 +40,43 @@ def line_contact(
 ) -> tuple[float, int, Accepted] | None:
     """Load parameter at which the clearance of a pair vanishes, the pair, and the last state; None if it is not ahead.
 
-    Beyond it the closest point is not one, so the root is approached from below, each time to a tenth of the distance.
+    Beyond it the closest point is not one, and Newton's method converges from ever less far: the event is approached from
+    below, half of the distance at a time, and extrapolated from the last three states.
     """
     last = tightest(states[-1].at)
-    if len(states) < 2 or last is None:
+    if len(states) < 2 or last is None or last[1] > _TIGHT:
         return None
-    pair = last[0]
-    before, after = states[-2:]
-    if not before.at.touches[pair].closed:
+    pair, track = last[0], states
+    if not all(one.at.touches[pair].closed for one in states[-2:]):
         return None
     for _ in range(_SEARCH):
-        (t1, c1), (t2, c2) = ((one.at.t, clearance(one.at.touches[pair])) for one in (before, after))
-        if c2 >= c1:
+        found = [(clearance(one.at.touches[pair]), one.at.t) for one in track[-2:]]
+        (c1, t1), (c2, t2) = found
+        if not 0 < c2 < c1:
             return None
         root = t2 + c2 * (t2 - t1) / (c1 - c2)
-        if abs(root - t2) <= _PRECISION * t2:
-            return root, pair, after
         if root - t2 > _FAR * (t2 - t1):
             return None
-        following = _next(model, (before, after), root, settings)
-        if following is None or clearance(following.at.touches[pair]) <= 0:
-            return None
-        before, after = after, following
+        following = None if root - t2 <= _CLOSE * t2 else _next(model, track, root, settings)
+        if following is None:
+            return (root, pair, track[-1]) if root - t2 <= _NEARLY * t2 else None
+        track = (*track, following)[-KEPT:]
     return None
 
 
-_FAR = 20.0
-"""Steps ahead of the last one within which a root is looked for."""
+_NEARLY = 1e-3
+"""Relative distance to the event that is good enough where no state closer to it was found."""
 
 
 def _next(model: Model, states: tuple[Accepted, ...], root: float, settings: Settings) -> Accepted | None:
-    """State short of the root; halfway back as long as there is none."""
-    last, left = states[-1], _SHORT_OF
-    for _ in range(6):
-        t = last.at.t + (1 - left) * (root - last.at.t)
-        attempt = equilibrium(model, predict(model, states, t, settings.predictor_order), settings)
+    """State half way to the root, or less far; None if there is none."""
+    last, part = states[-1], 0.5
+    for _ in range(4):
+        t = last.at.t + part * (root - last.at.t)
+        attempt = equilibrium(model, predict(model, states, t, 1), settings)
         if attempt.status is Status.CONVERGED:
             found = accept(model, attempt.state, settings)
             if found is not None and found.closed == last.closed:
                 return found
-        left = (1 + left) / 2
+        part /= 2
     return None

@@ -207,14 +207,14 @@ def _blocked(
 ) -> Status | None:
     """Search for what stands in the way of ever shorter steps; return a status if the path ends there."""
     floor = walk.trial < settings.min_step
-    if not floor and walk.failures % _PATIENCE:
-        return None
     line = line_contact(model, walk.track, settings)
     if line is not None and line[0] <= goal:
         walk.ended_at, walk.pair, last = line
         walk.track = (*walk.track, last)
         walk.cause = Status.LINE_CONTACT
         return Status.LINE_CONTACT
+    if not floor and walk.failures % _PATIENCE:
+        return None
     located = limit_point(model, walk.track, settings)
     if located is not None and walk.last.at.t <= located.point.load_parameter <= goal:
         walk.critical.append(located.point)

@@ -15,7 +15,8 @@ class Settings:
         Largest nodal residual accepted, relative to the larger of contact force and ``E I / L^2``; the round-off of
         a nodal force is added.
     max_iterations
-        Newton iterations with one set of closed contacts.
+        Newton iterations with one set of closed contacts. Next to a buckling load 30 are needed: bending that overshoots into
+        stretch changes the sign of what resists it.
     largest_growth, smallest_damping
         A correction that the next one exceeds by this factor is halved, down to this part of it. Bending that overshoots
         into stretch makes a good correction's successor grow too: a factor near one costs more than it saves.
@@ -49,7 +50,7 @@ class Settings:
     """
 
     tolerance: float = 1e-9
-    max_iterations: int = 12
+    max_iterations: int = 40
     largest_growth: float = 5.0
     smallest_damping: float = 1 / 64
     max_contact_changes: int = 6
