@@ -12,7 +12,7 @@ from fem_reference.settings import Settings
 from fem_reference.state import State, residual, state
 from fem_reference.status import Status
 from fem_reference.tangent import Tangent, linearise
-from fem_reference.track import Accepted, accept, predict
+from fem_reference.track import Accepted, accept, predict, vanishing
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
 _SEARCH = 60
@@ -72,21 +72,12 @@ def bifurcation(model: Model, a: Accepted, b: Accepted, settings: Settings) -> L
         single = abs(high.index - low.index) == 1 and (value > 0) == (middle.index == min(a.index, b.index))
         values = [*values, (value, t)] if single else []
         low, high = (middle, high) if middle.index == low.index else (low, middle)
-        last, root = root, _root(values[-4:]) if len(values) > 1 else 0.5 * (low.at.t + high.at.t)
+        last, root = root, vanishing(values[-4:]) if len(values) > 1 else 0.5 * (low.at.t + high.at.t)
         if len(values) > 2 and abs(root - last) <= _CLOSE * root:
             break
     near = low if root - low.at.t <= high.at.t - root else high
     _, vector = smallest(model, near.tangent)
     return Located(point=_point(model, BIFURCATION, root, vector), near=near, vector=vector)
-
-
-def _root(values: list[tuple[float, float]]) -> float:
-    """Load parameter at which the eigenvalue vanishes, by inverse interpolation of ``(value, t)``."""
-    total = 0.0
-    for number, (value, t) in enumerate(values):
-        others = [other for k, (other, _) in enumerate(values) if k != number]
-        total += t * float(np.prod([other / (other - value) for other in others]))
-    return total
 
 
 def _between(model: Model, a: Accepted, b: Accepted, t: float, settings: Settings) -> Accepted | None:

@@ -1,14 +1,16 @@
 """Where contact with a round pin ceases to be at one point."""
 
+from dataclasses import replace
+
 from fem_reference.active_set import equilibrium
 from fem_reference.model import Model
 from fem_reference.settings import Settings
 from fem_reference.state import State, Touch
 from fem_reference.status import Status
-from fem_reference.track import KEPT, Accepted, accept, predict
+from fem_reference.track import KEPT, Accepted, accept, predict, vanishing
 
 _SEARCH = 40
-_CLOSE = 1e-5
+_CLOSE = 1e-4
 """Relative distance to the event at which its place is extrapolated."""
 _TIGHT = 0.05
 """Clearance below which contact along a line is looked for."""
@@ -59,18 +61,24 @@ def line_contact(
             return None
         following = None if root - t2 <= _CLOSE * t2 else _next(model, track, root, settings)
         if following is None:
-            return (root, pair, track[-1]) if root - t2 <= _NEARLY * t2 else None
+            values = [(clearance(one.at.touches[pair]), one.at.t) for one in track]
+            return (vanishing(values), pair, track[-1]) if root - t2 <= _NEARLY * t2 else None
         track = (*track, following)[-KEPT:]
     return None
 
 
-_NEARLY = 1e-3
+_NEARLY = 1e-2
 """Relative distance to the event that is good enough where no state closer to it was found."""
+
+
+_QUICK = 10
+"""Iterations within which a state of the search has to be found."""
 
 
 def _next(model: Model, states: tuple[Accepted, ...], root: float, settings: Settings) -> Accepted | None:
     """State half way to the root, or less far; None if there is none."""
     last, part = states[-1], 0.5
+    settings = replace(settings, max_iterations=min(settings.max_iterations, _QUICK))
     for _ in range(4):
         t = last.at.t + part * (root - last.at.t)
         attempt = equilibrium(model, predict(model, states, t, 1), settings)

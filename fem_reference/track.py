@@ -129,3 +129,12 @@ def hermite(nodes: list[float], values: list[Array], rates: list[Array], t: floa
         power *= t - twice[order - 1]
         total += power * column[0]
     return total
+
+
+def vanishing(values: list[tuple[float, float]]) -> float:
+    """Load parameter at which a value vanishes, by inverse interpolation of ``(value, t)``."""
+    total = 0.0
+    for number, (value, t) in enumerate(values):
+        others = [other for k, (other, _) in enumerate(values) if k != number]
+        total += t * float(np.prod([other / (other - value) for other in others]))
+    return total
