@@ -204,6 +204,14 @@ class Model:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
         return len(self.exact) == len(self.beams) and not len(self.closed)
 
+    @cached_property
+    def pairs_on(self) -> dict[str, list[int]]:
+        """Numbers of the contact pairs on every beam that is touched."""
+        on: dict[str, list[int]] = {}
+        for k, pair in enumerate(self.pairs):
+            on.setdefault(pair.pair.beam, []).append(k)
+        return on
+
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""
         beam, _, end = name.rpartition(".")
