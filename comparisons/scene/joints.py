@@ -127,9 +127,7 @@ def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str]) -> N
         rule = "can move without strain: its supports must hold x, y and the rotation"
     else:
         return
-    raise FieldError(
-        f"beam[{scene.beams.index(beam)}].clamped", beam.clamped, f'beam "{beam.name}" {rule}'
-    )
+    raise FieldError(f"beam[{scene.beams.index(beam)}].clamped", beam.clamped, f'beam "{beam.name}" {rule}')
 
 
 def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:

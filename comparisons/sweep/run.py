@@ -6,10 +6,11 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, 
 from dataclasses import dataclass
 from time import monotonic, sleep
 
+from comparisons.files import interrupts_held
 from comparisons.sweep.case import Case
 from comparisons.sweep.measure import Measurement, measure, unmeasured
 from comparisons.sweep.store import ERROR, UNSETTLED, WORKER_LOST, Store
-from comparisons.sweep.workers import Workers, WorkersError, interrupts_held
+from comparisons.sweep.workers import Workers, WorkersError
 
 BEAT = 5.0
 """Seconds between signs of life, far below the lease."""
