@@ -65,12 +65,15 @@ def _beam_deformation(scene: Scene, options: Options, result: Any, response: Res
     element, steps = options.element or "mixed", range(len(result.load_parameter))
     stiff = element.startswith("euler-bernoulli")
     turn, strain = np.zeros((2, len(scene.beams), len(steps)))
+    touching: dict[str, list[ContactHistory]] = {beam.name: [] for beam in scene.beams}
+    for item in scene.contacts:
+        touching[item.beam].append(response.contacts[item.pair])
     for b, beam in enumerate(scene.beams):
         stiffness = np.array([beam.EA, np.inf if stiff else beam.GA])
         for k in steps:
             turn[b, k] = np.abs(np.diff(result.shape(beam.name, k)[:, 2])).max()
             strain[b, k] = np.abs(result.section_forces(beam.name, k)[..., :2] / stiffness).max()
-        for contact in [response.contacts[item.pair] for item in scene.contacts if item.beam == beam.name]:
+        for contact in touching[beam.name]:
             turn[b] = np.maximum(turn[b], contact.force * _arms(result, beam.name, contact) / beam.EI)
             strain[b] = np.maximum(strain[b], contact.force / stiffness.min())
     return Deformation(

@@ -72,8 +72,8 @@ def _closed_axes(model: Model, state: State, system: Linearisation, place: BeamM
     p = Properties(*(np.asarray(values)[part] for values in model.properties))
     contacts = [
         PointForce(touch.element - place.first, touch.xi, touch.force)
-        for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and pair.target is place and pair.slot >= 0
+        for k in model.pairs_on.get(place.beam.name, ())
+        if (touch := state.touches[k]) is not None and model.pairs[k].slot >= 0
     ]
     axes = deflected_axes(p, x, system.closed_force[:, part], contacts, xi)
     starts: Array = np.array(model.element_start[own]) + x[:2].T

@@ -237,7 +237,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         message=status.value + where,
         load_parameter=np.array([e.state.load_parameter for e in equilibria]),
         contacts={pair.pair.name: _contact(model, equilibria, k) for k, pair in enumerate(model.pairs)},
-        supports={name: _support(model, equilibria, name) for name in _supported(model)},
+        supports=_supports(model, equilibria),
         tips={
             name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
             for name, place in model.beams.items()
@@ -280,13 +280,19 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     return 0.0, np.nan, seen.gap if over else np.nan
 
 
-def _supported(model: Model) -> list[str]:
-    return list(dict.fromkeys(name.rpartition(".")[0] for name in model.support_node))
-
-
-def _support(model: Model, equilibria: tuple[Equilibrium, ...], beam: str) -> SupportHistory:
-    nodes = [node for name, node in model.support_node.items() if name.rpartition(".")[0] == beam]
-    held = np.isin(np.arange(model.dof_count), model.fixed)
-    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3)[nodes] for e in equilibria]
-    table = np.array(reactions).reshape(-1, len(nodes), 3)
-    return SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])
+def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
+    """Reactions on the supported nodes of every beam."""
+    held = np.zeros(model.dof_count, dtype=bool)
+    held[model.fixed] = True
+    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3) for e in equilibria]
+    nodes: dict[str, list[int]] = {}
+    for name, node in model.support_node.items():
+        nodes.setdefault(name.rpartition(".")[0], []).append(node)
+    tables = {
+        beam: np.array([forces[own] for forces in reactions]).reshape(-1, len(own), 3)
+        for beam, own in nodes.items()
+    }
+    return {
+        beam: SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])
+        for beam, table in tables.items()
+    }

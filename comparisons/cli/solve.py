@@ -69,7 +69,9 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     file = None if given.json in (None, "-") else writable_file(Path(given.json))
     if given.vtk is not None:
-        writable_folder(given.vtk)
+        from comparisons.export import check_series
+
+        check_series(writable_folder(given.vtk), given.model or "tsm", scene)
     from comparisons.models import solve
     from comparisons.statement import as_json, summary
 
