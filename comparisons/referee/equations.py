@@ -166,7 +166,8 @@ def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, 
 class System(NamedTuple):
     """Gradient (u,) and Hessian (u, u) with the bubbles condensed, and what gives those back.
 
-    With the change x of an element's own unknowns its bubbles change by ``-(shift + lever x)``.
+    With the change x of an element's own unknowns its bubbles change by ``-(shift + lever x)``; `ends` (e, 2) are the moments on the
+    elements' ends, from balance: a derivative of the rotation would lose digits.
     """
 
     gradient: Array
@@ -176,6 +177,7 @@ class System(NamedTuple):
     blocks: Array
     local: Ints
     sign: Array
+    ends: Array
     energy: float
 
 
@@ -202,7 +204,17 @@ def assemble(layout: Layout, mesh: Mesh, made: Properties, z: Array, bubbles: Ar
         sign[:, :, None] * sign[:, None, :] * hessian[:, spread[:, None], spread[None, :]],
     )
     _add_stations(layout, z, g, k)
-    return System(g[:-1], k[:-1, :-1], shift, lever, blocks, local, sign, float(parts.energy.sum()))
+    return System(
+        gradient=g[:-1],
+        hessian=k[:-1, :-1],
+        shift=shift,
+        lever=lever,
+        blocks=blocks,
+        local=local,
+        sign=sign,
+        ends=parts.gradient[:, :2],
+        energy=float(parts.energy.sum()),
+    )
 
 
 def _numbers(layout: Layout, mesh: Mesh, made: Properties) -> tuple[Ints, Array]:

@@ -217,17 +217,19 @@ def _contact(solution: Solution, touch: Touch) -> Contact:
 
 def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Array]:
     """Force and moment that the supports add to balance parts, loads and contacts, zero in free components."""
-    layout, z = solution.layout, solution.z
+    layout, z, mesh = solution.layout, solution.z, solution.mesh
+    assert solution.system is not None, "an equilibrium has its equations"
     found: dict[str, Array] = {}
     for support in layout.scene.all_supports:
         number = next(k for k, item in enumerate(layout.stations) if support.node in item.ends)
         station = layout.stations[number]
         total = -np.array([*station.force, station.moment])
-        for part in layout.parts:
-            for end, sign in ((part.first, -1.0), (part.last, 1.0)):
+        for k, part in enumerate(layout.parts):
+            own = np.flatnonzero(mesh.part == k)
+            for end, sign, e, side in ((part.first, -1.0, own[0], 0), (part.last, 1.0, own[-1], 1)):
                 if end == number:
                     total[:2] += sign * part.axes @ z[part.force : part.force + 2]
-                    total[2] += sign * _moment_at(solution, part, sign)
+                    total[2] += solution.system.ends[e, side]
         total *= layout.force * np.array([1.0, 1.0, layout.length])
         for touch in layout.touches:
             if touch.spec.node in station.ends:
@@ -235,18 +237,6 @@ def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Ar
         held = [value is not None for value in support.motion]
         found[support.node] = np.where(held, total, 0.0)
     return found
-
-
-def _moment_at(solution: Solution, part: Part, sign: float) -> float:
-    """Bending moment at the last (sign 1) or the first place of a part, from that of the whole part's balance."""
-    layout = solution.layout
-    number = next(k for k, item in enumerate(layout.parts) if item is part)
-    own = np.flatnonzero(solution.mesh.part == number)
-    e = own[-1] if sign > 0.0 else own[0]
-    coefficients = rotations(solution.mesh, solution.z, solution.bubbles)[e]
-    slope = float(shapes(np.array([sign]))[1][0] @ coefficients)
-    size = layout.extent(solution.z, part) * solution.mesh.share[e] / 2.0
-    return float(part.EI * slope / size)
 
 
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
