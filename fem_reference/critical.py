@@ -150,7 +150,11 @@ def limit_point(model: Model, states: tuple[Accepted, ...], settings: Settings) 
     _, vector = smallest(model, near.tangent)
     # Where the load has no component along the null vector, the rate has none either.
     share = abs(float(np.sum(vector * c)))
-    return Located(point=_point(model, LIMIT, best[2].t, vector), near=near, vector=vector) if share > 0.5 else None
+    return (
+        Located(point=_point(model, LIMIT, best[2].t, vector), near=near, vector=vector)
+        if share > 0.5
+        else None
+    )
 
 
 def _along(
@@ -268,4 +272,3 @@ def potential(model: Model, at: State) -> float:
     """Energy of the strips and the contacts' springs less the potential of the end loads [J]."""
     springs = sum(touch.pair.penalty * touch.gap**2 / 2 for touch in at.closed)
     return model.strain_energy(at.u) + springs - at.t * float(np.sum(model.load * at.u))
-

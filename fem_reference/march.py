@@ -202,9 +202,7 @@ def _divide(
     return Status.BIFURCATION
 
 
-def _blocked(
-    model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings
-) -> Status | None:
+def _blocked(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings) -> Status | None:
     """Search for what stands in the way of ever shorter steps; return a status if the path ends there."""
     floor = walk.trial < settings.min_step
     line = line_contact(model, walk.track, settings)

@@ -45,10 +45,7 @@ def axis_line(
     place, exact = model.beams[beam], is_exact(model, beam)
     default = max(10, math.ceil(100 / place.beam.elements)) if exact else 10
     xi = np.linspace(0, 1, (points_per_element or default) + 1)
-    if exact:
-        axes = _exact_axes(model, state, place, xi)
-    else:
-        axes = _closed_axes(model, state, system, place, xi)
+    axes = _exact_axes(model, state, place, xi) if exact else _closed_axes(model, state, system, place, xi)
     arcs = np.array(place.arcs[:-1])[:, None] + xi * np.array(place.lengths)[:, None]
     return np.append(arcs[:, :-1], place.beam.length), np.concatenate([*axes[:, :-1], axes[-1, -1:]])
 

@@ -24,8 +24,9 @@ def curvature(model: Model, equilibrium: Equilibrium, k: int) -> float:
 
 def _cut(model: Model, equilibrium: Equilibrium, k: int, touch: Touch) -> tuple[float, float]:
     """Moment and stretch where an exact element is cut."""
-    balance, profile, rods = equilibrium.system.rods, equilibrium.state.profile, model.rods
-    assert balance and profile and rods, "a cut is an exact element's"
+    balance, profile = equilibrium.system.rods, equilibrium.state.profile
+    assert balance is not None, "an exact element has a balance"
+    assert profile is not None, "an exact element has a profile"
     place = int(model.place[touch.element])
     pairs = dict(profile.cuts)[place]
     s = int(balance.entry.place.first[place]) + pairs.index(k)

@@ -110,6 +110,11 @@ class Newton:
         """Largest difference of two states, in largest Newton steps."""
         return self.size((other.q - one.q)[self.model.free])
 
+    def potential(self, state: State) -> float:
+        """Strain energy less the work of the dead loads."""
+        work = state.load_parameter * float(self.model.load @ state.q)
+        return self.assembler.energy(state) - work
+
     def size(self, change: Array) -> float:
         """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
         return float(np.abs(change * self.per_limit).max(initial=0.0))

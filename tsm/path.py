@@ -93,5 +93,3 @@ class PathTangent:
             return 0.0
         length = after.load_parameter - before.load_parameter
         return newton.size(step - length * rates[: model.equations]) / size
-
-

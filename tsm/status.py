@@ -22,7 +22,9 @@ class Status(Enum):
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
     LIMIT_POINT = "the load has a limit point: no equilibrium lies beyond it on this branch"
     BIFURCATION = "the path has a bifurcation point: beyond it this branch is unstable"
-    LINE_CONTACT = "the beam bends as much as a round pin: beyond, it touches along a line instead of at a point"
+    LINE_CONTACT = (
+        "the beam bends as much as a round pin: beyond, it touches along a line instead of at a point"
+    )
     FALLING = "a structure that a contact slipped off was not found to come to rest"
     LOST_CONTACT = "a contact that must persist was released"
     SLIPPED_OFF = "a contact that must persist slipped off the beam"

@@ -277,9 +277,7 @@ class Stepper:
 
     def _meet_limit_point(self) -> Status:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
-        load = limit_load(
-            *((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent))
-        )
+        load = limit_load(*((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent)))
         self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, load)
         return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
 
@@ -302,27 +300,23 @@ class Stepper:
         ahead = t + min(_AHEAD, (self.target - t) / 2)
         _, mode = null_vector(self.newton, at)
         push = mode * (_PUSH / (self.newton.size(mode[: model.equations]) or 1.0))
+        held = self.newton.prescribed(at.state, ahead)
         found: list[tuple[float, Equilibrium]] = []
         for way in (1.0, -1.0):
-            start = self.newton.update(self.newton.prescribed(at.state, ahead), way * push, at.system)
+            start = self.newton.update(held, way * push, at.system)
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(start)
             self.iterations += fall.iterations
             if rest is not None and PathTangent(self.newton, rest).index <= 0:
-                found.append((self._potential(rest.state), rest))
+                found.append((self.newton.potential(rest.state), rest))
         if not found:
             return Status.FALLING
         least, rest = min(found, key=lambda pair: pair[0])
-        self.events[-1] = replace(self.events[-1], released=self._potential(at.state) - least)
+        self.events[-1] = replace(self.events[-1], released=self.newton.potential(held) - least)
         self.history = []
         self._accept(rest)
         self.step = 1.0
         return Status.CONVERGED
-
-    def _potential(self, state: State) -> float:
-        """Strain energy less the work of the dead loads."""
-        loads = state.load_parameter * float(self.model.load @ state.q)
-        return self.newton.assembler.energy(state) - loads
 
     def _refuse(self, part: float) -> Status:
         """Try a part of the step."""

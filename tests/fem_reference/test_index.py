@@ -1,16 +1,11 @@
 """Index of a state: signs of the factorisation against the eigenvalues of the dense reduced Hessian."""
 
 from collections import Counter
-from dataclasses import replace
 
 import numpy as np
-import pytest
 from scipy.linalg import null_space
-from scipy.sparse import csc_matrix
 
 import fem_reference as fr
-from fem_reference import factor
-from fem_reference.factor import band_of, count_negatives, factorise
 from fem_reference.model import build
 from fem_reference.state import Condition, state
 from fem_reference.tangent import linearise
@@ -36,14 +31,17 @@ def drawn(rng, strip):
         side, sign = (("left", 1), ("right", -1))[rng.integers(2)]
         surface = str(rng.choice(["axis", "face"]))
         y = sign * (radius + 0.2)
-        pins.append(
-            fr.Pin(name=f"p{number}", path=((float(x), y), (float(x), 0.0)), radius=float(radius))
-        )
+        pins.append(fr.Pin(name=f"p{number}", path=((float(x), y), (float(x), 0.0)), radius=float(radius)))
         penetration = [None, 1e-9][rng.integers(2)]
         penalty = [None, float(10 ** rng.uniform(-2, 3))][rng.integers(2)]
         contacts.append(
             fr.Contact(
-                node=f"p{number}", strip="a", side=side, surface=surface, penalty=penalty, penetration=penetration
+                node=f"p{number}",
+                strip="a",
+                side=side,
+                surface=surface,
+                penalty=penalty,
+                penetration=penetration,
             )
         )
     if len(strips) == 2:
@@ -59,7 +57,8 @@ def drawn(rng, strip):
         u[part] += 0.02 * changes["height"] * rng.standard_normal(X.shape)
     EI = strips[0].bending_stiffness
     conditions = tuple(
-        Condition(closed=bool(rng.random() < 0.7), force=float(EI * 10 ** rng.uniform(-1, 2))) for _ in contacts
+        Condition(closed=bool(rng.random() < 0.7), force=float(EI * 10 ** rng.uniform(-1, 2)))
+        for _ in contacts
     )
     return model, state(model, u, 1.0, conditions)
 
