@@ -136,21 +136,18 @@ def test_mode_of_a_clamped_column_is_a_quarter_wave() -> None:
 
 
 def toggle(load: float) -> tsm.Structure:
+    """Half of a toggle frame, which keeps its symmetry."""
     section = tsm.Section(EA=1e4, GA=5e3, EI=1.0)
-    beams = (
-        tsm.Beam(name="a", start=(0.0, 0.0), end=(1.0, 0.05), section=section, elements=1, element="exact"),
-        tsm.Beam(name="b", start=(1.0, 0.05), end=(2.0, 0.0), section=section, elements=1, element="exact"),
-    )
-    supports = (tsm.Support(beam="a", end="start"), tsm.Support(beam="b", end="end"))
-    return tsm.Structure(
-        beams=beams, supports=supports, loads=(tsm.Load(beam="a", end="end", force=(0.0, -load)),)
-    )
+    beam = tsm.Beam(name="a", start=(0.0, 0.0), end=(1.0, 0.1), section=section, elements=1, element="exact")
+    supports = (tsm.Support(beam="a", end="start"), tsm.Support(beam="a", end="end", uy=None))
+    push = tsm.Load(beam="a", end="end", force=(0.0, -load))
+    return tsm.Structure(beams=(beam,), supports=supports, loads=(push,))
 
 
 def test_mode_at_a_limit_point_is_driven_by_the_load() -> None:
-    path = tsm.trace(toggle(2.0), arc_length=0.05, steps=25)
+    path = tsm.trace(toggle(10.0), arc_length=0.05, steps=25)
     highest = max(event.load_parameter for event in path.events if event.kind is tsm.EventKind.LIMIT_POINT)
-    newton = Newton(Model(toggle(2.0)), Settings())
+    newton = Newton(Model(toggle(10.0)), Settings())
     state = initial_state(newton.model)
     for part in (*np.linspace(0.05, 0.95, 19), 0.99, 0.999, 0.9999, 0.99999):
         found = newton.solve(replace(state, load_parameter=float(part) * highest))
@@ -198,9 +195,10 @@ def test_contact_without_force_has_an_index_only_if_it_does_not_matter(element: 
         assert index(newton.assembler, found.state, found.system) == expected
 
 
-def held_column(place: float, load: float) -> int:
-    """Index of a column pressed along its axis, held across it by a pin at a place."""
+def held_column(arc: float, load: float) -> int:
+    """Index of a column pressed along its axis, held across it by a pin at an arc position."""
     base = pushed("exact", 2, load=load)
+    place = arc * (1 - load / 1e4)
     pin = tsm.Pin(name="p", path=((place, 0.0), (place, 1e-6)))
     newton = Newton(Model(replace(base, pins=(pin,))), Settings())
     found = newton.solve(replace(initial_state(newton.model), load_parameter=1.0))
@@ -208,11 +206,12 @@ def held_column(place: float, load: float) -> int:
     return index(newton.assembler, found.state, found.system)
 
 
-@pytest.mark.parametrize(("load", "node", "tip"), [(3.0, 0, 0), (30.0, 2, 1), (90.0, 3, 2), (150.0, 4, 3)])
-def test_index_does_not_see_where_a_contact_cuts(load: float, node: int, tip: int) -> None:
-    """Segments without length keep their moment."""
-    assert {held_column(0.5 + d, load) for d in (-1e-2, -1e-5, -1e-12, 0.0, 1e-12, 1e-5, 1e-2)} == {node}
-    assert {held_column(1.0 - d, load) for d in (0.0, 1e-12, 1e-9, 1e-5, 1e-3)} == {tip}
+@pytest.mark.parametrize(("load", "expected"), [(3.0, 0), (30.0, 1), (90.0, 2), (150.0, 3)])
+def test_index_does_not_see_where_a_contact_cuts(load: float, expected: int) -> None:
+    """Segments without length keep their moment. The column with a held tip buckles at 20.2, 59.7, 118.9 and 197.9."""
+    at_node = {held_column(0.5 + d, load) for d in (-1e-2, -1e-5, -1e-12, 0.0, 1e-12, 1e-5, 1e-2)}
+    assert at_node == {expected}
+    assert {held_column(1.0 - d, load) for d in (-1e-6, 0.0, 1e-12, 1e-9, 1e-5, 1e-3)} == {expected}
 
 
 def compare_exact(seed: int, count: int, *, offset: bool) -> Counter[int]:
@@ -248,9 +247,9 @@ def compare_mixed(seed: int, count: int, *, offset: bool) -> Counter[int]:
 
 
 def test_index_is_that_of_the_dense_hessian_on_drawn_states() -> None:
-    seen = compare_exact(1, 10, offset=False) + compare_exact(2, 5, offset=True)
-    seen += compare_mixed(3, 10, offset=False)
-    assert seen.total() == 25
+    seen = compare_exact(1, 6, offset=False) + compare_exact(2, 3, offset=True)
+    seen += compare_mixed(3, 6, offset=False)
+    assert seen.total() == 15
 
 
 @pytest.mark.slow

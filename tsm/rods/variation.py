@@ -31,7 +31,7 @@ _LONGEST = 7.0
 _PIECE = math.pi / 2
 """Root of the same in the pieces of a divided segment."""
 _SHORT = 1e-4
-"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by their length."""
+"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by a length near zero or negative."""
 _HELD = np.array([0, 2, 3, 4, 5])
 """Inputs of a segment that G depends on: angles at both ends, force, length."""
 _NODAL = np.array([2, 8, 3, 4])
@@ -160,7 +160,7 @@ def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | Non
     if transfer is None:
         transfer = rod.condense(at, of, arrival, moment).transfer
     bent = (moment[:, 0] + gain) * bend
-    short = np.abs(length) < _SHORT * whole
+    short = length < _SHORT * whole
     hessian = np.zeros((len(short), 6, 6))
     if short.any():
         long = ~short
