@@ -111,7 +111,7 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     idle = [
         slot
         for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and np.hypot(*touch.force) <= _IDLE * model.force_scale
+        if touch is not None and math.hypot(*touch.force) <= _IDLE * model.force_scale
         for slot in range(model.border_dofs + pair.slot, model.border_dofs + pair.slot + 3)
     ]
     if not idle:
@@ -233,7 +233,8 @@ def _with_rods(
     spare = border
     for part in found.bordered:
         own, spare = _columns(part, aside, spare)
-        right[:, own] = corner[own] = corner[:, own] = 0.0
+        if model.coefficients:
+            right[:, own] = corner[own] = corner[:, own] = 0.0
         right[model.equation[model.exact_dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
