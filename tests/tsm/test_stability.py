@@ -195,6 +195,52 @@ def test_contact_without_force_has_an_index_only_if_it_does_not_matter(element: 
         assert index(newton.assembler, found.state, found.system) == expected
 
 
+def joined_column(load: float, elements: tuple[str, str], pin: float | None) -> tsm.Structure:
+    """A column of two beams, whose end could touch a third that knows no contact force."""
+    section = tsm.Section(EA=EA, GA=GA, EI=1.0)
+    spans = {"a": ((0.0, 0.0), (0.5, 0.0)), "b": ((0.5, 0.0), (1.0, 0.0)), "far": ((0.0, 2.0), (2.0, 2.0))}
+    kinds = dict(zip(spans, (*elements, "timoshenko"), strict=True))
+    beams = tuple(
+        tsm.Beam(
+            name=name,
+            start=start,
+            end=end,
+            section=section,
+            elements=1 if kinds[name] == "exact" else 20,
+            element=kinds[name],
+        )
+        for name, (start, end) in spans.items()
+    )
+    pins = () if pin is None else (tsm.Pin(name="p", path=((pin, -0.01), (pin, -0.01 + 1e-6))),)
+    touching = tsm.ContactPair(node="p", beam="a" if pin is None or pin < 0.5 else "b", offset=0.01)
+    return tsm.Structure(
+        beams=beams,
+        supports=(tsm.Support(beam="a", end="start"), tsm.Support(beam="far", end="start")),
+        pins=pins,
+        contacts=(tsm.ContactPair(node="b.end", beam="far"), *((touching,) if pins else ())),
+        loads=(tsm.Load(beam="b", end="end", force=(-load, 0.0)),),
+    )
+
+
+@pytest.mark.parametrize("pin", [None, 0.3, 0.8])
+def test_index_does_not_depend_on_the_mixture_of_elements(pin: float | None) -> None:
+    seen = set()
+    for load in (1.0, 5.0, 25.0, 60.0, 120.0):
+        found = []
+        for elements in (("exact", "exact"), ("exact", "mixed"), ("mixed", "exact"), ("mixed", "mixed")):
+            newton = Newton(Model(joined_column(load, elements, pin)), Settings())
+            state = initial_state(newton.model)
+            for t in np.linspace(0.1, 1, 10):
+                at = newton.solve(replace(state, load_parameter=float(t)))
+                state = at.state
+            assert at.status is Status.CONVERGED
+            assert np.abs(state.q[newton.model.dofs[1]]).max() < 1e-3
+            found.append(index(newton.assembler, state, at.system))
+        assert len(set(found)) == 1
+        seen.update(found)
+    assert len(seen) >= 3
+
+
 def held_column(arc: float, load: float) -> int:
     """Index of a column pressed along its axis, held across it by a pin at an arc position."""
     base = pushed("exact", 2, load=load)
