@@ -225,7 +225,7 @@ def joined_column(load: float, elements: tuple[str, str], pin: float | None) -> 
 @pytest.mark.parametrize("pin", [None, 0.3, 0.8])
 def test_index_does_not_depend_on_the_mixture_of_elements(pin: float | None) -> None:
     seen = set()
-    for load in (1.0, 5.0, 25.0, 60.0, 120.0):
+    for load in (1.0, 5.0, 25.0, 60.0, 100.0):
         found = []
         for elements in (("exact", "exact"), ("exact", "mixed"), ("mixed", "exact"), ("mixed", "mixed")):
             newton = Newton(Model(joined_column(load, elements, pin)), Settings())
