@@ -29,6 +29,8 @@ _WEAK = 1e-13
 """Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
 _SOFT = 1e5
 """Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
+_DENSE = 1500
+"""Most unknowns of a dense matrix."""
 _IDLE = 1e-9
 """Force of a closed contact, over ``EI/L^2``, that does not push."""
 _TURNS = 4
@@ -97,8 +99,8 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Returns
     -------
     int
-        -1 where there is none: a singular tangent, numbers that are not finite, and closed contacts of the paper's elements, whose
-        force is normal to the chord and so has no energy.
+        -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
     """
     symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
@@ -280,11 +282,37 @@ def _negatives(symmetric: _Symmetric) -> int | None:
         if np.abs(reduced).max() < _SOFT:
             return _negatives_dense(reduced)
     count, width = band.shape[1], len(corner)
+    if count + width > _DENSE:
+        return _negatives_sparse(symmetric)
     whole = np.zeros((count + width, count + width))
     for k, diagonal in enumerate(band[:count]):
         whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
     whole[count:, :count], whole[count:, count:] = right.T * units, corner
     return _negatives_dense(whole)
+
+
+def _negatives_sparse(symmetric: _Symmetric) -> int | None:
+    """The same for a large matrix, by an LU decomposition whose pivots stay on the diagonal; None where they do not."""
+    from scipy.sparse import block_array, coo_array, dia_array
+    from scipy.sparse.linalg import splu
+
+    band, right, corner, units, _ = symmetric
+    count = band.shape[1]
+    lower = dia_array((band, -np.arange(len(band))), shape=(count, count))
+    scale = dia_array((units[None], [0]), shape=(count, count))
+    inside = scale @ (lower + dia_array((band[1:], -np.arange(1, len(band))), shape=(count, count)).T) @ scale
+    beside = coo_array(right * units[:, None])
+    whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
+    options = {"SymmetricMode": True, "Equil": False}
+    try:
+        lu = splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    except RuntimeError:
+        return None
+    pivots = lu.U.diagonal()
+    smallest = _EPS * np.abs(whole.diagonal()).max()
+    if (lu.perm_r != lu.perm_c).any() or not (np.abs(pivots) > smallest).all():
+        return None
+    return int(np.count_nonzero(pivots < 0))
 
 
 def _negatives_dense(matrix: Array) -> int | None:

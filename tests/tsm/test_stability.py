@@ -298,6 +298,19 @@ def test_index_is_that_of_the_dense_hessian_on_drawn_states() -> None:
     assert seen.total() == 15
 
 
+@pytest.mark.parametrize(("factor", "expected"), [(2, 1), (26, 3)])
+def test_large_matrices_are_counted_sparse(
+    factor: float, expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    load = factor * critical_loads("clamped-free", 1)[0]
+    newton, found = straight(column("clamped-free", load, "mixed", 40))
+    held = [held_column(0.5, load) for load in (30.0, 150.0)]
+    monkeypatch.setattr("tsm.stability._DENSE", 0)
+    assert index(newton.assembler, found.state, found.system) == expected
+    monkeypatch.setattr("tsm.stability._SOFT", 0.0)
+    assert [held_column(0.5, load) for load in (30.0, 150.0)] == held == [1, 3]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_index_is_that_of_the_dense_hessian_on_many_drawn_states(seed: int) -> None:
