@@ -7,7 +7,6 @@ The energy's Hessian, bordered by the contacts, is a symmetric matrix K::
 
 A contact force is the multiplier of a position that is held: with m of them the Hessian over the variations that the closed
 contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968), and the same holds with a flexibility at the contact.
-``negatives(K) = negatives(A) + negatives(D - B^T A^-1 B)``: most bands pass Cholesky's factorisation and have none.
 """
 
 from __future__ import annotations
@@ -16,19 +15,14 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs, dsytrf
 
 from tsm.elements.properties import Array
+from tsm.inertia import Symmetric, negatives
 from tsm.rods.layout import OWN
 from tsm.rods.variation import Bordered, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
-_EPS = float(np.finfo(float).eps)
-_WEAK = 1e-13
-"""Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
-_SOFT = 1e5
-"""Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
 _IDLE = 1e-9
 """Force of a closed contact, over ``EI/L^2``, that does not push."""
 _TURNS = 4
@@ -56,30 +50,6 @@ class Mode(NamedTuple):
     driven: float
 
 
-class _Symmetric(NamedTuple):
-    """Symmetric tangent, a band with a border.
-
-    Attributes
-    ----------
-    band : ndarray, shape (k + 1, n)
-        LAPACK's lower band storage.
-    right : ndarray, shape (n, b)
-        Border columns, for plain numbers as unknowns.
-    corner : ndarray, shape (b, b)
-        Where they meet, likewise.
-    units : ndarray, shape (n,)
-        Of the unknowns of the band, over the root of an energy.
-    multipliers : int
-        Unknowns that are forces or moments.
-    """
-
-    band: Array
-    right: Array
-    corner: Array
-    units: Array
-    multipliers: int
-
-
 def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
 
@@ -97,13 +67,13 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Returns
     -------
     int
-        -1 where there is none: a singular tangent, numbers that are not finite, and closed contacts of the paper's elements, whose
-        force is normal to the chord and so has no energy.
+        -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
     """
     symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
         return UNDEFINED
-    found = _negatives(symmetric)
+    found = negatives(symmetric)
     if found is None:
         return UNDEFINED
     held = found - symmetric.multipliers
@@ -111,18 +81,18 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     idle = [
         slot
         for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and np.hypot(*touch.force) <= _IDLE * model.force_scale
+        if touch is not None and math.hypot(*touch.force) <= _IDLE * model.force_scale
         for slot in range(model.border_dofs + pair.slot, model.border_dofs + pair.slot + 3)
     ]
     if not idle:
         return held
-    free = _negatives(_freed(symmetric, idle))
+    free = negatives(_freed(symmetric, idle))
     return (
         held if free is not None and free - symmetric.multipliers + 2 * len(idle) // 3 == held else UNDEFINED
     )
 
 
-def _freed(symmetric: _Symmetric, idle: list[int]) -> _Symmetric:
+def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
     """The same without the force and arc position of contacts that carry no force."""
     right, corner = symmetric.right.copy(), symmetric.corner.copy()
     right[:, idle] = corner[idle] = corner[:, idle] = 0.0
@@ -180,7 +150,7 @@ def _bordered(plain: Any, column: Array, row: Array) -> Any:
     return block_array(blocks, format="csc")
 
 
-def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> _Symmetric | None:
+def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> Symmetric | None:
     """Symmetric tangent, None where the tangent is not symmetric."""
     model, closed = assembler.model, 0
     for pair, touch in zip(model.pairs, state.touches, strict=True):
@@ -192,7 +162,7 @@ def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> _Sy
     if model.rods is not None:
         return _with_rods(assembler, state, system, units, 2 * closed)
     tangent, beside = system.tangent, units[model.banded :]
-    return _Symmetric(
+    return Symmetric(
         band=tangent.band[:, 2 * assembler.k :].T,
         right=tangent.right[: model.banded] * beside,
         corner=tangent.corner * beside * beside[:, None],
@@ -203,7 +173,7 @@ def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> _Sy
 
 def _with_rods(
     assembler: Assembler, state: State, system: Linearisation, units: Array, multipliers: int
-) -> _Symmetric:
+) -> Symmetric:
     """The same with exact elements, whose own tangent gives way to their second variation."""
     model = assembler.model
     assert model.rods is not None, "the model has exact elements"
@@ -233,7 +203,8 @@ def _with_rods(
     spare = border
     for part in found.bordered:
         own, spare = _columns(part, aside, spare)
-        right[:, own] = corner[own] = corner[:, own] = 0.0
+        if model.coefficients:
+            right[:, own] = corner[own] = corner[:, own] = 0.0
         right[model.equation[model.exact_dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
@@ -249,7 +220,7 @@ def _with_rods(
         [1 / math.sqrt(energy)] * a + [math.sqrt(energy)] * m for a, m in zip(angles, moments, strict=True)
     ]
     beside = np.concatenate([units[model.banded :], *own_units])
-    return _Symmetric(
+    return Symmetric(
         band=band[:, 2 * assembler.k :].T,
         right=right[: model.banded] * beside,
         corner=corner * beside * beside[:, None],
@@ -265,34 +236,3 @@ def _columns(part: Bordered, aside: int, spare: int) -> tuple[Array, int]:
     count = int(np.count_nonzero(new))
     own[new] = np.arange(spare, spare + count)
     return own, spare + count
-
-
-def _negatives(symmetric: _Symmetric) -> int | None:
-    """Number of negative eigenvalues, None where one of them is zero or not a number."""
-    band, right, corner, units, _ = symmetric
-    factor, info = dpbtrf(band, lower=1)
-    if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
-        if not len(corner):
-            return 0
-        inside, _ = dpbtrs(factor, right, lower=1)
-        reduced = corner - right.T @ inside
-        if np.abs(reduced).max() < _SOFT:
-            return _negatives_dense(reduced)
-    count, width = band.shape[1], len(corner)
-    whole = np.zeros((count + width, count + width))
-    for k, diagonal in enumerate(band[:count]):
-        whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
-    whole[count:, :count], whole[count:, count:] = right.T * units, corner
-    return _negatives_dense(whole)
-
-
-def _negatives_dense(matrix: Array) -> int | None:
-    """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
-    factors, exchanges, _ = dsytrf(matrix, lower=1)
-    single = exchanges > 0
-    pivots = factors.diagonal()[single]
-    smallest = _EPS * np.abs(matrix.diagonal()).max(initial=0.0)
-    if not np.isfinite(factors).all() or (np.abs(pivots) <= smallest).any():
-        return None
-    # the pivots of two rows are indefinite
-    return int(np.count_nonzero(pivots < 0)) + int(np.count_nonzero(~single)) // 2

@@ -117,7 +117,8 @@ def drawn_equilibrium(
         start = newton.prescribed(state, float(t))
         if t == 1:
             start = replace(start, q=start.q + stray)
-        found = newton.solve(start)
+        with np.errstate(all="ignore"):
+            found = newton.solve(start)
         if found.status is not Status.CONVERGED:
             return None
         state = found.state

@@ -22,7 +22,7 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.rods.assembly import RodBalance, Rods, profile_of, touch_of
-from tsm.rods.layout import CUT, OWN
+from tsm.rods.layout import COLUMNS, CUT, OWN
 from tsm.rods.shape import plain_shape
 from tsm.state import State
 
@@ -31,11 +31,7 @@ _LONGEST = 7.0
 _PIECE = math.pi / 2
 """Root of the same in the pieces of a divided segment."""
 _SHORT = 1e-4
-"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by their length."""
-_HELD = np.array([0, 2, 3, 4, 5])
-"""Inputs of a segment that G depends on: angles at both ends, force, length."""
-_NODAL = np.array([2, 8, 3, 4])
-"""The same, the length left out, among the nine degrees of freedom of an element."""
+"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by a length near zero or negative."""
 _PULL = np.zeros((OWN, OWN))
 """Derivatives of ``n . (r_j - r_i)``, and a unit for the moment, which has been eliminated."""
 _PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
@@ -89,12 +85,17 @@ class _Pieces(NamedTuple):
     short : ndarray of bool, shape (p,)
         Those that keep their moment.
     hessian : ndarray, shape (p, 6, 6)
-        Of G; of short pieces with the moment at the start as the last unknown.
+        Of G, over the inputs of `rod`; only those of short pieces have the moment.
     """
 
     counts: Array
     short: Array
     hessian: Array
+
+    @property
+    def divided(self) -> bool:
+        """Whether any segment is."""
+        return len(self.short) > len(self.counts)
 
 
 def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
@@ -112,16 +113,15 @@ def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | N
         Of the segments there, see `rod.Condensed`, where it is known.
     """
     pieces = _pieces(rods, state, balance, transfer)
-    place, cuts = balance.entry.place, profile_of(state).cuts
-    begin = np.concatenate([[0], np.cumsum(pieces.counts)])
-    first = begin[place.first]
-    many = (begin[place.last + 1] - first > 1).nonzero()[0].tolist()
-    tangent = np.empty((len(first), OWN, OWN))
-    if len(many) < len(first):
+    place, pairs = balance.entry.place, dict(profile_of(state).cuts)
+    begin = np.cumsum(pieces.counts) - pieces.counts
+    divided = {int(place.owner[s]) for s in np.flatnonzero(pieces.counts > 1)} if pieces.divided else set()
+    many = sorted(divided.union(pairs))
+    tangent = np.empty((len(place.first), OWN, OWN))
+    if len(many) < len(tangent):
         tangent[:] = _PULL
-        tangent[:, _NODAL[:, None], _NODAL] += pieces.hessian[first, :4, :4]
+        tangent[:, COLUMNS[:, None], COLUMNS] += pieces.hessian[begin[place.first], :5, :5]
         tangent = _without_force(tangent)
-    pairs = dict(cuts)
     bordered = tuple(_bordered(rods, state, balance, pieces, e, pairs.get(e, ())) for e in many)
     for part in bordered:
         tangent[part.element] = part.matrix[:OWN, :OWN]
@@ -159,15 +159,10 @@ def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | Non
         arrival, gain = rod.arrival(at, of, start, moment, end), of.sums[0, :, 0] * length
     if transfer is None:
         transfer = rod.condense(at, of, arrival, moment).transfer
-    bent = (moment[:, 0] + gain) * bend
-    short = np.abs(length) < _SHORT * whole
-    hessian = np.zeros((len(short), 6, 6))
+    bent, short = (moment[:, 0] + gain) * bend, length < _SHORT * whole
+    hessian = _hessian(transfer, bent)
     if short.any():
-        long = ~short
         hessian[short] = _hessian_with_moment(transfer[short], bent[short])
-        hessian[long, :5, :5] = _hessian(transfer[long], bent[long])
-    else:
-        hessian[:, :5, :5] = _hessian(transfer, bent)
     return _Pieces(counts, short, hessian)
 
 
@@ -191,30 +186,34 @@ def _divided(
 
 
 def _hessian(transfer: Array, bent: Array) -> Array:
-    """Hessians of G (s, 5, 5): the moment at the start is that with which the angle arrives; ``dG/dh = - m^2/2EI - ...`` at the end."""
-    by = transfer[:, :, _HELD]
-    moment = -by[:, 0] / transfer[:, 0, 1, None]
-    arriving = by[:, 1:] + transfer[:, 1:, 1, None] * moment[:, None, :]
-    hessian = np.empty((len(by), 5, 5))
-    hessian[:, 0], hessian[:, 1] = -moment, arriving[:, 0]
-    hessian[:, 2:4] = -arriving[:, 1:]
-    hessian[:, 4, :4] = hessian[:, :4, 4]
-    hessian[:, 4, 4] = -bent * hessian[:, 1, 4]
-    return (hessian + np.swapaxes(hessian, 1, 2)) / 2
+    """Hessians of G (s, 6, 6) over the inputs of segments: the moment at the start is that with which the angle arrives.
+
+    The length's own is that of ``dG/dh = - m^2/2EI - N - N^2/2EA - Q^2/2GA`` at the end.
+    """
+    with np.errstate(all="ignore"):
+        moment = transfer[:, 0, :6] / -transfer[:, 0, 1, None]
+        arriving = transfer[:, 1:, :6] + transfer[:, 1:, 1, None] * moment[:, None, :]
+    hessian = np.empty((len(transfer), 6, 6))
+    hessian[:, 0], hessian[:, 2] = -moment, arriving[:, 0]
+    np.negative(arriving[:, 1:], out=hessian[:, 3:5])
+    hessian[:, 1] = hessian[:, :, 1] = 0.0
+    hessian[:, 5, :5] = hessian[:, :5, 5]
+    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
+    return hessian
 
 
 def _hessian_with_moment(transfer: Array, bent: Array) -> Array:
-    """Hessians (s, 6, 6) of ``G* (m, phi_j, n, h) - m phi_i``, whose extremum in m is G; regular at ``h = 0``."""
-    by = transfer[:, :, [2, 3, 4, 5, 1]]
-    angle = -by[:, 0] / transfer[:, 0, 0, None]
-    arriving = by[:, 1:] + transfer[:, 1:, 0, None] * angle[:, None, :]
-    hessian = np.zeros((len(by), 6, 6))
-    hessian[:, 0, 5] = hessian[:, 5, 0] = -1
-    hessian[:, 1, 1:], hessian[:, 5, 1:] = arriving[:, 0], angle
-    hessian[:, 2:4, 1:] = -arriving[:, 1:]
-    hessian[:, 4, [1, 2, 3, 5]] = hessian[:, [1, 2, 3, 5], 4]
-    hessian[:, 4, 4] = -bent * hessian[:, 1, 4]
-    return (hessian + np.swapaxes(hessian, 1, 2)) / 2
+    """The same of ``G* (m, phi_j, n, h) - m phi_i``, whose extremum in m is G; regular at ``h = 0``."""
+    angle = transfer[:, 0, :6] / -transfer[:, 0, 0, None]
+    angle[:, 0] = 0.0
+    arriving = transfer[:, 1:, :6] + transfer[:, 1:, 0, None] * angle[:, None, :]
+    hessian = np.zeros((len(transfer), 6, 6))
+    hessian[:, 1], hessian[:, 2], hessian[:, 3:5] = angle, arriving[:, 0], -arriving[:, 1:]
+    hessian[:, :, 0] = 0.0
+    hessian[:, 0, 1] = hessian[:, 1, 0] = -1.0
+    hessian[:, 5, :5] = hessian[:, :5, 5]
+    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
+    return hessian
 
 
 def _bordered(
@@ -248,7 +247,7 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, 
     fixed : ndarray, shape (n, n)
         Second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``.
     inputs : ndarray, shape (pieces, 6, n)
-        Angles at both ends, force, length, and of short pieces moment, by the element's unknowns.
+        Inputs of the pieces by the element's unknowns; only short pieces have a moment.
     directions : ndarray, shape (contacts, 5, n)
         Angle, force before and contact force of every contact by the same.
     """
@@ -266,9 +265,9 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, 
         for part in range(count):
             arriving = rows[own_angle] if part < count - 1 else rows[own + 3] if ahead else rows[8]
             own_angle += part < count - 1
-            inputs[piece, :5] = [angle, arriving, *force, (ends - arc) / count]
+            inputs[piece, [0, 2, 3, 4, 5]] = [angle, arriving, *force, (ends - arc) / count]
             if short[piece]:
-                inputs[piece, 5] = rows[own_moment]
+                inputs[piece, 1] = rows[own_moment]
                 own_moment += 1
             angle, piece = arriving, piece + 1
         arc = ends
