@@ -13,6 +13,15 @@ class OutputError(ValueError):
     """A place where nothing can be written: one line."""
 
 
+def printable(text: object) -> str:
+    r"""Return `text` with what a terminal would obey, or cannot show, as escapes.
+
+    >>> printable("red \x1b[31m")
+    'red \\x1b[31m'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name in the folder of `path`; rename it to `path` once the block has written it.

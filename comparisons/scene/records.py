@@ -100,13 +100,16 @@ class BeamSpec:
         apply_rules(self)
         exactly_one_of(vars(self), (("poissons_ratio",), ("shear_modulus",)))
         exactly_one_of(vars(self), (("width", "height"), ("area", "second_moment")))
-        if not 0.0 < self.length < math.inf:
-            raise FieldError("end", self.end, "must differ from start, at a finite distance")
-        for stiffness in ("EA", "GA", "EI"):
-            if not 0.0 < getattr(self, stiffness) < math.inf:
-                raise FieldError(
-                    "youngs_modulus", self.youngs_modulus, f"{stiffness} is out of floating-point range"
-                )
+        shortest = 1.0 / rules.LARGEST
+        if not shortest <= self.length <= rules.LARGEST:
+            rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
+            raise FieldError("end", self.end, rule)
+        least, most = rules.RANGE
+        for name in ("EA", "GA", "EI"):
+            stiffness = getattr(self, name)
+            if not least <= stiffness <= most:
+                rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
+                raise FieldError("youngs_modulus", self.youngs_modulus, rule)
 
     @property
     def length(self) -> float:
