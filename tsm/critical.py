@@ -23,12 +23,13 @@ from tsm.axis import axis_line
 from tsm.elements.properties import Array
 from tsm.newton import Equilibrium, Newton
 from tsm.path import PathTangent
+from tsm.stability import mode
 
 _SOLVES = 60
 _LOCATED = 1e-13
 """Bracket of a critical load parameter at which it is found."""
 _SHIFT = 1e-6
-"""Length of a mode, in largest Newton steps, by which the axis is moved to see its shape."""
+"""Part of a mode by which the axis is moved to see its shape."""
 
 
 class CriticalKind(Enum):
@@ -70,8 +71,8 @@ class Bracket(NamedTuple):
     after: tuple[float, int]
 
 
-def null_vector(newton: Newton, equilibrium: Equilibrium, across: Array | None = None) -> tuple[float, Array]:
-    """Return g of the module's equation and the mode v, over the equations and the contacts' unknowns.
+def _bordered(newton: Newton, equilibrium: Equilibrium, across: Array | None = None) -> tuple[float, Array]:
+    """Return g and v of the module's equation, v over the equations and the contacts' unknowns.
 
     Parameters
     ----------
@@ -124,11 +125,11 @@ def locate_bifurcation(
         equilibrium = solve(t)
         if equilibrium is None:
             return None
-        g, v = null_vector(newton, equilibrium, across)
+        g, v = _bordered(newton, equilibrium, across)
         if across is None:
             weights = newton.per_unknown**2
             across, g = weights * v / float(v @ (weights * v)), float("nan")
-            g, _ = null_vector(newton, equilibrium, across)
+            g, _ = _bordered(newton, equilibrium, across)
         known = [*known[-1:], (t, g)]
         if PathTangent(newton, equilibrium).index == index:
             low, found = t, equilibrium
@@ -171,20 +172,28 @@ def critical_point(
     newton: Newton, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float
 ) -> CriticalPoint:
     """Critical point with the mode of the tangent at an equilibrium beside it."""
-    _, v = null_vector(newton, equilibrium)
-    largest = newton.size(v[: newton.model.equations])
-    state = equilibrium.state
-    shapes: dict[str, Array] = {}
-    if largest > 0:
-        moved = newton.update(state, v * (_SHIFT / largest), equilibrium.system)
-        system = newton.assembler.linearise(moved)
-        for beam in newton.model.beams:
-            _, here = axis_line(newton.model, state, equilibrium.system, beam)
-            _, there = axis_line(newton.model, moved, system, beam)
-            shapes[beam] = there - here
-    most = max((float(np.abs(shape).max()) for shape in shapes.values()), default=0.0) or 1.0
-    return CriticalPoint(
-        kind=kind,
-        load_parameter=load_parameter,
-        mode={beam: shape / most for beam, shape in shapes.items()},
-    )
+    found = mode_shape(newton, equilibrium)
+    shapes = {} if found is None else found[1]
+    return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
+
+
+def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
+    """Buckling mode near a critical point.
+
+    Returns
+    -------
+    tuple or None
+        Change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the axes; None without a single mode.
+    """
+    model, state = newton.model, equilibrium.state
+    found = mode(newton.assembler, state, equilibrium.system)
+    if found is None:
+        return None
+    moved = newton.update(state, found.x * _SHIFT, equilibrium.system)
+    system = newton.assembler.linearise(moved)
+    shapes = {
+        beam: axis_line(model, moved, system, beam)[1] - axis_line(model, state, equilibrium.system, beam)[1]
+        for beam in model.beams
+    }
+    most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
+    return found.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}

@@ -23,7 +23,7 @@ from tsm.critical import (
     critical_point,
     limit_load,
     locate_bifurcation,
-    null_vector,
+    mode_shape,
 )
 from tsm.crossing import crossing
 from tsm.elements.properties import Array
@@ -64,8 +64,8 @@ _SHORTENED = 0.1
 """Shortest part of a refused step that is tried next."""
 _STRAIGHT = 0.02
 """A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
-_AHEAD, _PUSH = 1e-4, 0.02
-"""Load parameter beyond a critical point, and length of its mode in largest Newton steps, from where a structure falls."""
+_AHEAD, _PUSH = 1e-4, 0.006
+"""Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
@@ -298,8 +298,10 @@ class Stepper:
         """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
         t, model = at.state.load_parameter, self.model
         ahead = t + min(_AHEAD, (self.target - t) / 2)
-        _, mode = null_vector(self.newton, at)
-        push = mode * (_PUSH / (self.newton.size(mode[: model.equations]) or 1.0))
+        found_mode = mode_shape(self.newton, at)
+        if found_mode is None:
+            return Status.FALLING
+        push = found_mode[0] * (_PUSH * model.length)
         held = self.newton.prescribed(at.state, ahead)
         found: list[tuple[float, Equilibrium]] = []
         for way in (1.0, -1.0):

@@ -17,6 +17,8 @@ class Verdict(StrEnum):
 
     RIGHT = "right"
     STOPPED = "stopped"
+    WITHDRAWN = "withdrawn"
+    """An answer that its own checks refuse: neither right nor a stop in time."""
     WRONG = "wrong"
 
 
@@ -56,7 +58,7 @@ class Judgement:
         The cell.
     verdict : Verdict
         Wrong is an error above what is allowed, at any load parameter that was reached, and a case without a status of its own;
-        an answer that fails its own checks is withdrawn, and claims nothing.
+        an answer that fails its own checks is withdrawn, and counts neither as right nor as stopped.
     status, message : str
         How the solution ended.
     reached : float
@@ -78,6 +80,12 @@ class Judgement:
     iterations: int
     cutbacks: int
     seconds: float
+
+    @property
+    def needless(self) -> bool:
+        """Whether an answer is withdrawn of which everything that was reached is within what is allowed."""
+        held = bool(self.findings) and all(finding.holds for finding in self.findings)
+        return self.verdict is Verdict.WITHDRAWN and held
 
     @property
     def decisive(self) -> Finding | None:
@@ -106,8 +114,9 @@ def judged(cell: Cell, results: Results) -> Judgement:
     reached = bool(len(own.load_parameter))
     found = [check.finding(cell.case, own, results) for check in cell.checks] if reached else []
     findings = tuple(finding for finding in found if finding is not None)
-    withdrawn = own.status == CHECK_FAILED
-    if own.status in UNSETTLED or not (withdrawn or all(finding.holds for finding in findings)):
+    if own.status == CHECK_FAILED:
+        verdict = Verdict.WITHDRAWN
+    elif own.status in UNSETTLED or not all(finding.holds for finding in findings):
         verdict = Verdict.WRONG
     else:
         verdict = Verdict.RIGHT if own.status == COMPLETED else Verdict.STOPPED

@@ -10,7 +10,7 @@ from typing import Protocol
 from comparisons.extremes.cell import Judgement, Verdict
 from comparisons.report import Section
 
-MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WRONG: "✗ "}
+MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
 """What tells the verdicts apart without colour."""
 STYLE = """
 <style>
@@ -19,12 +19,14 @@ STYLE = """
 .map tbody th { position: sticky; left: 0; background: var(--paper); }
 .map td, .key td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: .75rem; border: 0; print-color-adjust: exact; }
 td.stopped { background: repeating-linear-gradient(45deg, var(--line) 0 6px, transparent 6px 9px) var(--paper); outline: 1px solid var(--line); }
+td.withdrawn { outline: 2px dashed var(--line); }
 td.wrong { background: #d55e00; color: #fff; font-weight: 700; }
 td.none { color: var(--line); } .key td { min-width: 0; }
 </style>
 """
 LEGEND = """A cell shows the largest error of force, arc position, moment and tip over all load parameters reached: of the comparisons that
-must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason. Hover over it to see what it
+must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason, one that is withdrawn by its own
+checks the error that it would have had. Hover over it to see what it
 is compared with, what is allowed and why."""
 SHADES = (
     (-14.0, (8, 48, 107)),
@@ -64,9 +66,12 @@ def sections(axes: Iterable[Titled], judgements: Sequence[Judgement]) -> list[Se
 
 
 def counted(judgements: Sequence[Judgement]) -> str:
-    """Return how many cells there are, and how many of each verdict."""
+    """Return how many cells there are, how many of each verdict, and how many are withdrawn although they are right."""
     number = Counter(item.verdict for item in judgements)
-    return f"{len(judgements)} cells: " + ", ".join(f"{number[verdict]} {verdict}" for verdict in Verdict)
+    needless = sum(item.needless for item in judgements)
+    counts = {verdict: f"{number[verdict]} {verdict}" for verdict in Verdict}
+    counts[Verdict.WITHDRAWN] += f" ({needless} needlessly)" if needless else ""
+    return f"{len(judgements)} cells: " + ", ".join(counts.values())
 
 
 def _key() -> str:
@@ -75,7 +80,7 @@ def _key() -> str:
     )
     return (
         f'<table class="key"><tr><th>completed and right, error</th>{shades}'
-        f'<td class="stopped">{MARKS[Verdict.STOPPED]}stopped by name</td><td class="wrong">{MARKS[Verdict.WRONG]}wrong</td></tr></table>'
+        f'<td class="stopped">{MARKS[Verdict.STOPPED]}stopped by name</td><td class="withdrawn">{MARKS[Verdict.WITHDRAWN]}withdrawn by its own checks</td><td class="wrong">{MARKS[Verdict.WRONG]}wrong</td></tr></table>'
     )
 
 

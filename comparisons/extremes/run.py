@@ -93,7 +93,7 @@ def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tupl
 
 
 def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
-    """Return how many cells of each axis are right, stopped and wrong."""
+    """Return how many cells of each axis are right, stopped, withdrawn and wrong."""
     return {
         axis.name: {str(verdict): number[verdict] for verdict in Verdict}
         for axis in AXES
@@ -110,6 +110,7 @@ def row(item: Judgement) -> Row:
         "value": item.cell.column,
         "label": item.cell.case.label,
         "verdict": str(item.verdict),
+        "needless": item.needless,
         "status": item.status,
         "reached": item.reached,
         "error": decisive.error if decisive else None,

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import Curve, averaging, band_slopes
+from fem_reference.curve import Curve, averaging, band_slopes, closest
 from fem_reference.model import build
 
 STEP = 1e-30
@@ -234,3 +234,22 @@ def test_a_curve_of_three_stations_at_any_length(problem, length):
     far = tuple((length * x, length * y) for x, y in path)
     other = build(problem(path=far, mesh=(2, 1), element="Q1", **scaled)).pairs[0].curve
     np.testing.assert_allclose(other.slopes * length, unit.slopes, atol=1e-12)
+
+
+@pytest.mark.parametrize("point", [(0.521, 0.105), (0.480, 0.104), (0.522, 0.107), (0.478, 0.107)])
+def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
+    """Newton's slope nearly vanishes at the start, and its step would leave the foot: Gauss-Newton's does not."""
+    s = np.linspace(0, 1, 6)
+    curve = Curve(
+        stations=s,
+        slopes=CubicSpline(s, np.eye(6))(s, 1),
+        rows=eye_array(6, format="csr"),
+        offsets=np.zeros(1),
+        kernel=np.ones(1),
+    )
+    X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
+    zeta, stationary = closest(curve, X, np.array(point))
+    places = np.linspace(0, 1, 4001)
+    distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
+    assert stationary
+    assert zeta == pytest.approx(places[np.argmin(distances)], abs=2.5e-4)

@@ -110,8 +110,8 @@ def test_the_stable_branch_is_the_elastica(degrees: float) -> None:
 
 def test_the_primary_branch_is_labelled_unstable() -> None:
     first = buckling_load("pinned", SECTION)
-    result = tsm.solve(column("pinned", 5 * first), steps(10), tsm.Settings(branch="primary"))
-    assert result.index.tolist() == [0, 0, 1, 1, 1, 1, 1, 1, 2, 2]
+    result = tsm.solve(column("pinned", 5 * first), steps(9), tsm.Settings(branch="primary"))
+    assert result.index.tolist() == [0, 1, 1, 1, 1, 1, 1, 2, 2]
     assert [point.kind.value for point in result.critical] == ["bifurcation", "bifurcation"]
     assert 5 * result.critical[1].load_parameter == pytest.approx(4.0, rel=5e-3)
 
@@ -173,9 +173,14 @@ def test_load_control_ends_at_the_limit_point(count: int) -> None:
 
 
 def test_a_structure_snaps_through_to_the_stable_branch() -> None:
+    traced = tsm.trace(toggle(40.0), arc_length=0.02, steps=30)
+    beyond = traced.load_parameter[12:]
+    last = 12 + int(np.argmax((beyond[:-1] < 1.0) & (beyond[1:] >= 1.0)))
+    part = (1.0 - traced.load_parameter[last]) / (traced.load_parameter[last + 1] - traced.load_parameter[last])
+    apex = traced.tips["left"][last : last + 2, 1]
     result = tsm.solve(toggle(40.0), steps(20), tsm.Settings(branch="stable"))
     assert (result.index == 0).all()
-    assert result.tips["left"][-1, 1] < -0.3
+    assert result.tips["left"][-1, 1] == pytest.approx(apex[0] + part * (apex[1] - apex[0]), abs=2e-3)
     snap = next(event for event in result.events if event.kind is tsm.EventKind.LIMIT_POINT)
     assert snap.released > 0
 
@@ -230,7 +235,7 @@ def test_another_branch_is_not_explained_by_the_tangent() -> None:
     newton = Newton(bent[0].model, tsm.Settings())
     before, after, mirrored = bent[0].equilibria[0], bent[0].equilibria[1], bent[1].equilibria[1]
     tangent = PathTangent(newton, before)
-    assert tangent.missed(before.state, after.state) < 0.1
+    assert tangent.missed(before.state, after.state) < 0.15
     assert tangent.missed(before.state, mirrored.state) > 0.9
 
 
