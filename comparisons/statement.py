@@ -16,6 +16,8 @@ import numpy as np
 
 from comparisons.response import ContactEvent, Response, SupportHistory
 
+CRITICAL = ("limit-point", "bifurcation")
+"""Events that belong to the path and to no contact."""
 DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 
@@ -67,6 +69,11 @@ def as_dict(response: Response) -> dict[str, Any]:
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
         "tips": response.tips,
         "events": None if response.events is None else [asdict(event) for event in response.events],
+        "index": response.index,
+        "critical": [
+            {"kind": point.kind, "load_parameter": point.load_parameter, "mode": point.mode}
+            for point in response.critical
+        ],
         "newton_iterations": response.newton_iterations,
         "cutbacks": response.cutbacks,
         "unknowns": response.unknowns,
@@ -112,6 +119,7 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
         ]
     rows += _event_rows(response.events or (), force, length)
     rows += [
+        ("stability", stability(response)),
         ("unknowns", f"{response.unknowns}"),
         ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
         ("seconds", f"{response.wall_seconds:.3f}"),
@@ -123,12 +131,31 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
     )
 
 
+def stability(response: Response) -> str:
+    """Say in a few words where a response is stable."""
+    if response.index is None:
+        return "not stated by this model"
+    unstable, unknown = response.index > 0, response.index < 0
+    parts = []
+    if unstable.any():
+        first = response.load_parameter[np.argmax(unstable)]
+        parts.append(f"UNSTABLE from load parameter {first:.6g} on, index up to {response.index.max()}")
+    elif not unknown.all():
+        parts.append("stable")
+    if unknown.any():
+        parts.append(f"index not defined at {int(unknown.sum())} of {len(unknown)} load parameters")
+    return "; ".join(parts)
+
+
 def _event_rows(events: Sequence[ContactEvent], force: str, length: str) -> list[tuple[str, str]]:
     """Count the events, and list those that change which contacts are closed."""
     counts = Counter(event.kind for event in events)
     rows = [("events", ", ".join(f"{kind} {count}" for kind, count in counts.items()))] if counts else []
     for event in events:
-        if event.kind != "pass-through":
+        if event.kind in CRITICAL:
+            jump = f", {event.released:.6g} {force} {length} released" if event.released else ""
+            rows.append((f"  {event.kind}", f"at {event.load_parameter:.9g}{jump}"))
+        elif event.kind != "pass-through":
             text = (
                 f"{event.pair} at {event.load_parameter:.6g}: arc position {event.arc_position:.6g} {length}"
             )

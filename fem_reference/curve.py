@@ -176,21 +176,54 @@ def closest(curve: Curve, X: Array, point: Array) -> tuple[Any, bool]:
     """Coordinate of the closest point, by Newton's method from the closest station, and whether it is stationary.
 
     The curve's end pieces are continued by one spacing, so that a point within round-off of an end, or beyond it
-    during an iteration, still has a projection.
+    during an iteration, still has a projection. Near a centre of curvature the root is kept between the neighbouring stations.
     """
     s = curve.stations
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
-    zeta = s[np.argmin(((X - point).real ** 2).sum(axis=1))] + 0 * X[0, 0]
+    k = int(np.argmin(((X - point).real ** 2).sum(axis=1)))
+    zeta, flat = s[k] + 0 * X[0, 0], False
     for _ in range(_PROJECTION_STEPS):
-        r, r1, r2 = curve.basis(zeta) @ X
-        slope = r1 @ r1 + (r - point) @ r2
+        fall, slope, size = _fall(curve, X, point, zeta)
         # Beyond the centre of curvature, Gauss-Newton instead.
-        if slope.real <= 0.1 * (r1 @ r1).real:
-            slope = r1 @ r1
-        step = -((r - point) @ r1) / slope
+        if slope.real <= 0.1 * size.real:
+            if not flat:
+                flat, found = True, _bracketed(curve, X, point, k)
+                if found is not None:
+                    return found, True
+            slope = size
+        step = -fall / slope
         last, zeta = zeta, zeta + step if np.iscomplexobj(X) else min(max(zeta + step, low), high)
         if abs(step) <= 1e-14 * (s[-1] - s[0]):
             return zeta, True
         if zeta == last:
             break
     return zeta, False
+
+
+def _fall(curve: Curve, X: Array, point: Array, zeta: Any) -> tuple[Any, Any, Any]:
+    """``(r - x_c) . r'``, its slope ``r' . r' + (r - x_c) . r''`` and ``r' . r'``."""
+    r, r1, r2 = curve.basis(zeta) @ X
+    size = r1 @ r1
+    return (r - point) @ r1, size + (r - point) @ r2, size
+
+
+def _bracketed(curve: Curve, X: Array, point: Array, k: int) -> Any | None:
+    """Closest point between the neighbours of station k, by Newton's method kept in a bracket; None if there is none."""
+    s = np.concatenate([[2 * curve.stations[0] - curve.stations[1]], curve.stations])
+    s = np.append(s, 2 * s[-1] - s[-2])
+    low, high = float(s[k]), float(s[k + 2])
+    if _fall(curve, X, point, low)[0].real > 0 or _fall(curve, X, point, high)[0].real < 0:
+        return None
+    zeta = float(s[k + 1])
+    for _ in range(_PROJECTION_STEPS):
+        fall, slope, size = (term.real for term in _fall(curve, X, point, zeta))
+        low, high = (low, zeta) if fall > 0 else (zeta, high)
+        after = zeta - fall / slope if slope > 0 else np.inf
+        if not low < after < high:
+            after = (low + high) / 2
+        done = abs(fall) <= 1e-14 * size * (s[-1] - s[0]) or after == zeta
+        zeta = after
+        if done:
+            break
+    fall, slope, _ = _fall(curve, X, point, zeta + 0 * X[0, 0])
+    return zeta - fall / slope if np.iscomplexobj(X) else zeta

@@ -258,9 +258,16 @@ class Pin:
         at = bisect_left(self._reached, load_parameter * self.length)
         return min(max(at, 1), len(self.path) - 1) - 1
 
-    def velocity(self, load_parameter: float) -> Point:
-        """Derivative of the position in the load parameter, at a corner that of the leg before it."""
-        k = self._leg(load_parameter)
+    def velocity(self, begin: float, end: float) -> Point:
+        """Mean derivative of the position between two load parameters; at one of them the derivative, at a corner of the leg before.
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
+        (1.0, 1.0)
+        """
+        k = self._leg(end)
+        if begin != end and self._reached[k] > min(begin, end) * self.length:
+            (x0, y0), (x1, y1) = self.position(begin), self.position(end)
+            return ((x1 - x0) / (end - begin), (y1 - y0) / (end - begin))
         a, b = self.path[k : k + 2]
         speed = self.length / math.dist(a, b)
         return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 from comparisons.scene import rules
@@ -192,13 +193,21 @@ class Scene:
         apply_rules(self)
         check_scene(self)
 
+    @cached_property
+    def _beams(self) -> dict[str, BeamSpec]:
+        return {beam.name: beam for beam in self.beams}
+
+    @cached_property
+    def _pins(self) -> dict[str, PinSpec]:
+        return {pin.name: pin for pin in self.pins}
+
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
-        return next(beam for beam in self.beams if beam.name == name)
+        return self._beams[name]
 
     def pin(self, name: str) -> PinSpec:
         """Return the pin called `name`."""
-        return next(pin for pin in self.pins if pin.name == name)
+        return self._pins[name]
 
     def offset(self, contact: ContactSpec) -> float:
         """Distance of the contact's node, or of its pin's centre, from the axis where they touch."""
@@ -208,9 +217,10 @@ class Scene:
 
     def radius(self, contact: ContactSpec) -> float:
         """Radius of the contact's pin, zero for a point."""
-        return next((pin.radius or 0.0 for pin in self.pins if pin.name == contact.node), 0.0)
+        pin = self._pins.get(contact.node)
+        return (pin and pin.radius) or 0.0
 
-    @property
+    @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
         """The clamped ends of the beams, then `supports`."""
         clamps = (
@@ -220,6 +230,16 @@ class Scene:
         )
         return (*clamps, *self.supports)
 
+    @cached_property
+    def _supports_of(self) -> dict[str, tuple[SupportSpec, ...]]:
+        own: dict[str, list[SupportSpec]] = {beam.name: [] for beam in self.beams}
+        for support in self.all_supports:
+            own[support.beam].append(support)
+        return {
+            beam: tuple(sorted(all_own, key=lambda support: (-len(support.held), support.end == "end")))
+            for beam, all_own in own.items()
+        }
+
     def place(self, node: str) -> Point:
         """Return the undeformed position of a beam's end, ``upper.end``."""
         name, end = node.split(".")
@@ -228,8 +248,7 @@ class Scene:
 
     def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
         """Return the supports of a beam, the one that holds most first; of equals, the start's."""
-        own = (support for support in self.all_supports if support.beam == beam)
-        return tuple(sorted(own, key=lambda support: (-len(support.held), support.end == "end")))
+        return self._supports_of[beam]
 
     def tip(self, beam: str) -> str:
         """Return the less held end of a beam: "end", but "start" where the beam's end holds more."""

@@ -1,7 +1,7 @@
 """Every claim of [P] with its verdict: abstract, sections 4.1 to 4.3, conclusions."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparisons.studies.cantilever_shapes import Lifts
 from comparisons.studies.claims_critical_area import CLAIMS as ON_CRITICAL_AREA
@@ -20,10 +20,12 @@ _ORDER = ("abstract", "4.1", "4.2", "4.3", "conclusion 1", "conclusion 2", "conc
 CLAIMS: tuple[Claim, ...] = tuple(
     sorted(
         (*ON_CRITICAL_AREA, *ON_EXAMPLES),
-        key=lambda claim: _ORDER.index(claim.source.split(",", maxsplit=1)[0]),
+        key=lambda claim: _ORDER.index(claim.stated[0][0].split(",", maxsplit=1)[0]),
     )
 )
-"""By section, in the order of the paper."""
+"""By the section that makes them first, in the order of the paper; each once, however often the paper makes it."""
+COARSE = ("fig7a", "fig7b", "fig8")
+"""Figures whose coarse settings bear on their claims: fewer starting positions, tolerances, samples, load parameters or elements."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,21 +40,42 @@ class Findings:
 
 
 def judged(found: Findings) -> list[tuple[Claim, Judgement]]:
-    """Return the claims whose study was run, with their judgements."""
+    """Return the claims whose study was run, with their judgements; coarse settings decide only what does not depend on them."""
     return [
-        (claim, claim.judge(study)) for claim in CLAIMS if (study := getattr(found, claim.figure)) is not None
+        (
+            claim,
+            _provisional(claim.judge(study))
+            if found.quick and claim.figure in COARSE
+            else claim.judge(study),
+        )
+        for claim in CLAIMS
+        if (study := getattr(found, claim.figure)) is not None
     ]
+
+
+def _provisional(judgement: Judgement) -> Judgement:
+    return replace(
+        judgement,
+        verdict=Verdict.PROVISIONAL,
+        why=f"With coarse settings: {judgement.verdict}. {judgement.why}",
+    )
+
+
+def counted(judgements: list[tuple[Claim, Judgement]]) -> str:
+    """Return how many claims are judged, and how many have each verdict."""
+    counts = Counter(judgement.verdict for _, judgement in judgements)
+    summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+    statements = sum(len(claim.stated) for claim in CLAIMS)
+    return f"{len(judgements)} of {len(CLAIMS)} claims judged ({statements} statements){': ' if summary else ''}{summary}"
 
 
 def claims_text(found: Findings) -> str:
     """Return the verdicts as Markdown."""
     judgements = judged(found)
-    counts = Counter(judgement.verdict for _, judgement in judgements)
-    summary = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
     lines = [
         "# The claims of the paper and what became of them",
         "",
-        f"{PAPER}: {len(judgements)} of {len(CLAIMS)} claims judged; {summary}.",
+        f"{PAPER}: {counted(judgements)}.",
         "",
         "Every number below is computed by the run that wrote this file"
         + (", with coarse settings (`--quick`)." if found.quick else "."),

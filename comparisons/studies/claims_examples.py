@@ -6,7 +6,7 @@ from comparisons.compare import PAPER, SOLID
 from comparisons.studies.cantilever_shapes import ELEMENTS, Lifts
 from comparisons.studies.double_beam import LOWER, TIP, UPPER, Attempt, DoubleBeam
 from comparisons.studies.ks_shapes import Run8, Shapes
-from comparisons.studies.verdict import Claim, Judgement, Verdict, holds, percent
+from comparisons.studies.verdict import Judgement, Verdict, claim, holds, over_readings, percent
 
 KS = "ks-cantilever"
 ALIKE = 0.01
@@ -99,12 +99,19 @@ def few_elements(found: Shapes) -> Judgement:
 
 
 def simple_enough(found: Shapes) -> Judgement:
-    """State what a simple element costs and gives."""
-    ten, solid = _paper(found)[0], _solid(found)
-    return Judgement(
-        verdict=Verdict.CANNOT_BE_TOLD,
-        number=f"{ten.unknowns} unknowns for a shape within {percent(ten.shape_error)} of the length; the solid has {solid.unknowns}, {percent(solid.shape_error)}",
-        why="Sufficient depends on the accuracy wanted, and how complex a setting is has no number.",
+    """Judge whether the simple element gives shape, force and moment within what is alike, with each division."""
+    runs, solid = _paper(found), _solid(found)
+    errors = [(run.shape_error, run.errors.contact_force, run.errors.clamp_moment) for run in runs]
+    ten = runs[0]
+    return over_readings(
+        [bool(value < ALIKE) for values in errors for value in values],
+        f"{ten.unknowns} unknowns for a shape within {percent(ten.shape_error)} of the length, the solid has {solid.unknowns}, "
+        f"{percent(solid.shape_error)}; errors of shape, contact force and clamp moment: "
+        + "; ".join(
+            f"{run.options.elements} elements {', '.join(percent(value) for value in values)}"
+            for run, values in zip(PAPER, errors, strict=True)
+        ),
+        "Sufficient depends on the quantity, the division and the accuracy wanted, which the paper does not state; one percent is asked for here.",
     )
 
 
@@ -116,7 +123,7 @@ def less_division(found: Shapes) -> Judgement:
         errors < ALIKE,
         f"{run.label}: largest of the errors in force, place and shape {percent(errors)}; solid {percent(max(solid.errors.contact_force, solid.shape_error))} "
         f"(its material law, not its mesh)",
-        "Within one percent of the exact rod with 20 elements; with 10 the contact force is "
+        "One percent of the exact rod is asked for; with 10 elements the contact force is "
         f"{percent(_paper(found)[0].errors.contact_force)} off.",
     )
 
@@ -145,8 +152,10 @@ def _located(found: DoubleBeam, kind: str, pair: str, exact: str) -> tuple[bool,
 def begins(found: DoubleBeam) -> Judgement:
     """Judge whether both contacts of stage (b) come about."""
     ok, number = _located(found, "touch", TIP, "touch")
+    coupled = (found.depth > found.exact_events["touch"]) & (found.depth < found.exact_events["hand-over"])
+    pressed = [bool(np.isfinite(found.histories[pair].arc[coupled]).all()) for pair in (UPPER, TIP)]
     return holds(
-        ok,
+        ok and all(pressed),
         number,
         "Lengths, spacing and the pin's place are not printed: the stage is reproduced, its depth is this scene's own.",
     )
@@ -182,19 +191,19 @@ def _attempts_text(found: DoubleBeam) -> str:
 
 
 def passes_every_edge(found: DoubleBeam) -> Judgement:
-    """Judge whether the paper's element carries all contacts over every node and to the end."""
-    through = [attempt.status == "COMPLETED" for attempt in _attempts(found)]
-    crowded = {event.element for pair in (TIP, LOWER) for event in found.at_hand_over(pair)}
-    why = "It does, at every place of the pin tried."
-    if not all(through):
-        why = "A pin that starts on a beam node is in the critical area from the start."
-    if not any(through) and len(crowded) == 1:
+    """Judge whether the paper's element carries all contacts over every node and to the end, for every place of the pin."""
+    attempts = _attempts(found)
+    why = "The pin's place is not printed."
+    if any(attempt.to_the_end is False for attempt in attempts):
+        why += " A pin that starts on a beam node is in the critical area from the start."
+    if any(attempt.to_the_end is None for attempt in attempts):
+        crowded = {event.element + 1 for pair in (TIP, LOWER) for event in found.at_hand_over(pair)}
         why += (
-            " Beside the node both contacts do pass through until the hand-over. There the pin and the upper tip are on one "
-            f"element of the lower beam (number {crowded.pop() + 1}), and the paper's element has one contact point; how its program went on is not said."
+            " Beside the node both contacts pass every node until the hand-over. There pin and upper tip are on one element of the "
+            f"lower beam (number {', '.join(map(str, sorted(crowded)))}), the paper's element has one contact point, and how its program went on is not said."
         )
-    return holds(
-        all(through),
+    return over_readings(
+        [attempt.to_the_end for attempt in attempts],
         f"Timoshenko, {_attempts_text(found)}; mixed: {sum(event.kind == 'pass-through' for event in found.events)} passes, all stages",
         why,
     )
@@ -213,83 +222,59 @@ def simultaneous(found: DoubleBeam) -> Judgement:
 
 
 CLAIMS = (
-    Claim(
-        source="abstract",
-        text="The improved equation overcomes any geometrically nonlinear analysis, extremely large displacements included.",
-        figure="fig8",
-        judge=anything,
+    claim(
+        "fig8",
+        anything,
+        (
+            "abstract",
+            "The improved equation overcomes any geometrically nonlinear analysis, extremely large displacements included.",
+        ),
     ),
-    Claim(
-        source="4.1, Fig. 7(a)",
-        text="The beam is lifted by the control node from six starting positions.",
-        figure="fig7a",
-        judge=followed,
+    claim(
+        "fig7a",
+        followed,
+        ("4.1, Fig. 7(a)", "The beam is lifted by the control node from six starting positions."),
     ),
-    Claim(
-        source="4.2, Fig. 8",
-        text="The deformations of TSM and FEM are not significantly different.",
-        figure="fig8",
-        judge=alike,
+    claim("fig8", alike, ("4.2, Fig. 8", "The deformations of TSM and FEM are not significantly different.")),
+    claim(
+        "fig8",
+        few_elements,
+        (
+            "4.2, Fig. 8",
+            "TSM with 10 and 20 divisions is similar to FEM with densely partitioned solid elements.",
+        ),
     ),
-    Claim(
-        source="4.2, Fig. 8",
-        text="TSM with 10 and 20 divisions is similar to FEM with densely partitioned solid elements.",
-        figure="fig8",
-        judge=few_elements,
+    claim("fig8", simple_enough, ("4.2", "A simple definition of the contact element is sufficient.")),
+    claim(
+        "fig9",
+        begins,
+        (
+            "4.3, stage (b)",
+            "Pin and upper beam, and the upper beam's tip and the lower beam, come into contact.",
+        ),
     ),
-    Claim(
-        source="4.2",
-        text="A simple definition of the contact element is sufficient.",
-        figure="fig8",
-        judge=simple_enough,
+    claim(
+        "fig9", hands_over, ("4.3, stage (d)", "The control node shifts from the upper to the lower beam.")
     ),
-    Claim(
-        source="4.3, stage (b)",
-        text="Pin and upper beam, and the upper beam's tip and the lower beam, come into contact.",
-        figure="fig9",
-        judge=begins,
+    claim("fig9", leaves, ("4.3, stage (f)", "The control node goes on until it exceeds the lower beam.")),
+    claim(
+        "fig9",
+        passes_every_edge,
+        (
+            "4.3",
+            "With the Timoshenko beam the contact nodes pass through every element edge smoothly and simultaneously.",
+        ),
+        (
+            "conclusion 3",
+            "All contact nodes pass through smoothly without any divergence of the unbalanced force.",
+        ),
     ),
-    Claim(
-        source="4.3, stage (d)",
-        text="The control node shifts from the upper to the lower beam.",
-        figure="fig9",
-        judge=hands_over,
+    claim(
+        "fig8",
+        less_division,
+        ("conclusion 2", "Very high performance with fewer elements, adequate compared with solid elements."),
     ),
-    Claim(
-        source="4.3, stage (f)",
-        text="The control node goes on until it exceeds the lower beam.",
-        figure="fig9",
-        judge=leaves,
-    ),
-    Claim(
-        source="4.3",
-        text="With the Timoshenko beam the contact nodes pass through every element edge smoothly and simultaneously.",
-        figure="fig9",
-        judge=passes_every_edge,
-    ),
-    Claim(
-        source="conclusion 2",
-        text="Very high performance with fewer elements, adequate compared with solid elements.",
-        figure="fig8",
-        judge=less_division,
-    ),
-    Claim(
-        source="conclusion 2",
-        text="The cost of calculation is reduced.",
-        figure="fig8",
-        judge=cheaper,
-    ),
-    Claim(
-        source="conclusion 3",
-        text="Multiple contacts can be computed at the same time.",
-        figure="fig9",
-        judge=simultaneous,
-    ),
-    Claim(
-        source="conclusion 3",
-        text="All contact nodes pass through smoothly without any divergence of the unbalanced force.",
-        figure="fig9",
-        judge=passes_every_edge,
-    ),
+    claim("fig8", cheaper, ("conclusion 2", "The cost of calculation is reduced.")),
+    claim("fig9", simultaneous, ("conclusion 3", "Multiple contacts can be computed at the same time.")),
 )
 """In the order of the paper, with `claims_critical_area`."""

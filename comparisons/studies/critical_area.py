@@ -12,6 +12,7 @@ import numpy as np
 
 from comparisons.response import Array
 from comparisons.scene import load_scene
+from comparisons.studies import turned_frame
 from comparisons.studies.approach import approaches
 from comparisons.studies.force_floor import force_floor
 from comparisons.studies.formulations import FORMULATIONS
@@ -42,6 +43,7 @@ PRINTED_SHEAR_PSI = 4.5e-9
 _ENDS: tuple[Literal["start"], Literal["end"]] = ("start", "end")
 _FLOOR_CASES = (
     *((formulation.element, end, PSI) for formulation in FORMULATIONS for end in _ENDS),
+    *((turned_frame.NAME, end, PSI) for end in _ENDS),
     ("timoshenko", _ENDS[1], PRINTED_SHEAR_PSI),
 )
 

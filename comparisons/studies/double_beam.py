@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.coupled import coupled_rods
+from comparisons.exact.coupled import CoupledPath, coupled_rods
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models import solve
 from comparisons.options import Options
@@ -67,14 +67,32 @@ class Stage:
 
 @dataclass(frozen=True, kw_only=True)
 class Attempt:
-    """How far `tsm.solve` comes with a formulation and a place of the pin [m]."""
+    """How far `tsm.solve` comes with a formulation and a place of the pin [m].
+
+    Attributes
+    ----------
+    element, place, status : str, float, str
+        Formulation, place of the pin [m], how it ended.
+    depth : float
+        Last depth [m] with an answer.
+    passes : int
+        Beam nodes passed.
+    at_hand_over : bool
+        Whether what stops it is the second contact on an element that knows one, where the exact rods hand over: between the last depth with
+        an answer and the next one.
+    """
 
     element: str
     place: float
     status: str
     depth: float
     passes: int
-    hand_over: bool
+    at_hand_over: bool
+
+    @property
+    def to_the_end(self) -> bool | None:
+        """Whether it went through; None if it ends at the hand-over, where this program ends and the paper's went on."""
+        return None if self.at_hand_over else self.status == "COMPLETED"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,12 +215,24 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
     )
 
 
+def _rod(scene: Scene) -> dict[str, float]:
+    upper = scene.beam("upper")
+    return {"EA": upper.EA, "GA": upper.GA, "EI": upper.EI, "length": upper.length}
+
+
+def _spacing(scene: Scene) -> float:
+    return scene.beam("upper").start[1] - scene.beam("lower").start[1]
+
+
+def _coupled(scene: Scene, x: float, depth: ArrayLike) -> CoupledPath:
+    """The exact rods under a pin at x, where both contacts are closed."""
+    return coupled_rods(depth, pin_x=x - scene.beam("upper").start[0], spacing=_spacing(scene), **_rod(scene))
+
+
 def _exact(scene: Scene, depth: Array) -> tuple[dict[str, tuple[Array, Array]], dict[str, float], str]:
     """Force and arc position by pair, the depths of the events, and what ends the coupled stage."""
-    upper, lower = scene.beam("upper"), scene.beam("lower")
-    x, spacing = scene.pins[0].points[0][0] - upper.start[0], upper.start[1] - lower.start[1]
-    rod = {"EA": upper.EA, "GA": upper.GA, "EI": upper.EI, "length": upper.length}
-    coupled = coupled_rods(depth, pin_x=x, spacing=spacing, **rod)
+    x, spacing, rod = scene.pins[0].points[0][0], _spacing(scene), _rod(scene)
+    coupled = _coupled(scene, x, depth)
     before, after = depth < coupled.touch_depth, depth > coupled.end_depth
     both = ~before & ~after
     exact = {pair: (np.full(len(depth), np.nan), np.full(len(depth), np.nan)) for pair in PAIRS}
@@ -265,12 +295,14 @@ def _attempt(scene: Scene, element: str, place: float) -> Attempt:
     response = solve(replace(scene, pins=(pin,)), "tsm", Options(element=element))
     travel = abs(pin.points[1][1])
     events = response.events or ()
-    reached = response.load_parameter[-1] if len(response.load_parameter) else 0.0
+    reached = float(response.load_parameter[-1]) if len(response.load_parameter) else 0.0
+    over = _coupled(scene, place, [travel]).end_depth / travel
     return Attempt(
         element=element,
         place=place,
         status=response.status,
-        depth=travel * float(reached),
+        depth=travel * reached,
         passes=sum(event.kind == "pass-through" for event in events),
-        hand_over=any(event.kind == "slip-off" and event.pair == UPPER for event in events),
+        at_hand_over=response.status == "TWO_CONTACTS"
+        and reached < over <= reached + 1.0 / scene.load_parameters,
     )

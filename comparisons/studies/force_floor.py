@@ -16,6 +16,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from comparisons.studies import turned_frame
 from tsm.elements import CLOSED_FORM, ClosedForm, beam
 from tsm.elements.properties import Array, Properties
 
@@ -33,7 +34,9 @@ class _State(NamedTuple):
 
 
 class _Element(NamedTuple):
-    kind: ClosedForm
+    """An element beside its node; `kind` is None for `turned_frame`."""
+
+    kind: ClosedForm | None
     p: Properties
     start: Array
     contact_force: float
@@ -54,7 +57,7 @@ def force_floor(
     Parameters
     ----------
     element : str
-        Element type, a key of `tsm.ELEMENTS`.
+        Element type, a key of `tsm.ELEMENTS` with a closed form, or `turned_frame.NAME`.
     ratio : float
         Distance of the contact point from the near end in parts of the element's length.
     end : {"start", "end"}
@@ -80,8 +83,8 @@ def force_floor(
         If `element` or `end` is not known, `ratio` does not lie in [0, 1], another number is not positive, and where the
         platform has no floating-point type beyond double precision.
     """
-    if element not in CLOSED_FORM:
-        raise ValueError(f"element = {element!r}: must be one of {', '.join(CLOSED_FORM)}")
+    if element not in (known := (*CLOSED_FORM, turned_frame.NAME)):
+        raise ValueError(f"element = {element!r}: must be one of {', '.join(known)}")
     if end not in {"start", "end"}:
         raise ValueError(f'end = {end!r}: must be "start" or "end"')
     if not 0 <= ratio <= 1:
@@ -93,16 +96,20 @@ def force_floor(
         raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
     rng = np.random.default_rng(seed)
     xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
-    return float(np.median([_sample(CLOSED_FORM[element], xi, Psi, elements, rng) for _ in range(samples)]))
+    kind = CLOSED_FORM.get(element)
+    return float(np.median([_sample(kind, xi, Psi, elements, rng) for _ in range(samples)]))
 
 
-def _sample(kind: ClosedForm, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
+def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
     element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
     x = _random_displacements(p, rng).astype(_Extended)
-    state = (_carried if kind.contact_unknowns else _deflected)(element, x, xi)
+    if kind is None:
+        state = _across_the_section(element, x, xi)
+    else:
+        state = (_carried if kind.contact_unknowns else _deflected)(element, x, xi)
     rounded = _State(*(np.asarray(part).astype(float) for part in state))
     error = np.abs(_forces(element, rounded) - _forces(element, state)) / element.contact_force
     error[[2, 5]] /= elements
@@ -131,6 +138,16 @@ def _deflected(element: _Element, x: Array, xi: Any) -> _State:
     return _State(x, node, xi, np.zeros(2))
 
 
+def _across_the_section(element: _Element, x: Array, xi: Any) -> _State:
+    """State of the turned frame: the node moves across the section at end i, along which a is measured, until the force is as stated."""
+    p = element.p
+    t, n = turned_frame.frame(p, x)
+    node = element.start + x[:2] + xi * p.l0 * t
+    force, K = turned_frame.contact(p, x, element.start + x[:2] - node)
+    node = node + n * (element.contact_force - force[6:8] @ n) / K[1, 1]
+    return _State(x, node, xi, np.zeros(2))
+
+
 def _carried(element: _Element, x: Array, xi: Any) -> _State:
     """State whose contact force is an unknown: the force in the direction it must have, the node where it must be."""
     unloaded = _State(x, element.start + x[:2], xi, np.zeros(2, dtype=_Extended))
@@ -148,12 +165,15 @@ def _carried(element: _Element, x: Array, xi: Any) -> _State:
 
 
 def _contact(element: _Element, state: _State) -> tuple[Array, Array]:
+    assert element.kind is not None
     lever = element.start + state.x[:2] - state.node
     return element.kind.contact(element.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
 
 
 def _forces(element: _Element, state: _State) -> Array:
     """Forces on element and node, and the contact's equation of direction where it has one."""
+    if element.kind is None:
+        return turned_frame.contact(element.p, state.x, element.start + state.x[:2] - state.node)[0]
     gradient, _ = _contact(element, state)
     if not element.kind.contact_unknowns:
         return gradient

@@ -161,7 +161,9 @@ def _fig7b_numbers(found: CriticalAreas) -> dict[str, Any]:
             element: found.tolerance_for(element, float(np.sqrt(low * high)))
             for element, (low, high) in PRINTED.items()
         },
-        "slopes_of_the_floor": {one.element: found.slopes(one.element) for one in FORMULATIONS},
+        "slopes_of_the_floor": {
+            element: found.slopes(element) for element in dict.fromkeys(one.element for one in found.floors)
+        },
     }
 
 

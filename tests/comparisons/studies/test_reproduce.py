@@ -4,14 +4,17 @@ import csv
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.image import imread
 
 from comparisons.cli import main
 from comparisons.compare import PAPER, SOLID
+from comparisons.studies import turned_frame
 from comparisons.studies.approach import NEAREST
 from comparisons.studies.claims import CLAIMS, Findings, claims_text
 from comparisons.studies.figures import FIGURES
@@ -39,9 +42,24 @@ IN_THE_PAPER = {
     "4.3": ("come into contact", "shifts", "exceeds", "every element edge"),
     "conclusion 1": ("effectiveness", "discontinuous", "0.067 %"),
     "conclusion 2": ("fewer elements", "cost"),
-    "conclusion 3": ("same time", "without any divergence"),
+    "conclusion 3": ("without any divergence", "same time"),
 }  # fmt: skip
 """A word of every claim, read off [P]."""
+
+
+FULL = {
+    **dict.fromkeys(
+        ("exists", "shear_effective", "singular", "followed", "order", "shear_reduces", "passes", "discontinuity_solved", "alike",
+         "few_elements", "begins", "hands_over", "leaves", "less_division", "cheaper", "simultaneous"),
+        Verdict.REPRODUCED,
+    ),
+    "cantilever_reduces": Verdict.IN_DIRECTION,
+    **dict.fromkeys(("cantilever_effective", "anything"), Verdict.NOT_REPRODUCED),
+    **dict.fromkeys(
+        ("_printed_range.<locals>.judge", "every_edge", "simple_enough", "passes_every_edge"), Verdict.CANNOT_BE_TOLD
+    ),
+}  # fmt: skip
+"""Verdicts of full settings, by judge."""
 
 
 def verdicts(folder: Path, name: str = "claims.md") -> dict[str, str]:
@@ -124,7 +142,7 @@ def test_fig8(tmp_path):
 
 
 def test_fig9(tmp_path):
-    """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8); bars 1e-3."""
+    """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8); `mixed` within 2e-7 of the rods."""
     found = run("fig9", tmp_path)
     assert found["exact_events"]["touch"] == pytest.approx(0.149786, abs=1e-6)
     assert found["exact_events"]["hand-over"] == pytest.approx(0.537111, abs=1e-6)
@@ -138,24 +156,36 @@ def test_fig9(tmp_path):
     assert [check["stage"] for check in found["checks"]] == [
         "one rod under the pin", "coupled", "coupled", "the other rod under the pin",
     ]  # fmt: skip
-    assert all(check["force"] < 1e-3 and check["arc"] < 1e-3 for check in found["checks"])
+    assert (
+        max(max(check["force"], check["arc"]) for check in found["checks"]) < 2e-7
+    )  # as the README states it
     assert [stage["key"] for stage in found["stages"]] == list("abcdef")
     depths = [stage["depth"] for stage in found["stages"]]
     assert depths == sorted(depths)
+    decided = verdicts(tmp_path, "claims-fig9.md")
+    for claim in (claim for claim in CLAIMS if claim.figure == "fig9"):
+        assert decided[claim.text] == FULL[claim.judge.__qualname__], claim.text
+    beside = {one["place"]: (one["status"], one["at_hand_over"]) for one in found["attempts"]}
+    assert beside == {0.8: ("CUTBACK_FLOOR", False), 0.81: ("TWO_CONTACTS", True)}
 
 
 def test_every_claim_of_the_paper_is_judged_once():
     wanted = [(source, word) for source, words in IN_THE_PAPER.items() for word in words]
-    assert len(CLAIMS) == len(wanted)
-    for claim, (source, word) in zip(CLAIMS, wanted, strict=True):
-        assert claim.source.startswith(source)
-        assert word in claim.text
-        assert claim.figure in FIGURES
+    sections = list(IN_THE_PAPER)
+    stated = sorted(
+        ((place, text, claim.figure) for claim in CLAIMS for place, text in claim.stated),
+        key=lambda one: sections.index(one[0].split(",")[0]),
+    )
+    assert len(wanted) == 27
+    for (place, text, figure), (source, word) in zip(stated, wanted, strict=True):
+        assert place.startswith(source)
+        assert word in text
+        assert figure in FIGURES
     assert list(FIGURES) == list(STUDIES)
 
 
 def test_nothing_is_judged_without_its_study():
-    assert "0 of 27 claims judged" in claims_text(Findings(quick=True))
+    assert "0 of 25 claims judged (27 statements)." in claims_text(Findings(quick=True))
 
 
 def test_command(tmp_path, capsys):
@@ -191,19 +221,33 @@ def test_all_with_full_settings(tmp_path):
     found = verdicts(tmp_path)
     assert set(found) == {claim.text for claim in CLAIMS}
     assert set(found.values()) <= set(Verdict)
-    judged = {claim.judge.__name__: found[claim.text] for claim in CLAIMS}
-    for name in ("exists", "shear_effective", "singular", "followed", "order", "shear_reduces", "alike", "few_elements",
-                 "begins", "hands_over", "leaves", "less_division", "simultaneous"):  # fmt: skip
-        assert judged[name] == Verdict.REPRODUCED, name
-    for name in ("cantilever_effective", "discontinuity_solved"):
-        assert judged[name] == Verdict.NOT_REPRODUCED, name
-    for name in ("simple_enough", "every_edge"):
-        assert judged[name] == Verdict.CANNOT_BE_TOLD, name
+    for claim in CLAIMS:
+        assert found[claim.text] == FULL[claim.judge.__qualname__], claim.text
+    readme = Path(__file__).parents[3] / "README.md"
+    counts = Counter(FULL[claim.judge.__qualname__] for claim in CLAIMS)
+    assert f"{len(CLAIMS)} claims" in readme.read_text()
+    summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+    assert summary in (tmp_path / "claims.md").read_text()
+    assert summary in " ".join(readme.read_text().split())
     critical = json.loads((tmp_path / "fig7b.json").read_text())
     for element, slope, within in (
-        ("euler-bernoulli-simple", -3, 0.3), ("euler-bernoulli-cantilever", -3, 0.3), ("timoshenko", -1, 0.2), ("mixed", 0, 0.1),
+        ("euler-bernoulli-simple", -3, 0.05), ("euler-bernoulli-cantilever", -3, 0.05), (turned_frame.NAME, -3, 0.05),
+        ("timoshenko", -1, 0.05), ("mixed", 0, 0.05),
     ):  # fmt: skip
         assert critical["slopes_of_the_floor"][element] == pytest.approx([slope, slope], abs=within)
+    # round-off decides them, so another processor may differ; the README states 7e-11, 3e-10, 1e-12 and at most 2.5
+    for element, needed in (
+        ("euler-bernoulli-simple", 7e-11),
+        ("euler-bernoulli-cantilever", 3e-10),
+        ("timoshenko", 1e-12),
+    ):
+        assert needed / 2 < critical["tolerance_for_the_printed"][element] < 2 * needed
+    simple, cantilever = (
+        np.array([one["median"] for one in critical["critical_area"][f"euler-bernoulli-{form}"].values()])
+        for form in ("simple", "cantilever")
+    )
+    assert 2.0 < (simple / cantilever).max() < 2.55
+    assert (simple / cantilever)[-2:] == pytest.approx(1.0, abs=0.1)
     for tolerance, areas in critical["critical_area"]["mixed"].items():
         assert areas["largest"] <= NEAREST, tolerance
 
@@ -211,6 +255,7 @@ def test_all_with_full_settings(tmp_path):
 @pytest.mark.slow
 def test_fig7b(tmp_path):
     found = run("fig7b", tmp_path)
+    assert set(verdicts(tmp_path, "claims-fig7b.md").values()) == {Verdict.PROVISIONAL}
     areas = found["critical_area"]
     for tolerance in ("1e-06", "1e-09"):
         simple, cantilever, timoshenko, mixed = (areas[element][tolerance]["median"] for element in areas)
