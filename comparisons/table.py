@@ -19,7 +19,17 @@ class Row:
     errors: Errors | None
 
 
-HEADER = ("model", "unknowns", "force", "arc position", "clamp moment", "tip", "stable", "iterations", "seconds")
+HEADER = (
+    "model",
+    "unknowns",
+    "force",
+    "arc position",
+    "clamp moment",
+    "tip",
+    "stable",
+    "iterations",
+    "seconds",
+)
 SHOWN = ("contact_force", "arc_position", "clamp_moment", "tip")
 
 

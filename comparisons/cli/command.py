@@ -7,6 +7,7 @@ from contextlib import suppress
 from importlib import metadata
 
 from comparisons.cli import (
+    certify,
     compare,
     completion,
     doctor,
@@ -30,6 +31,7 @@ from comparisons.scene import InputError
 COMMANDS = (
     scene_files,
     solve,
+    certify,
     compare,
     view,
     gate,

@@ -38,29 +38,28 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
 def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     """Return the smallest gap of a pair at the feet on the stated side and where it is; infinite where there is none.
 
-    A foot is where the distance from the node to the axis is least between the beam's ends. Shear bends the axis sharply at the
-    contact itself, which lies on the mean of two normals: what they cut off the offset is no penetration, ``offset (1 - cos(kink/2))``.
+    A foot is where the distance from the node to the axis is least between the beam's ends. At the contact itself shear bends the axis
+    sharply, by an angle 2 a, and the contact is normal to the mean of its two directions; so a round pin is inside the beam beside it, at
+    the distance d by ``a d - (1/offset - curvature) d^2/2``. What exceeds a d is line contact, and only that counts.
     """
-    beam = scene.beam(spec.beam)
+    beam, node = scene.beam(spec.beam), _node(scene, exact, spec)
     offset, side = scene.offset(spec), 1.0 if spec.side == "left" else -1.0
     if offset == 0.0:
         return np.inf, np.nan
-    node = _node(scene, exact, spec)
-    arcs = np.linspace(0.0, beam.length, _POINTS)
-    contact = exact.contacts.get(spec.pair)
-    reach = offset
+    arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
     if contact is not None:
         arcs = np.sort(np.append(arcs, contact.arc_position))
-        reach = offset * math.cos(_kink(exact, spec.beam, contact.arc_position) / 2.0)
+        half = _kink(exact, spec.beam, contact.arc_position) / 2.0
     away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T)
     least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
-    least = least[away[least] < offset + 2.0 * beam.length / _POINTS]
     best, place = np.inf, np.nan
-    for k in least:
+    for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
         arc = _foot(exact, spec.beam, node, float(arcs[k - 1]), float(arcs[k + 1]))
         there = exact.shape(spec.beam, np.array([arc]))
         (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
-        gap = math.hypot(out_x, out_y) - reach
+        gap = math.hypot(out_x, out_y) - offset
+        if contact is not None:
+            gap += half * abs(arc - contact.arc_position)
         if side * (x * out_y - y * out_x) > 0.0 and gap < best:
             best, place = gap, arc
     return best, place
