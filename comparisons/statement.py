@@ -18,6 +18,8 @@ from comparisons.response import ContactEvent, Response, SupportHistory
 
 CRITICAL = ("limit-point", "bifurcation")
 """Events that belong to the path and to no contact."""
+AXIS_POINTS = 41
+"""Points of every beam's axis in a JSON file."""
 DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 
@@ -47,7 +49,12 @@ def _processor() -> str:
 
 def as_json(response: Response, **more: Any) -> str:
     """Return the response, and what else is to be stated, as JSON text; a value that is not a number is null."""
-    return json.dumps(plain({**as_dict(response), **more}), allow_nan=False, indent=1) + "\n"
+    return to_text({**as_dict(response), **more})
+
+
+def to_text(data: dict[str, Any]) -> str:
+    """Return tables as JSON text; a value that is not a number is null."""
+    return json.dumps(plain(data), allow_nan=False, indent=1) + "\n"
 
 
 def as_dict(response: Response) -> dict[str, Any]:
@@ -55,7 +62,7 @@ def as_dict(response: Response) -> dict[str, Any]:
 
     ``supports.{beam}`` holds moment and force of the beam's support, and those of a second one under ``other_end``: where a clamped
     beam's tip is moved, the first is the clamp and the other the force on the tip. ``events`` is null for a model that
-    does not locate them.
+    does not locate them. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every load parameter.
     """
     return {
         "status": response.status,
@@ -63,11 +70,18 @@ def as_dict(response: Response) -> dict[str, Any]:
         "scene": response.scene,
         "load_parameter": response.load_parameter,
         "contacts": {
-            pair: {"force": contact.force, "arc_position": contact.arc_position, "gap": contact.gap}
+            pair: {
+                "force": contact.force,
+                "vector": contact.vector,
+                "arc_position": contact.arc_position,
+                "gap": contact.gap,
+                "slip_off": contact.slip_off,
+            }
             for pair, contact in response.contacts.items()
         },
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
         "tips": response.tips,
+        "axes": {beam: _axis(response, beam) for beam in response.tips},
         "events": None if response.events is None else [asdict(event) for event in response.events],
         "index": response.index,
         "critical": [
@@ -79,6 +93,20 @@ def as_dict(response: Response) -> dict[str, Any]:
         "unknowns": response.unknowns,
         "wall_seconds": response.wall_seconds,
         "versions": versions(),
+    }
+
+
+def _axis(response: Response, beam: str) -> dict[str, Any]:
+    """Arc lengths (m,) and positions (s, m, 2) of a beam's axis, thinned to what another program needs to draw or judge it."""
+    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
+    if not lines:
+        return {"arc_length": [], "position": []}
+    kept = np.unique(np.linspace(0, len(lines[0][0]) - 1, AXIS_POINTS).round().astype(int))
+    return {
+        "arc_length": lines[0][0][kept],
+        "position": np.array([np.interp(lines[0][0][kept], arc, x) for arc, line in lines for x in line.T])
+        .reshape(len(lines), 2, -1)
+        .transpose(0, 2, 1),
     }
 
 

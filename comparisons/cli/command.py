@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from comparisons.cli import (
+    certify,
     compare,
     completion,
     doctor,
@@ -33,6 +34,7 @@ from comparisons.scene import InputError
 COMMANDS = (
     scene_files,
     solve,
+    certify,
     compare,
     view,
     gate,

@@ -89,34 +89,39 @@ def solve(scene: Scene, given: Given) -> Solution:
             tail=np.inf,
         )
     mesh = mesh_of(layout, _first_grids(layout, z))
-    z, bubbles = _fitted(layout, mesh, z, turns)
-    spent = 0
+    return correct(layout, mesh, *_fitted(layout, mesh, z, turns), _ITERATIONS)
+
+
+def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
+    """Return the equilibrium next to unknowns on a mesh, which is halved where it does not resolve the rotation.
+
+    At most `iterations` of Newton's method are spent on each mesh; of none at all, the state is taken as it is.
+    """
+    spent, reason = 0, ""
     for _ in range(_ROUNDS):
-        newton = _newton(layout, mesh, z, bubbles)
+        newton = _newton(layout, mesh, z, bubbles, iterations)
         spent += newton.iterations
         tails = _tails(newton.bubbles)
-        solution = Solution(
-            found=Found.FOUND if newton.converged else Found.NO_EQUILIBRIUM,
-            reason=newton.reason,
-            layout=layout,
-            mesh=mesh,
-            z=newton.z,
-            bubbles=newton.bubbles,
-            system=newton.system,
-            iterations=spent,
-            correction=newton.correction,
-            tail=float(tails.max()),
-        )
-        if not newton.converged:
-            return solution
         coarse = tails > _RESOLVED
-        if not coarse.any():
-            return solution
         grids = _refined(mesh, coarse)
-        if max(map(len, grids)) > _MOST:
+        done = not newton.converged or not coarse.any()
+        if done or max(map(len, grids)) > _MOST:
             break
         z, bubbles, mesh = _carried(layout, mesh, newton.z, newton.bubbles, grids)
-    return Solution(**{**vars(solution), "found": Found.NOT_RESOLVED, "reason": Found.NOT_RESOLVED.value})
+    found = Found.NOT_RESOLVED if newton.converged and not done else Found.FOUND
+    found, reason = (found, "") if newton.converged else (Found.NO_EQUILIBRIUM, newton.reason)
+    return Solution(
+        found=found,
+        reason=reason,
+        layout=layout,
+        mesh=mesh,
+        z=newton.z,
+        bubbles=newton.bubbles,
+        system=newton.system,
+        iterations=spent,
+        correction=newton.correction,
+        tail=float(tails.max()),
+    )
 
 
 def _misplaced(layout: Layout, z: Array) -> str:
@@ -171,7 +176,7 @@ class _Newton(NamedTuple):
     correction: float
 
 
-def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> _Newton:
+def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
     """Correct until the corrections are round-off."""
     made, last, size = properties(layout, mesh), np.inf, np.inf
     arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
@@ -180,7 +185,7 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> _Newton:
     for k in [*arcs, *forces, *(k for item in layout.stations for k in item.place.unknown if k >= 0)]:
         turning[k] = False
     reason = Found.NO_EQUILIBRIUM.value
-    for iteration in range(1, _ITERATIONS + 1):
+    for iteration in range(1, iterations + 1):
         system = assemble(layout, mesh, made, z, bubbles)
         change = _step(system)
         if change is None:
@@ -197,7 +202,7 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> _Newton:
         if part == 1.0 and (size < 1e-15 or (size < 1e-10 and size >= 0.25 * last)):
             return _Newton(z, bubbles, assemble(layout, mesh, made, z, bubbles), True, "", iteration, size)
         last = size if part == 1.0 else np.inf
-    return _Newton(z, bubbles, system, False, reason, _ITERATIONS, size)
+    return _Newton(z, bubbles, system, False, reason, iterations, size)
 
 
 def _own(system: System, change: Array) -> Array:

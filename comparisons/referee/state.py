@@ -110,6 +110,12 @@ class Equilibrium:
         """Return the places at the given arc lengths of a beam."""
         return _shape(self.solution, beam, np.asarray(arc, dtype=np.float64))
 
+    def turned(self, end: str) -> Array:
+        """Return position and rotation ``x, y, theta`` of a beam's end, ``upper.end``."""
+        layout = self.solution.layout
+        number = next(k for k, station in enumerate(layout.stations) if end in station.ends)
+        return np.append(self.ends[end], layout.turned(self.solution.z, number))
+
     def material_force(self, beam: str, arc: Array) -> Array:
         """Return ``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` at the given arc lengths of a beam."""
         there, spec = self.shape(beam, arc), self.solution.layout.scene.beam(beam)

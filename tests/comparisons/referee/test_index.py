@@ -206,7 +206,7 @@ def test_finer_elements_change_nothing(name: str) -> None:
     old = exact.solution
     grids = _refined(old.mesh, np.ones(len(old.mesh.part), dtype=bool))
     z, bubbles, finer = _carried(old.layout, old.mesh, old.z, old.bubbles, grids)
-    again = _newton(old.layout, finer, z, bubbles)
+    again = _newton(old.layout, finer, z, bubbles, 10)
     assert again.converged
     n = old.layout.unknowns
     np.testing.assert_allclose(again.z[:n], old.z[:n], rtol=0.0, atol=1e-13 * np.abs(old.z[:n]).max())
