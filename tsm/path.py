@@ -47,7 +47,7 @@ class PathTangent:
     @cached_property
     def index(self) -> int:
         """Number of the energy's negative eigenvalues, -1 where it is not defined, see `tsm.stability`."""
-        _ = self.system.tangent   # which the rates need besides, and the index is cheaper with
+        _ = self.system.tangent  # which the rates need besides, and the index is cheaper with
         return index(self.newton.assembler, self.state, self.system)
 
     def rates(self, begin: float, end: float) -> Array | None:

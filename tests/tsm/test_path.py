@@ -176,7 +176,9 @@ def test_a_structure_snaps_through_to_the_stable_branch() -> None:
     traced = tsm.trace(toggle(40.0), arc_length=0.02, steps=30)
     beyond = traced.load_parameter[12:]
     last = 12 + int(np.argmax((beyond[:-1] < 1.0) & (beyond[1:] >= 1.0)))
-    part = (1.0 - traced.load_parameter[last]) / (traced.load_parameter[last + 1] - traced.load_parameter[last])
+    part = (1.0 - traced.load_parameter[last]) / (
+        traced.load_parameter[last + 1] - traced.load_parameter[last]
+    )
     apex = traced.tips["left"][last : last + 2, 1]
     result = tsm.solve(toggle(40.0), steps(20), tsm.Settings(branch="stable"))
     assert (result.index == 0).all()
@@ -230,7 +232,8 @@ def test_a_tangent_without_finite_rates_predicts_nothing(
 def test_another_branch_is_not_explained_by_the_tangent() -> None:
     """From a column bent to one side to the same bent to the other: neither tangent leads there."""
     bent = [
-        tsm.solve(column("clamped-free", 4.0, elements=10, aside=aside), [0.9, 1.0]) for aside in (1e-3, -1e-3)
+        tsm.solve(column("clamped-free", 4.0, elements=10, aside=aside), [0.9, 1.0])
+        for aside in (1e-3, -1e-3)
     ]
     newton = Newton(bent[0].model, tsm.Settings())
     before, after, mirrored = bent[0].equilibria[0], bent[0].equilibria[1], bent[1].equilibria[1]
