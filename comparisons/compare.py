@@ -12,7 +12,7 @@ from comparisons.compare_report import write_comparison_page
 from comparisons.export import check_series, write_series
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.metrics import errors
-from comparisons.models import solve
+from comparisons.models import certified, solve
 from comparisons.options import ModelError, Options
 from comparisons.plot import nearest_steps, plot_shapes
 from comparisons.progress import Watch, unwatched
@@ -119,7 +119,7 @@ def _solve_all(scene: Scene, report: Report, watching: Watching) -> dict[str, Re
     for number, run in enumerate(RUNS, 1):
         try:
             with watching(f"[{number}/{len(RUNS)}] {run.label}") as watch:
-                response = solve(scene, run.model, run.options, watch)
+                response = certified(solve(scene, run.model, run.options, watch), scene)
         except ModelError as error:
             report(f"[{number}/{len(RUNS)}] {run.label}: left out, {error}")
             continue

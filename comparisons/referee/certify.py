@@ -123,7 +123,7 @@ def _good(states: Sequence[Judgement]) -> str:
 def _path(response: Response, scene: Scene) -> Iterator[str]:
     """Yield what is wrong between load parameters; only of an answer that states what the scene has."""
     steps = range(len(response.load_parameter))
-    if any(next(impossible(response, scene, k), "") for k in steps):
+    if not steps or any(next(impossible(response, scene, k), "") for k in steps):
         return
     yield from passages(response, scene)
     yield from changes(response, scene)
