@@ -18,6 +18,8 @@ LIMIT, BIFURCATION = "limit point", "bifurcation"
 _SEARCH = 60
 _PRECISION = 1e-10
 """Largest change of a located load parameter or amplitude, relative, that ends a search."""
+_REACH = 0.02
+"""Displacement, relative to the length, root mean square, within which a limit point is looked for."""
 _CLOSE = 1e-5
 """Relative distance of a bifurcation's load parameter within which no state is looked for."""
 _FIRST_AMPLITUDE = 1e-2
@@ -117,7 +119,7 @@ def limit_point(model: Model, states: tuple[Accepted, ...], settings: Settings) 
     for _ in range(_SEARCH):
         if high is None:
             trial, delta = delta, 2 * delta
-            if trial > model.length * np.sqrt(model.nodes):
+            if trial > _REACH * model.length * np.sqrt(model.nodes):
                 return None
         else:
             trial = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])

@@ -134,7 +134,7 @@ def _reach(model: Model, target: float, walk: _Walk, settings: Settings) -> Stat
         found = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
         ended = _judge(model, walk, found, goal, settings)
         if ended is None and walk.failures:
-            ended = _blocked(model, walk, attempt, goal, settings)
+            ended = _blocked(model, walk, attempt, goal, target, settings)
         if ended is not None:
             return ended
     return Status.CONVERGED
@@ -203,12 +203,12 @@ def _divide(
 
 
 def _blocked(
-    model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings
+    model: Model, walk: _Walk, attempt: Attempt, goal: float, target: float, settings: Settings
 ) -> Status | None:
     """Search for what stands in the way of ever shorter steps; return a status if the path ends there."""
     floor = walk.trial < settings.min_step
     line = line_contact(model, walk.track, settings)
-    if line is not None and line[0] <= goal:
+    if line is not None and line[0] <= target:
         walk.ended_at, walk.pair, last = line
         walk.track = (*walk.track, last)
         walk.cause = Status.LINE_CONTACT
@@ -216,7 +216,7 @@ def _blocked(
     if not floor and walk.failures % _PATIENCE:
         return None
     located = limit_point(model, walk.track, settings)
-    if located is not None and walk.last.at.t <= located.point.load_parameter <= goal:
+    if located is not None and walk.last.at.t <= located.point.load_parameter <= target:
         walk.critical.append(located.point)
         walk.ended_at, walk.pair = located.point.load_parameter, None
         walk.cause = Status.LIMIT_POINT
