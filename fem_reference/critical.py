@@ -18,6 +18,8 @@ LIMIT, BIFURCATION = "limit point", "bifurcation"
 _SEARCH = 60
 _PRECISION = 1e-10
 """Largest change of a located load parameter or amplitude, relative, that ends a search."""
+_REACH = 0.05
+"""Displacement, relative to the length, root mean square, within which a limit point is looked for."""
 _CLOSE = 1e-5
 """Relative distance of a bifurcation's load parameter within which no state is looked for."""
 _FIRST_AMPLITUDE = 1e-2
@@ -100,24 +102,23 @@ def noise(model: Model, settings: Settings) -> float:
     return 10 * settings.tolerance * model.length
 
 
-def limit_point(model: Model, states: tuple[Accepted, ...], settings: Settings) -> Located | None:
-    """Search for a maximum of the load parameter beyond the last state; None if there is none near.
+def limit_point(model: Model, a: Accepted, step: float, settings: Settings) -> Located | None:
+    """Search for a maximum of the load parameter beyond a state, from ``step`` on; None if there is none near.
 
     The path goes on with its displacement along the last rate as parameter, ``c . (u - u_a) = delta``, and the load
     parameter among the unknowns; ``dt/ddelta = 1 / (c . v)`` vanishes at the limit.
     """
-    a = states[-1]
     rate = a.rate(a.at.t, a.at.t + settings.min_step).u
     size = float(np.linalg.norm(rate))
     if not (np.isfinite(size) and size > 0):
         return None
     c = rate / size
-    delta = size * settings.min_step
+    delta = size * step
     low, high = (0.0, 1 / size, a.at), None
     for _ in range(_SEARCH):
         if high is None:
             trial, delta = delta, 2 * delta
-            if trial > model.length * np.sqrt(model.nodes):
+            if trial > _REACH * model.length * np.sqrt(model.nodes):
                 return None
         else:
             trial = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
