@@ -14,8 +14,10 @@ Array = NDArray[np.float64]
 
 _NEAR = 0.02
 """Largest correction of a prediction, in rotations [rad] and lengths: half a step then ends at the same equilibrium."""
-_SMALLEST = 1e-11
-"""Smallest step of the load parameter, over the distance."""
+_ITERATIONS = 12
+"""Most iterations of Newton's method after a prediction."""
+_SMALLEST = 1e-10
+"""Smallest step of the load parameter, over the way that it has come: an imperfect column turns off within so little of it."""
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the equilibrium that it is to reach."""
 
@@ -41,14 +43,14 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
         t = min(now.layout.load_parameter + step, end)
         layout = lay_out(scene, t, closed)
         ahead = _ahead(now, before, t)
-        found = correct(layout, now.mesh, *ahead, 6)
+        found = correct(layout, now.mesh, *ahead, _ITERATIONS)
         apart = _apart(found, *ahead)
         if found.found is Found.FOUND and apart < _NEAR and count(found)[0] == index:
             step *= 2.0 if apart < _NEAR / 8.0 else 1.0
             now, before = found, now if len(found.z) == len(now.z) else None
             continue
         step /= 2.0
-        if step < _SMALLEST * (end - start):
+        if step < _SMALLEST * max(now.layout.load_parameter - start, _SMALLEST * (end - start)):
             return f"no continuous path of index {index} leads on beyond load parameter {now.layout.load_parameter:.6g}"
     off = _difference(now, last)
     return (
