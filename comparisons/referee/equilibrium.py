@@ -195,7 +195,7 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         change = _step(system)
         if change is None:
             return _Newton(z, bubbles, system, False, "the equations are singular", iteration, np.inf)
-        inside = -(system.shift + np.einsum("eij,ej->ei", system.lever, _own(system, change)))
+        inside = _inside(system, change)
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
         moved = float(np.abs(change[~turning & ~np.isin(np.arange(mesh.unknowns), forces)]).max(initial=0.0))
         scale = float(np.abs(z[forces]).max()) + 1e-6
@@ -208,6 +208,18 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
             return _Newton(z, bubbles, assemble(layout, mesh, made, z, bubbles), True, "", iteration, size)
         last = size if part == 1.0 else np.inf
     return _Newton(z, bubbles, system, False, reason, iterations, size)
+
+
+def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
+    """Return the first change of Newton's method, zero where the equations are singular."""
+    system = assemble(layout, mesh, properties(layout, mesh), z, bubbles)
+    change = _step(system)
+    return (np.zeros_like(z), np.zeros_like(bubbles)) if change is None else (change, _inside(system, change))
+
+
+def _inside(system: System, change: Array) -> Array:
+    """Change of the bubbles with that of the other unknowns."""
+    return np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, _own(system, change))))
 
 
 def _own(system: System, change: Array) -> Array:
