@@ -71,11 +71,13 @@ def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.
 
 def _place(response: Response, scene: Scene, node: str) -> Array:
     """Deformed position (s, 2) of a beam's end: prescribed if its support holds it, else as the response states it."""
-    for support in scene.all_supports:
-        ux, uy, _ = support.motion
-        if support.node == node and ux is not None and uy is not None:
-            return np.asarray(np.array(scene.place(node)) + np.outer(response.load_parameter, [ux, uy]))
     beam, end = node.split(".")
+    for support in scene.supports_of(beam):
+        ux, uy, _ = support.motion
+        if support.end == end and ux is not None and uy is not None:
+            return np.asarray(np.array(scene.place(node)) + np.outer(response.load_parameter, [ux, uy]))
+    if end == scene.tip(beam):
+        return response.tips[beam]
     lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
     return np.array([line[0 if end == "start" else -1] for line in lines]).reshape(-1, 2)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from comparisons.budget import Budget, error_budget
 from comparisons.budget_plot import plot_budget, write_budget
 from comparisons.compare_report import write_comparison_page
-from comparisons.export import write_series
+from comparisons.export import check_series, write_series
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.metrics import errors
 from comparisons.models import solve
@@ -93,6 +93,8 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     rod = to_rod(scene)
     pair = None if rod.contact is None else rod.contact.pair
     folder = writable_folder(folder)
+    for run in (MIXED, SOLID):
+        check_series(folder / run.model, run.model, scene)
     responses = _solve_all(scene, report, watching)
     reference = responses[ROD.label]
     rows = [

@@ -12,6 +12,7 @@ from comparisons.response import (
     Array,
     ContactEvent,
     ContactHistory,
+    CriticalPoint,
     Deformation,
     Grid,
     Response,
@@ -32,11 +33,11 @@ def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Respo
     import tsm
 
     structure = to_structure(scene, elements=options.elements, element=options.element)
-    settings = tsm.Settings()
+    settings = tsm.Settings(branch=options.branch or "stop")
     if options.tolerance is not None:
         if options.element != "exact":
             raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
-        settings = tsm.Settings(accuracy=options.tolerance)
+        settings = replace(settings, accuracy=options.tolerance)
     try:
         result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
     except tsm.SolveError as error:
@@ -64,12 +65,15 @@ def _beam_deformation(scene: Scene, options: Options, result: Any, response: Res
     element, steps = options.element or "mixed", range(len(result.load_parameter))
     stiff = element.startswith("euler-bernoulli")
     turn, strain = np.zeros((2, len(scene.beams), len(steps)))
+    touching: dict[str, list[ContactHistory]] = {beam.name: [] for beam in scene.beams}
+    for item in scene.contacts:
+        touching[item.beam].append(response.contacts[item.pair])
     for b, beam in enumerate(scene.beams):
         stiffness = np.array([beam.EA, np.inf if stiff else beam.GA])
         for k in steps:
             turn[b, k] = np.abs(np.diff(result.shape(beam.name, k)[:, 2])).max()
             strain[b, k] = np.abs(result.section_forces(beam.name, k)[..., :2] / stiffness).max()
-        for contact in [response.contacts[item.pair] for item in scene.contacts if item.beam == beam.name]:
+        for contact in touching[beam.name]:
             turn[b] = np.maximum(turn[b], contact.force * _arms(result, beam.name, contact) / beam.EI)
             strain[b] = np.maximum(strain[b], contact.force / stiffness.min())
     return Deformation(
@@ -241,6 +245,11 @@ def _response(
         wall_seconds=result.wall_seconds,
         axis_line=axis_line,
         grid=grid,
+        index=result.index,
+        critical=tuple(
+            CriticalPoint(kind=point.kind.value, load_parameter=point.load_parameter, mode=point.mode)
+            for point in result.critical
+        ),
     )
 
 

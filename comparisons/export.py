@@ -5,7 +5,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from comparisons.files import alone_in, replacing, write_text
+from comparisons.files import alone_in, interrupts_held, replacing, staging, write_text
+from comparisons.listing import check_free, digest, listed, unchanged, with_digests
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import Scene
 
@@ -52,42 +53,81 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     return Grid(points=start, cells={"vertex": np.arange(len(pins)).reshape(-1, 1)}, point_data=data)
 
 
-def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
-    """Write one VTU of the body and one of the pins, if any, per load parameter, and ``MODEL.pvd`` that lists them.
+def check_series(folder: Path, model: str, scene: Scene) -> None:
+    """Raise unless the files of a series may be written: each is not there yet, or is as this program wrote it.
 
-    Files of an earlier, longer series are removed. Of runs that write at the same time one waits for the other.
+    Raises
+    ------
+    OutputError
+        One line, with the first file in the way.
+    """
+    names = [f"{part}-{k:04d}.vtu" for part in _parts(model) for k in range(1, scene.load_parameters + 1)]
+    check_free(folder, names, _lists(folder, model))
+
+
+def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
+    """Write one VTU of the body and one of the pins, if any, per load parameter, and ``MODEL.pvd`` that lists them with their digests.
+
+    Files that the same model wrote here before, as its list gives them, are replaced, and removed where the series is shorter now; a
+    file of anybody else's ends it before anything is written. All are written aside first. Of runs that write at the same time one
+    waits for the other.
 
     Returns
     -------
     list of Path
         The body's files, in the order of the load parameters.
+
+    Raises
+    ------
+    OutputError
+        If there is no room, or a file is there that this program did not write.
     """
     with alone_in(folder):
-        return _write_series(folder, response, scene)
+        check_series(folder, response.model, scene)
+        with staging(folder) as aside:
+            entries = _write_grids(aside, response, scene)
+            digests = {name: digest(aside / name) for _, _, name in entries}
+            with interrupts_held():
+                _move(aside, folder, response.model, _collection(entries), digests)
+    return [folder / name for _, part, name in entries if part == 0]
 
 
-def _write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
-    bodies: list[Path] = []
-    written: set[Path] = set()
-    entries: list[str] = []
+def _parts(model: str) -> tuple[str, str]:
+    return model, f"{model}-pin"
+
+
+def _lists(folder: Path, model: str) -> tuple[Path, Path]:
+    """The list of a series, and the one of a run that was ended while it moved its files."""
+    return folder / f"{model}.pvd", folder / f".{model}.pvd"
+
+
+def _write_grids(folder: Path, response: Response, scene: Scene) -> list[tuple[float, int, str]]:
+    """Write every grid; return load parameter, part and name of every file."""
+    entries: list[tuple[float, int, str]] = []
     for k, t in enumerate(response.load_parameter):
-        parts = {response.model: response.grid(k)}
-        if scene.pins:
-            parts["pin"] = pin_grid(response, scene, k)
-        for part, (name, grid) in enumerate(parts.items()):
-            path = folder / f"{name}-{k + 1:04d}.vtu"
-            write_vtu(path, grid)
-            written.add(path)
-            entries.append(f'<DataSet timestep="{float(t)!r}" part="{part}" file={quoteattr(path.name)}/>')
-            if part == 0:
-                bodies.append(path)
-    body = "\n".join(
-        ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>", *entries]
-    )
-    write_text(folder / f"{response.model}.pvd", body + "\n</Collection>\n</VTKFile>\n")
+        grids = [response.grid(k), *([pin_grid(response, scene, k)] if scene.pins else [])]
+        for part, (name, grid) in enumerate(zip(_parts(response.model), grids, strict=False)):
+            file = f"{name}-{k + 1:04d}.vtu"
+            write_vtu(folder / file, grid)
+            entries.append((float(t), part, file))
+    return entries
+
+
+def _collection(entries: list[tuple[float, int, str]]) -> str:
+    sets = [f'<DataSet timestep="{t!r}" part="{part}" file={quoteattr(name)}/>' for t, part, name in entries]
+    head = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
+    return "\n".join([*head, *sets, "</Collection>", "</VTKFile>\n"])
+
+
+def _move(aside: Path, folder: Path, model: str, collection: str, digests: dict[str, str]) -> None:
+    """Put a finished series in its place; wherever this is ended, one of the two lists knows every file."""
+    shown, kept = _lists(folder, model)
+    earlier = {**(listed(kept) or {}), **(listed(shown) or {})}
+    stale = {name: value for name, value in earlier.items() if name not in digests}
+    write_text(kept, with_digests(collection, {**stale, **digests}))
+    for name in digests:
+        (aside / name).replace(folder / name)
+    kept.replace(shown)
     # last, so that no list names a file that is gone
-    for stale in {
-        path for name in (response.model, "pin") for path in folder.glob(f"{name}-????.vtu")
-    } - written:
-        stale.unlink()
-    return bodies
+    for path in unchanged(folder, stale):
+        path.unlink()

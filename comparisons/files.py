@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import signal
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -10,6 +11,15 @@ from pathlib import Path
 
 class OutputError(ValueError):
     """A place where nothing can be written: one line."""
+
+
+def printable(text: object) -> str:
+    r"""Return `text` with what a terminal would obey, or cannot show, as escapes.
+
+    >>> printable("red \x1b[31m")
+    'red \\x1b[31m'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
 
 
 @contextmanager
@@ -49,6 +59,38 @@ def alone_in(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(place)
+
+
+@contextmanager
+def staging(folder: Path) -> Iterator[Path]:
+    """Yield a new hidden folder in `folder`, from which finished files are moved; it is removed with what is left in it.
+
+    Raises
+    ------
+    OutputError
+        If there is no room, or it cannot be written for another reason of the system's.
+    """
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".crossval-") as aside:
+            yield Path(aside)
+    except OutputError as error:
+        # files are named by where they were to be in the end
+        raise OutputError(str(error).replace(f"{aside}{os.sep}", f"{folder}{os.sep}")) from error
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Hold back Ctrl-C; processes started meanwhile never see it, and leave its handling to this one."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def writable_folder(folder: Path) -> Path:

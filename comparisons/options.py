@@ -1,6 +1,11 @@
 """What a user may choose for one run, and the refusal of what a model cannot do."""
 
 from dataclasses import dataclass
+from typing import Literal, get_args
+
+Branch = Literal["stop", "stable", "primary"]
+BRANCHES: tuple[str, ...] = get_args(Branch)
+"""Ways to go on at a critical point."""
 
 
 class ModelError(ValueError):
@@ -21,17 +26,20 @@ class Options:
         Bound on the error of the integration inside exact TSM elements.
     mesh : (int, int), optional
         Elements of the solid along and across.
+    branch : {"stop", "stable", "primary"}, optional
+        What happens at a critical point: the path ends there by name, turns to the stable branch of least energy, or goes on unstable.
     """
 
     elements: int | None = None
     element: str | None = None
     tolerance: float | None = None
     mesh: tuple[int, int] | None = None
+    branch: Branch | None = None
 
 
 OPTIONS: dict[str, tuple[str, ...]] = {
-    "tsm": ("elements", "element", "tolerance"),
-    "solid": ("mesh",),
+    "tsm": ("elements", "element", "tolerance", "branch"),
+    "solid": ("mesh", "branch"),
     "rod": (),
     "elastica": (),
 }

@@ -88,6 +88,25 @@ class ContactEvent:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class CriticalPoint:
+    """A point of the path where the tangent is singular, located by the model.
+
+    Attributes
+    ----------
+    kind : str
+        ``limit point`` or ``bifurcation``.
+    load_parameter : float
+        Where.
+    mode : dict of ndarray, shape (m, 2)
+        Displacements of the beams' axes in the buckling mode; the largest is 1.
+    """
+
+    kind: str
+    load_parameter: float
+    mode: dict[str, Array]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Deformation:
     """The largest deformation of one element: what its strain measures, and its shape functions, have to bear.
 
@@ -162,6 +181,11 @@ class Response:
         Estimated error of the integration inside exact elements, in positions over the longest beam's length, angles and forces over ``EI/L^2``.
     deformation : Deformation, optional
         Of the most deformed element; None where no element approximates.
+    index : ndarray of int, shape (s,), optional
+        Number of negative eigenvalues of the energy under the supports and closed contacts, 0 where the equilibrium is stable; -1
+        where it is not defined; None for a model that does not state it.
+    critical : tuple of CriticalPoint
+        Critical points that the model met.
     """
 
     model: str
@@ -182,3 +206,5 @@ class Response:
     events: tuple[ContactEvent, ...] | None = None
     integration_error: float = 0.0
     deformation: Deformation | None = None
+    index: NDArray[np.int64] | None = None
+    critical: tuple[CriticalPoint, ...] = ()

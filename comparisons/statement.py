@@ -16,6 +16,10 @@ import numpy as np
 
 from comparisons.response import ContactEvent, Response, SupportHistory
 
+CRITICAL = ("limit-point", "bifurcation")
+"""Events that belong to the path and to no contact."""
+AXIS_POINTS = 41
+"""Points of every beam's axis in a JSON file."""
 DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 
@@ -45,7 +49,12 @@ def _processor() -> str:
 
 def as_json(response: Response, **more: Any) -> str:
     """Return the response, and what else is to be stated, as JSON text; a value that is not a number is null."""
-    return json.dumps(plain({**as_dict(response), **more}), allow_nan=False, indent=1) + "\n"
+    return to_text({**as_dict(response), **more})
+
+
+def to_text(data: dict[str, Any]) -> str:
+    """Return tables as JSON text; a value that is not a number is null."""
+    return json.dumps(plain(data), allow_nan=False, indent=1) + "\n"
 
 
 def as_dict(response: Response) -> dict[str, Any]:
@@ -53,7 +62,7 @@ def as_dict(response: Response) -> dict[str, Any]:
 
     ``supports.{beam}`` holds moment and force of the beam's support, and those of a second one under ``other_end``: where a clamped
     beam's tip is moved, the first is the clamp and the other the force on the tip. ``events`` is null for a model that
-    does not locate them.
+    does not locate them. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every load parameter.
     """
     return {
         "status": response.status,
@@ -61,17 +70,43 @@ def as_dict(response: Response) -> dict[str, Any]:
         "scene": response.scene,
         "load_parameter": response.load_parameter,
         "contacts": {
-            pair: {"force": contact.force, "arc_position": contact.arc_position, "gap": contact.gap}
+            pair: {
+                "force": contact.force,
+                "vector": contact.vector,
+                "arc_position": contact.arc_position,
+                "gap": contact.gap,
+                "slip_off": contact.slip_off,
+            }
             for pair, contact in response.contacts.items()
         },
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
         "tips": response.tips,
+        "axes": {beam: _axis(response, beam) for beam in response.tips},
         "events": None if response.events is None else [asdict(event) for event in response.events],
+        "index": response.index,
+        "critical": [
+            {"kind": point.kind, "load_parameter": point.load_parameter, "mode": point.mode}
+            for point in response.critical
+        ],
         "newton_iterations": response.newton_iterations,
         "cutbacks": response.cutbacks,
         "unknowns": response.unknowns,
         "wall_seconds": response.wall_seconds,
         "versions": versions(),
+    }
+
+
+def _axis(response: Response, beam: str) -> dict[str, Any]:
+    """Arc lengths (m,) and positions (s, m, 2) of a beam's axis, thinned to what another program needs to draw or judge it."""
+    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
+    if not lines:
+        return {"arc_length": [], "position": []}
+    kept = np.unique(np.linspace(0, len(lines[0][0]) - 1, AXIS_POINTS).round().astype(int))
+    return {
+        "arc_length": lines[0][0][kept],
+        "position": np.array([np.interp(lines[0][0][kept], arc, x) for arc, line in lines for x in line.T])
+        .reshape(len(lines), 2, -1)
+        .transpose(0, 2, 1),
     }
 
 
@@ -112,6 +147,7 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
         ]
     rows += _event_rows(response.events or (), force, length)
     rows += [
+        ("stability", stability(response)),
         ("unknowns", f"{response.unknowns}"),
         ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
         ("seconds", f"{response.wall_seconds:.3f}"),
@@ -123,12 +159,31 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
     )
 
 
+def stability(response: Response) -> str:
+    """Say in a few words where a response is stable."""
+    if response.index is None:
+        return "not stated by this model"
+    unstable, unknown = response.index > 0, response.index < 0
+    parts = []
+    if unstable.any():
+        first = response.load_parameter[np.argmax(unstable)]
+        parts.append(f"UNSTABLE from load parameter {first:.6g} on, index up to {response.index.max()}")
+    elif not unknown.all():
+        parts.append("stable")
+    if unknown.any():
+        parts.append(f"index not defined at {int(unknown.sum())} of {len(unknown)} load parameters")
+    return "; ".join(parts)
+
+
 def _event_rows(events: Sequence[ContactEvent], force: str, length: str) -> list[tuple[str, str]]:
     """Count the events, and list those that change which contacts are closed."""
     counts = Counter(event.kind for event in events)
     rows = [("events", ", ".join(f"{kind} {count}" for kind, count in counts.items()))] if counts else []
     for event in events:
-        if event.kind != "pass-through":
+        if event.kind in CRITICAL:
+            jump = f", {event.released:.6g} {force} {length} released" if event.released else ""
+            rows.append((f"  {event.kind}", f"at {event.load_parameter:.9g}{jump}"))
+        elif event.kind != "pass-through":
             text = (
                 f"{event.pair} at {event.load_parameter:.6g}: arc position {event.arc_position:.6g} {length}"
             )

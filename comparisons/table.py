@@ -4,6 +4,8 @@ import csv
 import io
 from dataclasses import dataclass, fields
 
+import numpy as np
+
 from comparisons.metrics import Errors
 from comparisons.response import Response
 
@@ -17,7 +19,17 @@ class Row:
     errors: Errors | None
 
 
-HEADER = ("model", "unknowns", "force", "arc position", "clamp moment", "tip", "iterations", "seconds")
+HEADER = (
+    "model",
+    "unknowns",
+    "force",
+    "arc position",
+    "clamp moment",
+    "tip",
+    "stable",
+    "iterations",
+    "seconds",
+)
 SHOWN = ("contact_force", "arc_position", "clamp_moment", "tip")
 
 
@@ -43,7 +55,14 @@ def cells(row: Row) -> tuple[str, ...]:
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
     iterations, seconds = str(response.newton_iterations.sum()), f"{response.wall_seconds:.3f}"
-    return label, str(response.unknowns), *shown, iterations, seconds
+    return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
+
+
+def _stable(response: Response) -> str:
+    """Return yes, no, or a dash where the model states no index."""
+    if response.index is None or not np.any(response.index >= 0):
+        return "-"
+    return "no" if np.any(response.index > 0) else "yes"
 
 
 def table_csv(rows: list[Row]) -> str:
@@ -58,6 +77,7 @@ def table_csv(rows: list[Row]) -> str:
                 f"error_{item.name}": None if row.errors is None else getattr(row.errors, item.name)
                 for item in fields(Errors)
             },
+            "stable": _stable(row.response),
             "newton_iterations": int(row.response.newton_iterations.sum()),
             "cutbacks": row.response.cutbacks,
             "wall_seconds": row.response.wall_seconds,

@@ -12,6 +12,7 @@ from comparisons.response import Array, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 CHECK_FAILED = "CHECK_FAILED"
+UNSTABLE = "UNSTABLE"
 PULL = 1e-9
 """Largest pulling force of a contact at its release, relative to EI/L^2: round-off."""
 CLOSED = 1e-9
@@ -33,13 +34,22 @@ def verified(response: Response, scene: Scene) -> Response:
     """
     if response.completed:
         reason = next(failures(response, scene), None)
-        return response if reason is None else _failed(response, reason)
+        return _labelled(response) if reason is None else _failed(response, reason)
     reason = next(unresolved(response, scene), None)
     return (
         response
         if reason is None
         else _failed(response, f"{reason}; then {response.status}: {response.message}")
     )
+
+
+def _labelled(response: Response) -> Response:
+    """Return a response that went through unstable equilibria as one that is not completed."""
+    if response.index is None or not np.any(response.index > 0):
+        return response
+    unstable = response.index > 0
+    sentence = f"the equilibrium is unstable {_first(unstable, response)} and may be so beyond"
+    return replace(response, status=UNSTABLE, message=sentence, completed=False)
 
 
 def _failed(response: Response, reason: str) -> Response:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from fem_reference.arrays import Array, Floats, Ints
+from fem_reference.factor import Band, band_of
 from fem_reference.mesh import Discretisation
 
 
@@ -19,11 +20,14 @@ class Pattern:
         Sparse matrix from all element entries, raveled ``(e, 2 k, 2 k)``, to the stored entries of the stiffness.
     indices, indptr
         Row indices and column pointers of the compressed columns.
+    band
+        Where the entries stand in band storage.
     """
 
     scatter: csr_matrix
     indices: Ints
     indptr: Ints
+    band: Band
 
     def matrix(self, elements: Array) -> csc_matrix:
         """Assemble element matrices ``(e, 2 k, 2 k)`` into the stiffness ``(m, m)``."""
@@ -48,10 +52,13 @@ def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
     kept = np.flatnonzero((row >= 0) & (column >= 0))
     keys, slot = np.unique(column[kept] * size + row[kept], return_inverse=True)
     signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
+    indices = (keys % size).astype(np.int32)
+    indptr = np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(np.int32)
     return Pattern(
         scatter=csr_matrix((signs, (slot, kept)), shape=(keys.size, row.size)),
-        indices=(keys % size).astype(np.int32),
-        indptr=np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(np.int32),
+        indices=indices,
+        indptr=indptr,
+        band=band_of(indices, indptr),
     )
 
 

@@ -55,14 +55,6 @@ class Body:
         return self.strip.bending_stiffness / self.strip.length**2
 
     @property
-    def ordering(self) -> str:
-        """SuperLU's ordering of the unknowns: along the strip, but minimum degree from 16 nodes a section on.
-
-        The band is what elimination along the strip fills; minimum degree takes half the time at 41 nodes a section.
-        """
-        return "NATURAL" if self.clamped_edge.size < 16 else "MMD_AT_PLUS_A"
-
-    @property
     def clamped_edge(self) -> Ints:
         """Nodes of the clamped edge."""
         return self.mesh.edges[self.strip.clamped[0]]

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.sparse import csr_matrix
 
-from fem_reference.arrays import Array, Floats
+from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import Discretisation
 from fem_reference.problem import Contact
 from fem_reference.strip import Strip
@@ -30,7 +30,7 @@ class Curve:
     stations
         Undeformed axial coordinates of the points, increasing, ``(m,)`` [m].
     slopes
-        Slopes of the cardinal splines at the stations, ``(m, m)``: ``dr/dzeta = slopes @ X`` there [1/m].
+        Slopes of the cardinal splines at the stations as a band, `band_slopes`, ``(m, 2 b + 1)`` [1/m].
     rows
         Weights of the nodes in the points, ``(m, n)``.
     offsets, kernel
@@ -45,20 +45,37 @@ class Curve:
 
     def basis(self, zeta: Any) -> Array:  # a float, or complex for a complex step
         """Values and first two derivatives of the averaged cardinal splines at ``zeta``, ``(3, m)``."""
-        averaged: Array = np.tensordot(self.kernel, self.splines(zeta + self.offsets), axes=(0, 1))
-        return averaged
+        s, points = self.stations, zeta + self.offsets
+        k, hermite = self._pieces(points)
+        weighted = hermite * self.kernel
+        first, count = int(k.min()), int(np.ptp(k)) + 2
+        by_station = np.zeros((2, 3, count), dtype=hermite.dtype)
+        for end in range(2):  # of each piece: its value's weight, and its slope's
+            places = (slice(None), k - first + end)
+            np.add.at(by_station[0], places, weighted[:, end])
+            np.add.at(by_station[1], places, weighted[:, 2 + end])
+        reach = self.slopes.shape[1]
+        half = reach // 2
+        shifted = np.zeros((count, count + reach))
+        shifted[:, :reach] = self.slopes[first : first + count]
+        # Every row begins one place further to the right than the one before.
+        rows = shifted.ravel()[:-count].reshape(count, count + reach - 1)
+        padded = np.zeros((3, s.size + 2 * half), dtype=hermite.dtype)
+        padded[:, first : first + count + reach - 1] = by_station[1] @ rows
+        padded[:, half + first : half + first + count] += by_station[0]
+        return padded[:, half : half + s.size]
 
-    def splines(self, zeta: Array) -> Array:
-        """Values and first two derivatives of the cardinal splines at the points ``zeta`` ``(q,)``, ``(3, q, m)``.
+    def _pieces(self, zeta: Array) -> tuple[Ints, Array]:
+        """Pieces of the spline that hold the points ``zeta`` ``(q,)``, and Hermite's polynomials there, ``(3, 4, q)``.
 
-        Beyond the ends they go on along their tangents.
+        Rows value, first, second derivative; columns X_k, X_k+1, slope k, slope k+1. Beyond the ends they go on along their
+        tangents.
         """
         s = self.stations
         inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
         k = np.clip(np.searchsorted(s, inner.real) - 1, 0, s.size - 2)
         h = s[k + 1] - s[k]
         z = (inner - s[k]) / h
-        # Hermite polynomials: rows value, first, second derivative; columns X_k, X_k+1, slope k, slope k+1.
         hermite = np.array(
             [
                 [(1 + 2 * z) * (1 - z) ** 2, z**2 * (3 - 2 * z), h * z * (1 - z) ** 2, h * z**2 * (z - 1)],
@@ -69,11 +86,32 @@ class Curve:
         beyond = zeta - inner
         hermite[0] += beyond * hermite[1]
         hermite[2] *= beyond == 0
-        B = hermite[:, 2, :, None] * self.slopes[k] + hermite[:, 3, :, None] * self.slopes[k + 1]
-        points = np.arange(k.size)
-        B[:, points, k] += hermite[:, 0]
-        B[:, points, k + 1] += hermite[:, 1]
-        return B
+        return k, hermite
+
+
+def band_slopes(stations: Floats) -> Floats:
+    """Slopes at the stations of the not-a-knot splines that are one at one station and zero at the others.
+
+    Those of the stations ``k - b`` to ``k + b`` at the station k, ``(m, 2 b + 1)``, b = 45 or ``m - 1``: with every station further off they
+    fall to .27, at worst to a half. They are found window by window, so that work and memory grow with m only.
+    """
+    m = stations.size
+    half = min(_REACH, m - 1)
+    band = np.zeros((m, 2 * half + 1))
+    for first in range(0, m, _WINDOW):
+        last = min(first + _WINDOW, m)
+        low, high = max(0, first - 2 * _REACH), min(m, last + 2 * _REACH)
+        near = stations[low:high]
+        full = np.zeros((last - first, high - low + 2 * half))
+        full[:, half : half + near.size] = CubicSpline(near, np.eye(near.size), bc_type="not-a-knot")(
+            stations[first:last], 1
+        )
+        rows = np.arange(last - first)
+        band[first:last] = full[rows[:, None], (first - low + rows)[:, None] + np.arange(2 * half + 1)]
+    return band
+
+
+_REACH, _WINDOW = 45, 256
 
 
 def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve:
@@ -88,7 +126,7 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve
     parts = (
         stations / strip.length
     )  # of a few stations a spline solves equations that lengths far from 1 make ill-conditioned
-    slopes = CubicSpline(parts, np.eye(parts.size), bc_type="not-a-knot")(parts, 1) / strip.length
+    slopes = band_slopes(parts) / strip.length
     offsets, kernel = averaging(contact_spread(strip, contact), float(np.diff(stations).min()))
     return Curve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
 
@@ -176,21 +214,54 @@ def closest(curve: Curve, X: Array, point: Array) -> tuple[Any, bool]:
     """Coordinate of the closest point, by Newton's method from the closest station, and whether it is stationary.
 
     The curve's end pieces are continued by one spacing, so that a point within round-off of an end, or beyond it
-    during an iteration, still has a projection.
+    during an iteration, still has a projection. Near a centre of curvature the root is kept between the neighbouring stations.
     """
     s = curve.stations
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
-    zeta = s[np.argmin(((X - point).real ** 2).sum(axis=1))] + 0 * X[0, 0]
+    k = int(np.argmin(((X - point).real ** 2).sum(axis=1)))
+    zeta, flat = s[k] + 0 * X[0, 0], False
     for _ in range(_PROJECTION_STEPS):
-        r, r1, r2 = curve.basis(zeta) @ X
-        slope = r1 @ r1 + (r - point) @ r2
+        fall, slope, size = _fall(curve, X, point, zeta)
         # Beyond the centre of curvature, Gauss-Newton instead.
-        if slope.real <= 0.1 * (r1 @ r1).real:
-            slope = r1 @ r1
-        step = -((r - point) @ r1) / slope
+        if slope.real <= 0.1 * size.real:
+            if not flat:
+                flat, found = True, _bracketed(curve, X, point, k)
+                if found is not None:
+                    return found, True
+            slope = size
+        step = -fall / slope
         last, zeta = zeta, zeta + step if np.iscomplexobj(X) else min(max(zeta + step, low), high)
         if abs(step) <= 1e-14 * (s[-1] - s[0]):
             return zeta, True
         if zeta == last:
             break
     return zeta, False
+
+
+def _fall(curve: Curve, X: Array, point: Array, zeta: Any) -> tuple[Any, Any, Any]:
+    """``(r - x_c) . r'``, its slope ``r' . r' + (r - x_c) . r''`` and ``r' . r'``."""
+    r, r1, r2 = curve.basis(zeta) @ X
+    size = r1 @ r1
+    return (r - point) @ r1, size + (r - point) @ r2, size
+
+
+def _bracketed(curve: Curve, X: Array, point: Array, k: int) -> Any | None:
+    """Closest point between the neighbours of station k, by Newton's method kept in a bracket; None if there is none."""
+    s = np.concatenate([[2 * curve.stations[0] - curve.stations[1]], curve.stations])
+    s = np.append(s, 2 * s[-1] - s[-2])
+    low, high = float(s[k]), float(s[k + 2])
+    if _fall(curve, X, point, low)[0].real > 0 or _fall(curve, X, point, high)[0].real < 0:
+        return None
+    zeta = float(s[k + 1])
+    for _ in range(_PROJECTION_STEPS):
+        fall, slope, size = (term.real for term in _fall(curve, X, point, zeta))
+        low, high = (low, zeta) if fall > 0 else (zeta, high)
+        after = zeta - fall / slope if slope > 0 else np.inf
+        if not low < after < high:
+            after = (low + high) / 2
+        done = abs(fall) <= 1e-14 * size * (s[-1] - s[0]) or after == zeta
+        zeta = after
+        if done:
+            break
+    fall, slope, _ = _fall(curve, X, point, zeta + 0 * X[0, 0])
+    return zeta - fall / slope if np.iscomplexobj(X) else zeta

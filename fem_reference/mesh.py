@@ -81,7 +81,7 @@ def discretise(strip: Strip) -> Discretisation:
     order = np.lexsort((np.round(nodes[:, 1] / strip.height, 9), np.round(nodes[:, 0] / x[1], 9)))
     columns = order.reshape(-1, (1 if strip.element == "Q1" else 2) * ny + 1)
     m, r = columns.shape
-    weights = np.tile(_section_weights(strip.element, r), m)
+    weights = np.tile(edge_weights(strip.element, nodes[columns[0], 1]), m)
     sections = csr_matrix((weights, (np.repeat(np.arange(m), r), columns.ravel())), shape=(m, len(nodes)))
     edges = {"start": columns[0], "end": columns[-1], "right": columns[:, 0], "left": columns[:, -1]}
     return from_basis(strip, basis, edges, nodes[columns[:, 0], 0], sections)
@@ -128,13 +128,13 @@ def _fractions(n: int, grading: float) -> Floats:
     return points if grading != 1.0 else np.linspace(0.0, 1.0, n + 1)
 
 
-def _section_weights(element: str, nodes: int) -> Floats:
-    """Weights of the mean over a section of equal rows, ``(nodes,)``: the trapezoidal rule for Q1, Simpson's for the others."""
-    pattern, step = ((1.0, 1.0), 1) if element == "Q1" else ((1.0, 4.0, 1.0), 2)
-    weights = np.zeros(nodes)
-    for j in range(0, nodes - step, step):
-        weights[j : j + step + 1] += pattern
-    return np.asarray(weights / weights.sum())
+def edge_weights(element: str, along: Floats) -> Floats:
+    """Shares of an even traction at an edge's nodes, placed ``along`` it in order: ``integral N ds / length``, ``(r,)``."""
+    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
+    weights = np.zeros(along.size)
+    for j in range(0, along.size - step, step):
+        weights[j : j + step + 1] += np.array(pattern) * (along[j + step] - along[j])
+    return np.asarray(weights / (along[-1] - along[0]))
 
 
 def _gradients(basis: Any) -> Floats:

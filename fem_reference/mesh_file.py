@@ -7,31 +7,30 @@ import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix, kron
 from scipy.sparse.csgraph import connected_components
 
-from fem_reference.arrays import Floats, Ints
+from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import EDGES, Discretisation, from_basis, scalar_basis
+from fem_reference.mesh_text import MeshError, check_file
 from fem_reference.sampling import sample_basis
 from fem_reference.strip import Strip
 
 _LAYERS = 8
 _ROUND_OFF = 1e-9
-
-
-class MeshError(ValueError):
-    """A mesh file breaks a rule: one line."""
+_HEIGHT = 1e-6
+"""Distance of a face from its place, relative to the height, that digits written to a file may leave."""
 
 
 def read_mesh(strip: Strip) -> Discretisation:
     """Read ``strip.mesh_file``: straight-sided quadrilaterals in the strip's frame, with four named edges.
 
-    The strip lies along x from 0 to its length, between the faces "right" (below) and "left" (above), which may be any
-    curves over x; its ends "start" and "end" are straight, at x = 0 and at its length. The edges are named sets of lines:
-    Gmsh's physical groups, or meshio's cell sets.
+    The mesh fills the strip: its ends "start" and "end" lie at x = 0 and at its length, its faces "right" and "left" at half its
+    height below and above the axis, all in the plane z = 0. The edges are named sets of lines: Gmsh's physical groups, or
+    meshio's cell sets.
 
     Raises
     ------
     ValueError
-        If the file cannot be read, an edge is missing or out of place, an element is clockwise, not convex or without area,
-        or the mesh falls into parts.
+        If the file is not a regular one of at most 16 MB, cannot be read, an edge is missing or out of place, an element is
+        clockwise, not convex or without area, a node belongs to none, or the mesh falls into parts or has holes.
     """
     from skfem import MeshQuad
 
@@ -42,6 +41,7 @@ def read_mesh(strip: Strip) -> Discretisation:
         quads = _along(points, quads)
         basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
         edges = {name: _edge(basis, name, lines) for name in EDGES}
+        _check_closed(basis, lines)
         _check_place(strip, basis.doflocs.T, edges)
     except MeshError as error:
         raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
@@ -54,10 +54,13 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     """Corners ``(n, 2)``, quadrilaterals ``(e, 4)``, and the lines ``(l, 2)`` of each named edge."""
     import meshio
 
+    check_file(path)
     try:
         mesh = meshio.read(path)
-    except (OSError, meshio.ReadError, SystemExit) as error:
-        raise MeshError(f"cannot be read ({str(error) or type(error).__name__})") from None
+    except (meshio.ReadError, *_UNREADABLE) as error:
+        said = " ".join(str(error).split())[:80] or type(error).__name__
+        raise MeshError(f"cannot be read ({said})") from None
+    _check_points(mesh)
     quads, lines = [], dict[str, list[Ints]]()
     named = _names(mesh)
     for number, block in enumerate(mesh.cells):
@@ -76,6 +79,49 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     number_of[corners] = np.arange(corners.size)
     found = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
     return mesh.points[corners, :2].astype(float), local.reshape(-1, 4), found
+
+
+_UNREADABLE = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    MemoryError,
+    OSError,
+    RuntimeError,
+    SyntaxError,
+    SystemExit,
+    TypeError,
+    ValueError,
+)
+"""What readers of formats raise on broken files."""
+
+
+def _check_points(mesh: Any) -> None:
+    """Require finite nodes in the plane z = 0, cells of nodes that are there, and no node without a quadrilateral."""
+    points = mesh.points
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or not len(points):
+        raise MeshError("must hold nodes with two or three coordinates")
+    if not np.all(np.isfinite(points)):
+        raise MeshError(f"node {_first(~np.isfinite(points).all(axis=1))} must have finite coordinates")
+    if points.shape[1] > 2:
+        off = np.abs(points[:, 2]) > _ROUND_OFF * np.ptp(points[:, :2], axis=0).max(initial=0.0)
+        if off.any():
+            raise MeshError(f"node {_first(off)} must have z = 0, it has {points[_first(off), 2]:g}")
+    used = np.zeros(len(points), dtype=bool)
+    for block in mesh.cells:
+        nodes = np.asarray(block.data)
+        if nodes.size and not 0 <= nodes.min() <= nodes.max() < len(points):
+            raise MeshError(f'cells of type "{block.type}" must have nodes below {len(points)}')
+        if block.type.startswith("quad"):
+            used[nodes] = True
+    if used.any() and not used.all():
+        raise MeshError(f"node {_first(~used)} must belong to a quadrilateral")
+
+
+def _first(failed: Array) -> int:
+    return int(np.argmax(failed))
 
 
 def _names(mesh: Any) -> dict[str, list[Ints]]:
@@ -147,6 +193,16 @@ def _edge(basis: Any, name: str, lines: dict[str, Ints]) -> Ints:
     return np.asarray(dofs[np.argsort(basis.doflocs[axis, dofs])], dtype=np.int64)
 
 
+def _check_closed(basis: Any, lines: dict[str, Ints]) -> None:
+    """Require every line of the boundary on one of the edges: no hole, no gap."""
+    named = {tuple(sorted(map(int, line))) for name in EDGES for line in lines[name]}
+    for facet in basis.mesh.boundary_facets():
+        a, b = basis.mesh.facets[:, facet]
+        if tuple(sorted((int(a), int(b)))) not in named:
+            (xa, ya), (xb, yb) = basis.mesh.p[:, [a, b]].T
+            raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) must belong to an edge")
+
+
 def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
     L = strip.length
     for name, place in (("start", 0.0), ("end", L)):
@@ -156,9 +212,20 @@ def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
         x = nodes[edges[name], 0]
         if abs(x[0]) + abs(x[-1] - L) > _ROUND_OFF * L or np.any(np.diff(x) <= _ROUND_OFF * L):
             raise MeshError(f'the edge "{name}" must be a curve over x from 0 to {L:g}')
-    low, high = (nodes[edges[name]] for name in ("right", "left"))
-    if np.any(np.interp(low[:, 0], *high.T) <= low[:, 1]):
+    h = strip.height
+    low, high = (nodes[edges[name], 1] for name in ("right", "left"))
+    if low.mean() > high.mean():
         raise MeshError('the edge "right" must lie below the edge "left"')
+    for name, y, place in (("right", low, -h / 2), ("left", high, h / 2)):
+        off = y[np.argmax(np.abs(y - place))]
+        if abs(off - place) > _HEIGHT * h:
+            raise MeshError(
+                f'the edge "{name}" must lie at y = {place:g} (half the height), it reaches {off:g}'
+            )
+    for name in ("start", "end"):
+        y = nodes[edges[name], 1]
+        if max(abs(y[0] + h / 2), abs(y[-1] - h / 2)) > _HEIGHT * h:
+            raise MeshError(f'the edge "{name}" must reach from y = {-h / 2:g} to {h / 2:g}')
 
 
 def _sections(basis: Any, nodes: Floats, edges: dict[str, Ints], stations: Floats) -> csr_matrix:

@@ -10,6 +10,7 @@ from fem_reference.arrays import Array, Floats
 from fem_reference.body import Body, build_body
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
+from fem_reference.mesh import edge_weights
 from fem_reference.problem import Contact, SolidProblem
 
 
@@ -29,6 +30,8 @@ class Model:
         Its contacts.
     expansion
         Displacements from unknowns, ``(2 n, m)``.
+    load
+        Nodal forces of the end loads at the load parameter 1, ``(n, 2)``, each in the frame of its strip [N].
     """
 
     problem: SolidProblem
@@ -36,6 +39,7 @@ class Model:
     parts: tuple[slice, ...]
     pairs: tuple[Pair, ...]
     expansion: csr_matrix
+    load: Floats
 
     @property
     def nodes(self) -> int:
@@ -51,6 +55,11 @@ class Model:
     def force_scale(self) -> float:
         """Largest ``E I / L^2`` [N]: a force that bends the strips, whatever the load."""
         return max(body.force_scale for body in self.bodies)
+
+    @property
+    def largest_load(self) -> float:
+        """Largest end load at the load parameter 1 [N]."""
+        return max((float(np.hypot(*load.force)) for load in self.problem.loads), default=0.0)
 
     @property
     def length(self) -> float:
@@ -98,7 +107,19 @@ def build(problem: SolidProblem) -> Model:
         parts=parts,
         pairs=tuple(_pair(problem, contact, bodies, parts) for contact in problem.contacts),
         expansion=block_diag([body.expansion for body in bodies], format="csr"),
+        load=np.concatenate([_end_load(problem, body) for body in bodies]),
     )
+
+
+def _end_load(problem: SolidProblem, body: Body) -> Floats:
+    """Nodal forces ``(n, 2)`` of the loads on a body's free end."""
+    forces = np.zeros((len(body.mesh.nodes), 2))
+    edge = body.mesh.edges["end" if body.free_end else "start"]
+    share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
+    for load in problem.loads:
+        if load.strip == body.strip.name:
+            forces[edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
+    return forces
 
 
 def _pair(

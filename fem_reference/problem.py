@@ -143,26 +143,57 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolidProblem:
-    """Strips, pins and their contacts.
+class EndLoad:
+    """A dead force on the free end of a strip, spread evenly over the undeformed section.
+
+    Parameters
+    ----------
+    strip
+        Name of the strip.
+    force
+        At the load parameter 1, in the global frame; it grows with the load parameter and keeps its direction [N].
 
     Raises
     ------
     ValueError
-        If two have one name, a contact names nothing, or a node starts on the wrong side of a strip.
+        If the force is not finite or vanishes.
+    """
+
+    strip: str
+    force: Point
+
+    def __post_init__(self) -> None:
+        owner = f"EndLoad({self.strip!r})"
+        require_point(owner, "force", self.force)
+        require(any(self.force), owner, "force", self.force, "must not be zero")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidProblem:
+    """Strips, pins and their contacts, and loads on free ends.
+
+    Raises
+    ------
+    ValueError
+        If two have one name, a contact or a load names nothing, or a node starts on the wrong side of a strip.
     """
 
     strips: tuple[Strip, ...]
     pins: tuple[Pin, ...] = ()
     contacts: tuple[Contact, ...] = ()
+    loads: tuple[EndLoad, ...] = ()
 
     def __post_init__(self) -> None:
         require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
         _require_distinct("strips", [strip.name for strip in self.strips])
         _require_distinct("pins", [pin.name for pin in self.pins])
         _require_distinct("contacts", [contact.name for contact in self.contacts])
+        names = [strip.name for strip in self.strips]
+        for load in self.loads:
+            owner = f"EndLoad({load.strip!r})"
+            require(load.strip in names, owner, "strip", load.strip, f"must name a strip: {names}")
         for contact in self.contacts:
-            owner, names = f"Contact({contact.name!r})", [strip.name for strip in self.strips]
+            owner = f"Contact({contact.name!r})"
             nodes = [pin.name for pin in self.pins]
             nodes += [f"{name}.{end}" for name in names if name != contact.strip for end in ("start", "end")]
             require(contact.strip in names, owner, "strip", contact.strip, f"must name a strip: {names}")

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from fem_reference.arrays import Floats, Ints
+from fem_reference.critical import CriticalPoint
 from fem_reference.model import Model
 from fem_reference.state import State
 from fem_reference.status import Status
@@ -62,7 +63,7 @@ class Result:
     load_parameter
         Accepted load parameters, ``(s,)``.
     reached
-        Last accepted load parameter, sub-steps included.
+        Last accepted load parameter, sub-steps included, or that of the event at which the path ends.
     contacts, supports, tips
         Histories by pair ``"pin->strip"``, by strip, and the section mean of the free end ``(s, 2)`` by strip [m].
     newton_iterations
@@ -71,6 +72,11 @@ class Result:
         Number of attempts that were given up.
     substeps
         Accepted states in all, those between the load parameters included.
+    index
+        Number of negative eigenvalues of the energy's Hessian over the displacements that supports and closed contacts
+        admit, ``(s,)``: zero is stable; -1 where a contact is closed without force and the two sides differ.
+    critical
+        Critical points on the way, those between load parameters included.
     unknowns
         Number of unclamped degrees of freedom.
     wall_seconds
@@ -95,6 +101,8 @@ class Result:
     newton_iterations: Ints
     cutbacks: int
     substeps: int
+    index: Ints
+    critical: tuple[CriticalPoint, ...]
     unknowns: int
     wall_seconds: float
     mesh_points: Floats = field(repr=False)

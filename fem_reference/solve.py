@@ -15,6 +15,7 @@ from fem_reference.settings import Settings
 from fem_reference.state import State, clamp_reactions, push
 from fem_reference.status import Status
 
+EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
 VTK_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
@@ -100,6 +101,8 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
         substeps=sum(step.substeps for step in steps),
+        index=np.array([step.index for step in done], dtype=np.int64),
+        critical=tuple(point for step in steps for point in step.critical),
         unknowns=model.unknowns,
         wall_seconds=seconds,
         mesh_points=np.concatenate([body.strip.to_global(body.mesh.nodes) for body in model.bodies]),
@@ -116,7 +119,8 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
         return Status.COMPLETED, Status.COMPLETED.value
     pair = "" if last.pair is None else f" ({model.pairs[last.pair].name})"
     cause = "" if last.cause is last.status else f" because {last.cause.value}"
-    return last.status, f"{last.status.value}{cause}{pair}, after load parameter {last.load_parameter:.9g}"
+    place = "at" if last.status in EVENTS else "after"
+    return last.status, f"{last.status.value}{cause}{pair}, {place} load parameter {last.load_parameter:.9g}"
 
 
 def _contact_history(states: tuple[State, ...], number: int, slip_off: float) -> ContactHistory:

@@ -136,8 +136,8 @@ def with_conditions(at: State, conditions: tuple[Condition, ...]) -> State:
 
 
 def residual(model: Model, at: State) -> Floats:
-    """Internal force minus contact forces, ``(n, 2)``; in equilibrium, the clamps' forces [N]."""
-    R = model.internal_force(at.u)
+    """Internal force minus end loads and contact forces, ``(n, 2)``; in equilibrium, the clamps' forces [N]."""
+    R = model.internal_force(at.u) - at.t * model.load
     for touch in at.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
     return R
@@ -161,7 +161,7 @@ def clamp_reactions(model: Model, at: State) -> list[tuple[Floats, float]]:
 
 
 def imbalance(model: Model, at: State) -> float:
-    """Largest component of the clamps' reactions plus the pins' forces, moments about the first strip's start over L [N]."""
+    """Largest component of the clamps' reactions plus pins' forces and end loads, moments about the first strip's start over L [N]."""
     strips = model.problem.strips
     total, moment = np.zeros(2), 0.0
     for (force, own), body in zip(clamp_reactions(model, at), model.bodies, strict=True):
@@ -172,6 +172,12 @@ def imbalance(model: Model, at: State) -> float:
         if len(touch.pair.strips) == 1:
             total += push(touch)
             moment += _cross(touch.pair.position(at.u, at.t), push(touch))
+    for body, part in model.each():
+        loads = at.t * model.load[part] @ body.strip.frame.T
+        place = np.array(body.strip.start) - strips[0].start
+        points = place + (body.mesh.nodes + at.u[part]) @ body.strip.frame.T
+        total += loads.sum(axis=0)
+        moment += float((points[:, 0] * loads[:, 1] - points[:, 1] * loads[:, 0]).sum())
     return float(np.abs([*total, moment / model.length]).max())
 
 

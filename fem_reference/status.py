@@ -21,3 +21,7 @@ class Status(Enum):
     STEP_LIMIT = (
         "the load steps stayed so short that the next load parameter was not reached within their limit"
     )
+    ANOTHER_BRANCH = "the state found is not on the branch of the one before"
+    LIMIT_POINT = "the load parameter has a limit on this branch: beyond it there is no equilibrium nearby"
+    BIFURCATION = "the path divides: beyond this load parameter the branch that was followed is unstable"
+    LINE_CONTACT = "the strip bends as the round pin does: from here it touches along a line, not at a point"

@@ -11,6 +11,24 @@ from fem_reference.material import MATERIALS, PLANES
 
 ELEMENTS = ("Q1", "Q2", "Q2-full")
 
+LARGEST_MEMORY = 2 * 2.0**30
+"""Largest memory that the mesh of a strip may need [bytes]."""
+LARGEST_WORK = 1e11
+"""Largest number of operations that one factorisation may need: about half a minute."""
+
+
+def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
+    """Memory [bytes] and operations of a factorisation that a mesh needs, before anything is allocated.
+
+    Measured: 36 kB to a biquadratic element, 9.4 kB to a bilinear one, and two bands ``m (w + 1)``. With r nodes to a section the
+    band's width w is ``4 r + 5``, bilinear ``2 r + 3``; the factorisation takes ``m w^2`` operations.
+    """
+    nx, ny = map(float, mesh)
+    order, each = (1, 9.4e3) if element == "Q1" else (2, 36e3)
+    r = order * ny + 1
+    m, width = 2 * r * (order * nx + 1), 2 * order * r + 2 * order + 1
+    return each * nx * ny + 16 * m * (width + 1), m * width**2
+
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
@@ -49,7 +67,7 @@ class Strip:
     Raises
     ------
     ValueError
-        If a value breaks its rule.
+        If a value breaks its rule, or the mesh needs more than `LARGEST_MEMORY` or `LARGEST_WORK`.
     """
 
     name: str
@@ -78,7 +96,7 @@ class Strip:
         nu = self.poissons_ratio
         require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
         require_choice(owner, "clamped", self.clamped, (("start",), ("end",)))
-        whole = all(isinstance(n, int) for n in self.mesh) and len(self.mesh) == 2
+        whole = len(self.mesh) == 2 and all(isinstance(n, int) and n < 10**15 for n in self.mesh)
         require(
             whole and self.mesh[0] >= 2 and self.mesh[1] >= 1,
             owner,
@@ -86,8 +104,14 @@ class Strip:
             self.mesh,
             "must be two whole numbers, >= 2 and >= 1",
         )
-        require_choice(owner, "clamp", self.clamp, ("rod", "full"))
         require_choice(owner, "element", self.element, ELEMENTS)
+        if self.mesh_file is None:
+            memory, work = solution_cost(self.mesh, self.element)
+            rule = f"must need at most {LARGEST_MEMORY / 2**30:g} GiB, needs about {memory / 2**30:.3g}"
+            require(memory <= LARGEST_MEMORY, owner, "mesh", self.mesh, rule)
+            rule = f"must need at most {LARGEST_WORK:g} operations a factorisation, needs about {work:.2g}"
+            require(work <= LARGEST_WORK, owner, "mesh", self.mesh, rule)
+        require_choice(owner, "clamp", self.clamp, ("rod", "full"))
         require_choice(owner, "material", self.material, tuple(MATERIALS))
         require_choice(owner, "plane", self.plane, PLANES)
 

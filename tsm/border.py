@@ -51,12 +51,7 @@ class Units:
     """
 
     def __init__(self, model: Model, k: int) -> None:
-        L, F = model.length, model.force_scale
-        counts = [pair.element_type.contact_unknowns for pair in model.pairs]
-        own_columns = [[F, F, L, 1.0][:count] for count in counts]
-        own_rows = [[L, L, F, 1.0][:count] for count in counts]
-        self.columns = np.concatenate([np.array([L, L, 1.0, F, F, F * L])[model.kind], *own_columns])
-        self.rows = 1 / np.concatenate([np.array([F, F, F * L, L, L, 1.0])[model.kind], *own_rows])
+        self.columns, self.rows = model.units, 1 / model.row_units
         banded, last = model.banded, model.equations
         column, entry = np.indices((banded, 3 * k + 1))
         row = column + entry - 2 * k

@@ -5,11 +5,13 @@ touch         the gap of an open pair falls below zero, its node on the stated s
 release       the force of a closed pair falls below zero
 slip-off      the position of a closed pair leaves the beam past an end
 pass-through  the owner of a closed pair changes from an element to its neighbour
-limit-point   the load parameter turns back, under arc-length control
+line-contact  the curvature of the beam at a closed pair reaches the contact surface's
+limit-point   the load parameter is stationary along the path
+bifurcation   another branch crosses the path, which goes on unstable
 ============= ==============================================================================
 
-The first three change the set of closed contacts. Each has a margin, positive before and negative after, and
-lies where its margin is zero. A pass-through changes nothing and is interpolated.
+The first three change the set of closed contacts. Each of them, and line contact, has a margin, positive before and negative
+after, and lies where its margin is zero. A pass-through changes nothing and is interpolated.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from tsm.contact import arc_position, project
+from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
 
@@ -38,7 +41,9 @@ class EventKind(Enum):
     RELEASE = "release"
     SLIP_OFF = "slip-off"
     PASS_THROUGH = "pass-through"
+    LINE_CONTACT = "line-contact"
     LIMIT_POINT = "limit-point"
+    BIFURCATION = "bifurcation"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,6 +157,9 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
             found.append(
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
+            if pair.pair.offset > 0:
+                room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
+                found.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
             seen = project(model, pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsm.contact import project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, EventKind, Margin
 from tsm.model import Model
@@ -23,7 +24,9 @@ _LAST_PART = 1e-2
 """A touch within a fall is located to this part of the lost force; the path of a fall is not the load's."""
 _FIRST_PACE = 1e-1
 """Time of the first step of a fall."""
-_TRIALS = 100
+_LEVEL = 1e-9
+"""Rise of the energy, in parts of itself and of ``EI/L``, that round-off may leave."""
+_TRIALS = 200
 """Steps of a fall at most, those taken back included: what nothing holds falls forever."""
 
 
@@ -50,16 +53,17 @@ class Fall:
 
     def rest(self, state: State) -> Equilibrium | None:
         """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; None if nothing holds it."""
-        pace, over = _FIRST_PACE, set[int]()
+        pace, over = _FIRST_PACE, _before(self.newton.model, state)
         resistance = _resistance(self.newton.model)
         for _ in range(_TRIALS):
             at_rest = pace > _FIRST_PACE * 1e8
             drag = None if at_rest else Drag(resistance / pace, state.q)
             equilibrium = self.newton.solve(state, drag=drag)
             self.iterations += equilibrium.iterations
-            margins = self.measure(equilibrium) if equilibrium.status is Status.CONVERGED else []
+            down = equilibrium.status is Status.CONVERGED and self._descends(state, equilibrium, drag)
+            margins = self.measure(equilibrium) if down else []
             landed = met(margins)
-            if equilibrium.status is Status.CONVERGED and not landed:
+            if down and not landed:
                 if at_rest:
                     return equilibrium
                 state, pace = equilibrium.state, 10 * pace
@@ -70,6 +74,27 @@ class Fall:
             else:
                 pace /= 4
         return None
+
+    def _descends(self, state: State, equilibrium: Equilibrium, drag: Drag | None) -> bool:
+        """Whether the energy falls by what the drag takes: too long a step against little drag ends on another equilibrium."""
+        newton, after = self.newton, equilibrium.state
+        before, now = (newton.potential(one) for one in (state, after))
+        moved = after.q - state.q
+        taken = 0.0 if drag is None else float(drag.per_way @ moved**2) / 2
+        scale = newton.model.force_scale * newton.model.length
+        return now + taken <= before + _LEVEL * (scale + abs(before))
+
+
+def _before(model: Model, state: State) -> set[int]:
+    """Open pairs whose node lies on its side of the beam, or on the surface: it cannot come to lie behind without a contact."""
+    small = ROUND_OFF * model.length
+    found = set()
+    for k, (pair, touch, armed) in enumerate(zip(model.pairs, state.touches, state.armed, strict=True)):
+        if touch is None and armed:
+            seen = project(model, pair, state)
+            if seen.overshoot <= small and seen.gap >= -small:
+                found.add(k)
+    return found
 
 
 def met(margins: list[Margin]) -> list[Margin]:

@@ -130,8 +130,7 @@ class Model:
         self.properties = self._properties()
         self.coefficients = self._coefficients()
         self.rods = Rods(self) if len(self.exact) else None
-        longest = max(structure.beams, key=lambda beam: beam.length)
-        self.length = longest.length
+        self.length = max(*(beam.length for beam in structure.beams), self._extent())
         self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
         self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
 
@@ -173,6 +172,21 @@ class Model:
         self.exact_dofs = np.concatenate([nodal[:3], own, nodal[3:]])
         self.dof_count = 3 * (len(self.coordinates) + len(self.exact))
 
+    def _extent(self) -> float:
+        """Diagonal of the largest structure of joined beams: how far its ends may go; 0 where none are joined."""
+        if not self.joined:
+            return 0.0
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        i, j = self.element_nodes.T
+        shape = (len(self.coordinates),) * 2
+        count, of = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=shape), directed=False)
+        least, most = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+        np.minimum.at(least, of, self.coordinates)
+        np.maximum.at(most, of, self.coordinates)
+        return float(np.hypot(*(most - least).T).max())
+
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}
         self.prescribed: dict[int, float] = {}
@@ -200,9 +214,31 @@ class Model:
         return kind
 
     @cached_property
+    def units(self) -> Array:
+        """Units of the unknowns, from the longest beam and the largest ``EI/L^2``."""
+        L, F = self.length, self.force_scale
+        own = [[F, F, L, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
+        return np.concatenate([np.array([L, L, 1.0, F, F, F * L])[self.kind], *own])
+
+    @cached_property
+    def row_units(self) -> Array:
+        """Units of the equations."""
+        L, F = self.length, self.force_scale
+        own = [[L, L, F, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
+        return np.concatenate([np.array([F, F, F * L, L, L, 1.0])[self.kind], *own])
+
+    @cached_property
     def whole(self) -> bool:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
         return len(self.exact) == len(self.beams) and not len(self.closed)
+
+    @cached_property
+    def pairs_on(self) -> dict[str, list[int]]:
+        """Numbers of the contact pairs on every beam that is touched."""
+        on: dict[str, list[int]] = {}
+        for k, pair in enumerate(self.pairs):
+            on.setdefault(pair.pair.beam, []).append(k)
+        return on
 
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""

@@ -104,11 +104,20 @@ class Newton:
         own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
         self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
         self.own_per_limit = np.concatenate([np.empty(0), *own])
+        self.per_unknown = np.concatenate([self.per_limit, self.own_per_limit])
 
     def apart(self, one: State, other: State) -> float:
         """Largest difference of two states, in largest Newton steps."""
-        moved = (other.q - one.q)[self.model.free] * self.per_limit
-        return float(np.abs(moved).max(initial=0.0))
+        return self.size((other.q - one.q)[self.model.free])
+
+    def potential(self, state: State) -> float:
+        """Strain energy less the work of the dead loads."""
+        work = state.load_parameter * float(self.model.load @ state.q)
+        return self.assembler.energy(state) - work
+
+    def size(self, change: Array) -> float:
+        """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
+        return float(np.abs(change * self.per_limit).max(initial=0.0))
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from tsm import present
+from tsm.axis import axis_line, is_exact
 from tsm.contact import arc_position, project
-from tsm.elements.axis import PointForce, deflected_axes
-from tsm.elements.properties import Array, Properties
+from tsm.critical import CriticalPoint
+from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
-from tsm.model import BeamModel, Model
+from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces
@@ -82,7 +83,12 @@ class Result:
     cutbacks : int
         Steps given up.
     events : tuple of Event
-        Contact events in order.
+        Contact events and critical points in order.
+    index : ndarray of int, shape (s,)
+        Number of negative eigenvalues of the energy under the supports and closed contacts: 0 where the equilibrium is stable, -1
+        where a contact has no energy.
+    critical : tuple of CriticalPoint
+        Critical points of the path, with their modes.
     unknowns : int
         Number of unknowns.
     wall_seconds : float
@@ -98,6 +104,8 @@ class Result:
     newton_iterations: Array
     cutbacks: int
     events: tuple[Event, ...]
+    index: Array
+    critical: tuple[CriticalPoint, ...]
     unknowns: int
     wall_seconds: float
     model: Model
@@ -155,39 +163,11 @@ class Result:
         xy : ndarray, shape (m, 2)
             Deformed position.
         """
-        place, exact = self.model.beams[beam], self.model.rods is not None and self._exact(beam)
-        default = max(10, math.ceil(100 / place.beam.elements)) if exact else 10
-        xi = np.linspace(0, 1, (points_per_element or default) + 1)
-        if exact:
-            axes = np.array([self._exact_axis(e, k, xi) for e in range(place.first, place.last + 1)])
-        else:
-            axes = self._closed_axis(place, k, xi)
-        arcs = np.array(place.arcs[:-1])[:, None] + xi * np.array(place.lengths)[:, None]
-        return np.append(arcs[:, :-1], place.beam.length), np.concatenate([*axes[:, :-1], axes[-1, -1:]])
+        here = self.equilibria[k]
+        return axis_line(self.model, here.state, here.system, beam, points_per_element)
 
     def _exact(self, beam: str) -> bool:
-        return bool(np.isin(self.model.beams[beam].first, self.model.exact))
-
-    def _exact_axis(self, e: int, k: int, xi: Array) -> Array:
-        rods = self.model.rods
-        assert rods is not None, "an exact element has rods"
-        state = self.equilibria[k].state
-        return deflected(rods, state).at(int(self.model.place[e]), xi * self.model.element[e].l0).position
-
-    def _closed_axis(self, place: BeamModel, k: int, xi: Array) -> Array:
-        """Positions on all elements of a beam, shape (elements, m, 2)."""
-        state, system = self.equilibria[k].state, self.equilibria[k].system
-        own = slice(place.first, place.last + 1)
-        x, part = state.q[self.model.dofs[:, own]], self.model.place[own]
-        p = Properties(*(np.asarray(values)[part] for values in self.model.properties))
-        contacts = [
-            PointForce(touch.element - place.first, touch.xi, touch.force)
-            for pair, touch in zip(self.model.pairs, state.touches, strict=True)
-            if touch is not None and pair.target is place and pair.slot >= 0
-        ]
-        axes = deflected_axes(p, x, system.closed_force[:, part], contacts, xi)
-        starts: Array = np.array(self.model.element_start[own]) + x[:2].T
-        return starts[:, None] + axes
+        return is_exact(self.model, beam)
 
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
@@ -257,7 +237,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         message=status.value + where,
         load_parameter=np.array([e.state.load_parameter for e in equilibria]),
         contacts={pair.pair.name: _contact(model, equilibria, k) for k, pair in enumerate(model.pairs)},
-        supports={name: _support(model, equilibria, name) for name in _supported(model)},
+        supports=_supports(model, equilibria),
         tips={
             name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
             for name, place in model.beams.items()
@@ -265,6 +245,8 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         newton_iterations=np.diff(upto, prepend=0),
         cutbacks=sum(step.cutbacks for step in steps),
         events=tuple(event for step in steps for event in step.events),
+        index=np.array([step.index for step in requested], dtype=np.int64),
+        critical=tuple(point for step in steps for point in step.critical),
         unknowns=model.unknowns,
         wall_seconds=seconds,
         model=model,
@@ -298,13 +280,19 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     return 0.0, np.nan, seen.gap if over else np.nan
 
 
-def _supported(model: Model) -> list[str]:
-    return list(dict.fromkeys(name.rpartition(".")[0] for name in model.support_node))
-
-
-def _support(model: Model, equilibria: tuple[Equilibrium, ...], beam: str) -> SupportHistory:
-    nodes = [node for name, node in model.support_node.items() if name.rpartition(".")[0] == beam]
-    held = np.isin(np.arange(model.dof_count), model.fixed)
-    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3)[nodes] for e in equilibria]
-    table = np.array(reactions).reshape(-1, len(nodes), 3)
-    return SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])
+def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
+    """Reactions on the supported nodes of every beam."""
+    held = np.zeros(model.dof_count, dtype=bool)
+    held[model.fixed] = True
+    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3) for e in equilibria]
+    nodes: dict[str, list[int]] = {}
+    for name, node in model.support_node.items():
+        nodes.setdefault(name.rpartition(".")[0], []).append(node)
+    tables = {
+        beam: np.array([forces[own] for forces in reactions]).reshape(-1, len(own), 3)
+        for beam, own in nodes.items()
+    }
+    return {
+        beam: SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])
+        for beam, table in tables.items()
+    }

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
+
+BRANCHES = ("stop", "stable", "primary")
+"""Ways to go on at a critical point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,14 +29,18 @@ class Settings:
         Load steps tried between two load parameters.
     max_chatter : int
         Contact events allowed at one load parameter, per contact pair.
+    branch : {"stop", "stable", "primary"}
+        What happens at a critical point of the path: it ends there by name, it turns to the stable branch of least energy, or it goes on
+        unstable where it can.
     """
 
     tolerance: float = 1e-10
     max_iterations: int = 25
     accuracy: float = 1e-9
-    smallest_step: float = 1e-7
+    smallest_step: float = 1e-12
     max_attempts: int = 1000
     max_chatter: int = 6
+    branch: Literal["stop", "stable", "primary"] = "stop"
 
     def __post_init__(self) -> None:
         for field, least in (("tolerance", 0.0), ("accuracy", 1e-14), ("smallest_step", 0.0)):
@@ -43,3 +51,5 @@ class Settings:
             value = getattr(self, field)
             if value < 1:
                 raise ValueError(f"Settings.{field} = {value!r}: must be at least 1")
+        if self.branch not in BRANCHES:
+            raise ValueError(f"Settings.branch = {self.branch!r}: must be one of {', '.join(BRANCHES)}")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from tsm.elements.properties import Array
+from tsm.memory import check_memory
 from tsm.model import Model
 from tsm.result import Result, collect
 from tsm.settings import Settings
@@ -79,7 +80,7 @@ def solve(
     SolveError
         Where the solution stops; carries the partial result.
     ValueError
-        As for `march`.
+        As for `march`, or if the memory of the machine does not hold the solution.
 
     Examples
     --------
@@ -96,6 +97,7 @@ def solve(
     '0.002288 N'
     """
     targets = checked(load_parameters)
+    check_memory(structure, len(targets))
     begin = time.perf_counter()
     model = Model(structure)
     steps = []

@@ -20,7 +20,11 @@ class Status(Enum):
     INACCURATE = "the integration inside an exact element does not reach its accuracy"
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
-    UNREACHABLE = "no equilibrium lies beyond: the load parameter has a limit point"
+    LIMIT_POINT = "the load has a limit point: no equilibrium lies beyond it on this branch"
+    BIFURCATION = "the path has a bifurcation point: beyond it this branch is unstable"
+    LINE_CONTACT = (
+        "the beam bends as much as a round pin: beyond, it touches along a line instead of at a point"
+    )
     FALLING = "a structure that a contact slipped off was not found to come to rest"
     LOST_CONTACT = "a contact that must persist was released"
     SLIPPED_OFF = "a contact that must persist slipped off the beam"

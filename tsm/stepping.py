@@ -16,6 +16,15 @@ import numpy as np
 
 from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
+from tsm.critical import (
+    Bracket,
+    CriticalKind,
+    CriticalPoint,
+    critical_point,
+    limit_load,
+    locate_bifurcation,
+    mode_shape,
+)
 from tsm.crossing import crossing
 from tsm.elements.properties import Array
 from tsm.events import (
@@ -31,9 +40,9 @@ from tsm.events import (
     passed,
 )
 from tsm.fall import Fall, met
-from tsm.guard import SHORT, PathGuard
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
+from tsm.path import FOLLOWED, LONGEST_STEP, PathTangent
 from tsm.predictor import extrapolate
 from tsm.settings import Settings
 from tsm.state import State, Touch
@@ -47,6 +56,16 @@ _FOLD = 100.0
 """Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
 FAR = 1.0
 """Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
+_FEW = 3
+"""Fewer states than these are extrapolated along the tangent."""
+_SAFE = 0.8
+"""Part of the step that the tangents would still allow, of which the next one is tried."""
+_SHORTENED = 0.1
+"""Shortest part of a refused step that is tried next."""
+_STRAIGHT = 0.02
+"""A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
+_AHEAD, _PUSH = 1e-4, 0.006
+"""Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
@@ -71,6 +90,10 @@ class Step:
         Attempts given up since the step before.
     events : tuple of Event
         Contact events since the step before.
+    critical : tuple of CriticalPoint
+        Critical points since the step before.
+    index : int
+        Index of the equilibrium, see `tsm.stability`.
     """
 
     equilibrium: Equilibrium
@@ -79,6 +102,8 @@ class Step:
     iterations: int
     cutbacks: int
     events: tuple[Event, ...]
+    critical: tuple[CriticalPoint, ...] = ()
+    index: int = -1
 
 
 class Stepper:
@@ -99,12 +124,13 @@ class Stepper:
         self.step = 1.0
         self.failure = start.status
         self.memory = _MEMORY_WHOLE if model.whole else MEMORY
-        self.orientation = 0
-        self.mixed = all(pair.slot >= 0 for pair in model.pairs)
-        self.driven = bool(model.load.any() or model.fixed_values.any())
-        self.guard = self._guard()
+        self.shortened = 1 / 2
+        self.tangent = PathTangent(self.newton, start)
+        self.critical: list[CriticalPoint] = []
+        self.target, self.earlier = 0.0, self.tangent
+        self.index = max(self.tangent.index, 0) if start.status is Status.CONVERGED else 0
 
-    def resume(self, accepted: list[State], step: float, orientation: int) -> None:
+    def resume(self, accepted: list[State], step: float) -> None:
         """Go on from configurations that were accepted elsewhere, oldest first, instead of from the start.
 
         Parameters
@@ -113,8 +139,6 @@ class Stepper:
             In equilibrium, all with the same closed contacts.
         step : float
             Longest next step.
-        orientation : int
-            Sign of the determinant of the tangent, 0 if unknown.
         """
         state = accepted[-1]
         self.accepted = Equilibrium(
@@ -126,13 +150,8 @@ class Stepper:
         )
         self.history = accepted
         self.margins = self._measure(self.accepted)
-        self.step, self.orientation = step, orientation
-        self.guard = self._guard()
-
-    def _guard(self) -> PathGuard | None:
-        if not self.driven or self.accepted.status is not Status.CONVERGED:
-            return None
-        return PathGuard(self.newton, self.accepted.state)
+        self.step = step
+        self.tangent = PathTangent(self.newton, self.accepted)
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
@@ -144,14 +163,14 @@ class Stepper:
             return
         asked = frozenset(load_parameters.tolist())
         for target in self._ends(load_parameters.tolist()):
-            attempts = 0
+            attempts, self.target = 0, target
             while (t := self.accepted.state.load_parameter) < target:
                 if attempts == self.settings.max_attempts:
                     yield self._record(False, Status.STEP_LIMIT)
                     return
                 attempts += 1
                 left = target - t
-                step = min(self.step, self.guard.reach(left)) if self.guard else self.step
+                step = self.step
                 goal = target if left <= step * (1 + 1e-6) else t + step
                 status = self._attempt(goal)
                 if status is Status.CONVERGED:
@@ -162,10 +181,14 @@ class Stepper:
                     return
                 else:
                     self.cutbacks += 1
-                    self.step = min(step, left) / 2
+                    self.step = min(step, left) * self.shortened
                     if self.step < self.settings.smallest_step:
-                        yield self._record(False, self._verdict())
-                        return
+                        status = self._verdict()
+                        if status is Status.LIMIT_POINT:
+                            status = self._meet_limit_point()
+                        yield self._record(False, status)
+                        if status is not Status.CONVERGED:
+                            return
 
     def _ends(self, load_parameters: list[float]) -> list[float]:
         """Where steps must end: at the load parameters, and where a pin turns on the way to the last of them."""
@@ -187,8 +210,7 @@ class Stepper:
         }
         if self.failure in told or self.settings.smallest_step > 0.5:
             return self.failure
-        speed = PathGuard(self.newton, self.accepted.state).speed
-        return Status.UNREACHABLE if speed > _FOLD else Status.CUTBACK_FLOOR
+        return Status.LIMIT_POINT if self.tangent.speed() > _FOLD else Status.CUTBACK_FLOOR
 
     def _record(self, requested: bool, status: Status) -> Step:
         step = Step(
@@ -198,9 +220,11 @@ class Stepper:
             iterations=self.iterations,
             cutbacks=self.cutbacks,
             events=tuple(self.events),
+            critical=tuple(self.critical),
+            index=self.tangent.index,
         )
         self.iterations = self.cutbacks = 0
-        self.events = []
+        self.events, self.critical = [], []
         return step
 
     def _attempt(self, goal: float) -> Status:
@@ -215,13 +239,91 @@ class Stepper:
             touch = next(m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, crossed[1]))
             return self._switch(self.accepted, [touch])
         events = broken(self.margins, self._measure(reached))
-        if not events and not self._balanced(reached):
+        if events:
+            return self._stop_at_first(events, goal)
+        if not self._balanced(reached):
             return Status.UNBALANCED
-        if not events:
-            self._accept(reached)
-            self.step = min(2 * self.step, 1.0)
+        return self._advance(reached)
+
+    def _advance(self, reached: Equilibrium) -> Status:
+        """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
+        before, tangent = self.accepted.state, PathTangent(self.newton, reached)
+        missed = max(self._missed(self.tangent, reached), self._missed(tangent, reached))
+        fitting = _SAFE * FOLLOWED / max(missed, 1e-9)
+        if missed > FOLLOWED:
+            return self._refuse(fitting)
+        old, new = self.index, tangent.index
+        if 0 <= new != old and (new > old or self.tangent.index == old):
+            if missed > _STRAIGHT:
+                return self._refuse(1 / 2)
+            bracket = Bracket((before.load_parameter, old), (reached.state.load_parameter, new))
+            return self._meet_bifurcation(bracket, reached)
+        self._accept(reached, tangent)
+        taken = reached.state.load_parameter - before.load_parameter
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+        return Status.CONVERGED
+
+    def _meet_bifurcation(self, bracket: Bracket, reached: Equilibrium) -> Status:
+        """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
+        at = locate_bifurcation(self.newton, bracket, self._solve)
+        if at is None:
+            return self._refuse(1 / 2)
+        self._note_critical(CriticalKind.BIFURCATION, at, at.state.load_parameter)
+        primary = self.settings.branch == "primary"
+        self._accept(reached if primary else at)
+        if primary:
             return Status.CONVERGED
-        return self._stop_at_first(events, goal)
+        return self._turn(at) if self.settings.branch == "stable" else Status.BIFURCATION
+
+    def _meet_limit_point(self) -> Status:
+        """End the path beside a limit point, or let the structure fall to the stable branch."""
+        load = limit_load(*((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent)))
+        self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, load)
+        return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
+
+    def _note_critical(self, kind: CriticalKind, at: Equilibrium, load_parameter: float) -> None:
+        self.critical.append(critical_point(self.newton, kind, at, load_parameter))
+        self.events.append(
+            Event(
+                kind=EventKind[kind.name],
+                load_parameter=load_parameter,
+                pair="",
+                element=-1,
+                arc_position=float("nan"),
+                force=0.0,
+            )
+        )
+
+    def _turn(self, at: Equilibrium) -> Status:
+        """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
+        t, model = at.state.load_parameter, self.model
+        ahead = t + min(_AHEAD, (self.target - t) / 2)
+        found_mode = mode_shape(self.newton, at)
+        if found_mode is None:
+            return Status.FALLING
+        push = found_mode[0] * (_PUSH * model.length)
+        held = self.newton.prescribed(at.state, ahead)
+        found: list[tuple[float, Equilibrium]] = []
+        for way in (1.0, -1.0):
+            start = self.newton.update(held, way * push, at.system)
+            fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
+            rest = fall.rest(start)
+            self.iterations += fall.iterations
+            if rest is not None and PathTangent(self.newton, rest).index <= 0:
+                found.append((self.newton.potential(rest.state), rest))
+        if not found:
+            return Status.FALLING
+        least, rest = min(found, key=lambda pair: pair[0])
+        self.events[-1] = replace(self.events[-1], released=self.newton.potential(held) - least)
+        self.history = []
+        self._accept(rest)
+        self.step = 1.0
+        return Status.CONVERGED
+
+    def _refuse(self, part: float) -> Status:
+        """Try a part of the step."""
+        self.failure, self.shortened = Status.ITERATION_LIMIT, min(max(part, _SHORTENED), 1 / 2)
+        return self.failure
 
     def _balanced(self, equilibrium: Equilibrium) -> bool:
         """Whether support reactions and pin forces add up to nothing."""
@@ -236,33 +338,44 @@ class Stepper:
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
     def _solve(self, t: float) -> Equilibrium | None:
-        """Equilibrium at t from the predicted state; from the last state itself a long step may end on another branch."""
-        start = self.guard.predicted(t) if self.guard else extrapolate(self.model, self.history, t)
+        """Equilibrium at t from the predicted state, if the tangent leads to it."""
+        start = self._predicted(t)
         equilibrium = self.newton.solve(start)
         self.iterations += equilibrium.iterations
+        self.shortened = 1 / 2
         if equilibrium.status is not Status.CONVERGED:
             self.failure = equilibrium.status
             return None
-        if (self.guard and not self.guard.keeps(equilibrium.state)) or self._strays(start, equilibrium):
-            self.failure = Status.ITERATION_LIMIT
+        missed = self._missed(self.tangent, equilibrium)
+        if missed > FOLLOWED or self._strays(start, equilibrium):
+            self._refuse(_SAFE * FOLLOWED / missed if missed > FOLLOWED else 1 / 2)
             return None
         return equilibrium
 
-    def _strays(self, predicted: State, found: Equilibrium) -> bool:
-        """Whether a step that pins drive may have ended on another branch, which the path does not lead to.
+    def _predicted(self, t: float) -> State:
+        """State at t from the last states, or along the tangent where they are few."""
+        if len(self.history) < _FEW and not self._chord_contact():
+            return self.tangent.predicted(self.accepted.state, t)
+        return self.newton.prescribed(extrapolate(self.model, self.history, t), t)
 
-        Along the path the determinant of the tangent keeps its sign up to a fold, where the path ends; a short step may pass a
-        bifurcation. The sign does not tell of two singular points, and elements that a contact passes need not come to the nearest
-        equilibrium: theirs is to lie near its prediction.
-        """
-        if self.driven:
-            return False
-        if not self.model.whole and self.newton.apart(predicted, found.state) > FAR:
-            return True
-        first, last = found.orientation
-        if not self.mixed or (self.orientation or first) == last:
-            return False
-        return self.newton.apart(self.accepted.state, found.state) > SHORT
+    def _missed(self, tangent: PathTangent, found: Equilibrium) -> float:
+        """Part of the step to an equilibrium that a tangent does not explain; nothing is asked of contacts without an energy."""
+        if self._chord_contact():
+            return 0.0
+        return tangent.missed(self.accepted.state, found.state)
+
+    def _strays(self, predicted: State, found: Equilibrium) -> bool:
+        """Whether an equilibrium lies too far away; where contacts on chords allow no tangent, too far from its prediction."""
+        if self._chord_contact():
+            return self.newton.apart(predicted, found.state) > FAR
+        return self.newton.apart(self.accepted.state, found.state) > LONGEST_STEP
+
+    def _chord_contact(self) -> bool:
+        """Whether a contact is closed whose stiffness grows without bound at the nodes: its tangents are round-off there."""
+        touches = self.accepted.state.touches
+        return any(
+            touch is not None and pair.slot < 0 for pair, touch in zip(self.model.pairs, touches, strict=True)
+        )
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -298,7 +411,9 @@ class Stepper:
     def _switch(self, at: Equilibrium, changes: list[Margin]) -> Status:
         """Accept the events' configuration, then open and close its contacts."""
         if at is not self.accepted:
-            self._accept(at)
+            status = self._advance(at)
+            if status is not Status.CONVERGED or self.accepted.system is not at.system:
+                return status
         model, state, jump = self.model, at.state, False
         noted = len(self.events)
         for margin in changes:
@@ -313,6 +428,8 @@ class Stepper:
             assert touch is not None, "only a closed contact opens"
             arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
+            if margin.kind is EventKind.LINE_CONTACT:
+                return Status.LINE_CONTACT
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
                 return refused
@@ -363,8 +480,10 @@ class Stepper:
             energy = self.newton.assembler.energy
             self._note_release(energy(at.state) - energy(state))
         self.history = []
+        held = self.index
         self._accept(equilibrium)
-        self.orientation = 0
+        if self.index > held and self.settings.branch != "primary":
+            return self._meet_limit_point()
         return Status.CONVERGED
 
     def _settled(self, state: State, *, jump: bool) -> Equilibrium | None:
@@ -399,16 +518,17 @@ class Stepper:
             )
         )
 
-    def _accept(self, equilibrium: Equilibrium) -> None:
+    def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
+        """Make an equilibrium the last of the path."""
         if self.history:
             self._note_passes(equilibrium)
         state = rearm(self.model, equilibrium.state)
         self.accepted = replace(equilibrium, state=state)
-        self.orientation = equilibrium.orientation[1] or self.orientation
         earlier = [old for old in self.history if old.load_parameter < state.load_parameter]
         self.history = [*earlier[1 - self.memory :], state]
         self.margins = self._measure(self.accepted)
-        self.guard = self._guard()
+        self.earlier, self.tangent = self.tangent, tangent or PathTangent(self.newton, self.accepted)
+        self.index = self.tangent.index if self.tangent.index >= 0 else self.index
 
     def _note_passes(self, equilibrium: Equilibrium) -> None:
         """Note changes of owner since the last state, at linearly interpolated load parameters."""

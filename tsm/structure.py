@@ -34,8 +34,16 @@ def _direction(a: Point, b: Point) -> float:
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
+LARGEST = 1e50
+"""Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
+STIFFNESS = (1e-100, 1e100)
+"""Range of stiffnesses."""
+MOST = 1_000_000
+"""Elements of a structure at most."""
+
+
 def _finite(*values: float) -> bool:
-    return all(math.isfinite(value) for value in values)
+    return all(abs(value) <= LARGEST for value in values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +72,12 @@ class Section:
     def __post_init__(self) -> None:
         for field in ("EA", "GA", "EI"):
             value = getattr(self, field)
-            _check(_finite(value) and value > 0, "Section", field, value, "must be positive and finite")
+            _check(0 < value < math.inf, "Section", field, value, "must be positive and finite")
+        for field in ("EA", "GA", "EI"):
+            value = getattr(self, field)
+            least, most = STIFFNESS
+            rule = f"must lie between {least:g} and {most:g}"
+            _check(least <= value <= most, "Section", field, value, rule)
 
     @classmethod
     def rectangle(
@@ -115,14 +128,23 @@ class Beam:
         owner = f"Beam({self.name})"
         for field in ("start", "end"):
             value = getattr(self, field)
-            _check(len(value) == 2 and _finite(*value), owner, field, value, "must be two finite numbers")
-        _check(self.length > 0, owner, "end", self.end, "must differ from start")
+            _check(
+                len(value) == 2 and _finite(*value),
+                owner,
+                field,
+                value,
+                f"must be two finite numbers, of at most {LARGEST:g}",
+            )
         _check(
-            isinstance(self.elements, int) and self.elements >= 1,
+            1 / LARGEST <= self.length <= LARGEST,
+            owner, "end", self.end, f"must differ from start, by {1 / LARGEST:g} to {LARGEST:g}",
+        )  # fmt: skip
+        _check(
+            isinstance(self.elements, int) and 1 <= self.elements <= MOST,
             owner,
             "elements",
             self.elements,
-            "at least 1",
+            f"must be a whole number from 1 to {MOST}",
         )
         _check(
             self.element in ELEMENTS, owner, "element", self.element, f"must be one of {', '.join(ELEMENTS)}"
@@ -172,7 +194,13 @@ class Support:
         _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
         for field in ("ux", "uy", "rotation"):
             value = getattr(self, field)
-            _check(value is None or _finite(value), owner, field, value, "must be finite or None")
+            _check(
+                value is None or _finite(value),
+                owner,
+                field,
+                value,
+                f"must be None or finite, of at most {LARGEST:g}",
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,9 +232,9 @@ class Load:
             owner,
             "force",
             self.force,
-            "must be two finite numbers",
+            f"must be two finite numbers, of at most {LARGEST:g}",
         )
-        _check(_finite(self.moment), owner, "moment", self.moment, "must be finite")
+        _check(_finite(self.moment), owner, "moment", self.moment, f"must be finite, of at most {LARGEST:g}")
 
 
 TURN = 0.5
@@ -233,7 +261,7 @@ class Pin:
         _check(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
         _check(
             all(len(point) == 2 and _finite(*point) for point in self.path),
-            owner, "path", self.path, "must hold pairs of finite numbers",
+            owner, "path", self.path, f"must hold pairs of finite numbers, of at most {LARGEST:g}",
         )  # fmt: skip
         _check(
             all(a != b for a, b in zip(self.path, self.path[1:], strict=False)),
@@ -258,9 +286,16 @@ class Pin:
         at = bisect_left(self._reached, load_parameter * self.length)
         return min(max(at, 1), len(self.path) - 1) - 1
 
-    def velocity(self, load_parameter: float) -> Point:
-        """Derivative of the position in the load parameter, at a corner that of the leg before it."""
-        k = self._leg(load_parameter)
+    def velocity(self, begin: float, end: float) -> Point:
+        """Mean derivative of the position between two load parameters; at one of them the derivative, at a corner of the leg before.
+
+        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
+        (1.0, 1.0)
+        """
+        k = self._leg(end)
+        if begin != end and self._reached[k] > min(begin, end) * self.length:
+            (x0, y0), (x1, y1) = self.position(begin), self.position(end)
+            return ((x1 - x0) / (end - begin), (y1 - y0) / (end - begin))
         a, b = self.path[k : k + 2]
         speed = self.length / math.dist(a, b)
         return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
@@ -354,6 +389,8 @@ class Structure:
 
     def __post_init__(self) -> None:
         _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
+        elements = sum(beam.elements for beam in self.beams)
+        _check(elements <= MOST, "Structure", "elements", elements, f"must be at most {MOST} in all")
         names = [beam.name for beam in self.beams] + [pin.name for pin in self.pins]
         _unique(names, "a beam or pin")
         _unique([pair.name for pair in self.contacts], "a contact")

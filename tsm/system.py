@@ -26,6 +26,7 @@ from tsm.model import Model, PairModel
 from tsm.rods.assembly import RodBalance
 from tsm.rods.layout import OWN
 from tsm.state import State, Touch
+from tsm.structure import Point
 
 _EPS = float(np.finfo(float).eps)
 
@@ -220,16 +221,22 @@ class Assembler:
                 border.close(k, pair, touch, gradient, block)
         return force, tangent
 
-    def rate(self, state: State) -> Array:
-        """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins."""
+    def velocities(self, begin: float, end: float | None = None) -> tuple[Point, ...]:
+        """Velocities of the pairs' pins at a load parameter, or their means up to another one."""
+        end, still = begin if end is None else end, (0.0, 0.0)
+        return tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
+
+    def rate(self, state: State, velocities: tuple[Point, ...] | None = None) -> Array:
+        """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins (the present ones if none)."""
         model = self.model
+        velocities = self.velocities(state.load_parameter) if velocities is None else velocities
         nodal, own = -model.load, np.zeros(model.contact_unknowns)
-        for pair, touch in zip(model.pairs, state.touches, strict=True):
+        for pair, touch, velocity in zip(model.pairs, state.touches, velocities, strict=True):
             if touch is not None and pair.pin is not None and pair.cuts:
-                own[pair.slot : pair.slot + 2] = -np.array(pair.pin.velocity(state.load_parameter))
+                own[pair.slot : pair.slot + 2] = -np.array(velocity)
             elif touch is not None and pair.pin is not None:
                 _, block = self._contact(pair, touch, state)
-                moved = block[:, 6:8] @ np.array(pair.pin.velocity(state.load_parameter))
+                moved = block[:, 6:8] @ np.array(velocity)
                 nodal[model.dofs[:, touch.element]] += moved[:6]
                 if pair.slot >= 0:
                     own[pair.slots] = moved[8:]
@@ -348,21 +355,26 @@ class Assembler:
 
     def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
         """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
-        from scipy.sparse import block_array, coo_array
         from scipy.sparse.linalg import splu
+
+        try:
+            lu = splu(self.whole(tangent))
+        except RuntimeError:
+            return None
+        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
+        x = self._with_units(lu.solve(given))
+        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+
+    def whole(self, tangent: Bordered) -> Any:
+        """Tangent as one sparse matrix, by columns."""
+        from scipy.sparse import block_array, coo_array
 
         banded = self.model.banded
         columns, entries = np.nonzero(tangent.band)
         rows = columns + entries - 2 * self.k
         band = coo_array((tangent.band[columns, entries], (rows, columns)), shape=(banded, banded))
         right, below = coo_array(tangent.right[:banded]), coo_array(tangent.below[:, :banded])
-        try:
-            lu = splu(block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc"))
-        except RuntimeError:
-            return None
-        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
-        x = self._with_units(lu.solve(given))
-        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+        return block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc")
 
 
 def _exchanges(order: Array) -> Array:

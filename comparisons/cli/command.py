@@ -3,10 +3,14 @@
 import argparse
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, suppress
 from importlib import metadata
+from pathlib import Path
+from typing import NoReturn
 
 from comparisons.cli import (
+    certify,
     compare,
     completion,
     doctor,
@@ -21,8 +25,8 @@ from comparisons.cli import (
     trade,
     view,
 )
-from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED
-from comparisons.files import OutputError
+from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, report
+from comparisons.files import OutputError, printable
 from comparisons.options import ModelError
 from comparisons.peers.ccx import CalculixError
 from comparisons.scene import InputError
@@ -30,6 +34,7 @@ from comparisons.scene import InputError
 COMMANDS = (
     scene_files,
     solve,
+    certify,
     compare,
     view,
     gate,
@@ -49,8 +54,25 @@ OWN = ("comparisons", "tsm", "fem_reference")
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
-    given = command_parser().parse_args(arguments)
+    with _open_streams() as there:
+        return _run(arguments) if there else BAD_INPUT
+
+
+@contextmanager
+def _open_streams() -> Iterator[bool]:
+    """Say in one line where standard output is closed; what is told on a closed standard error is told to nobody."""
+    if sys.stderr is not None:
+        if sys.stdout is None:
+            _told("output: standard output is closed", BAD_INPUT)
+        yield sys.stdout is not None
+        return
+    with Path(os.devnull).open("w") as nowhere, redirect_stderr(nowhere):
+        yield sys.stdout is not None
+
+
+def _run(arguments: list[str] | None) -> int:
     status: int
+    given = command_parser().parse_args(arguments)
     try:
         status = given.run(given)
         sys.stdout.flush()
@@ -76,8 +98,15 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _told(reason: object, status: int) -> int:
-    print(f"crossval: {reason}", file=sys.stderr)
+    report(f"crossval: {reason}")
     return status
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors show arguments that a terminal would obey as escapes."""
+
+    def error(self, message: str) -> NoReturn:
+        super().error(printable(message))
 
 
 def _drop_output() -> None:
@@ -88,7 +117,7 @@ def _drop_output() -> None:
 
 def command_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="crossval",
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
         epilog=EPILOG,

@@ -3,6 +3,8 @@
 import sys
 from typing import TYPE_CHECKING
 
+from comparisons.files import printable
+
 if TYPE_CHECKING:
     import argparse
 
@@ -17,7 +19,7 @@ EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution st
 
 def report(line: str) -> None:
     """Tell of progress on standard error."""
-    print(line, file=sys.stderr, flush=True)
+    print(printable(line), file=sys.stderr, flush=True)
 
 
 def exit_status(scene: "Scene", responses: "list[tuple[str, Response]]") -> int:

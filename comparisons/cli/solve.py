@@ -8,7 +8,7 @@ from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.options import OPTIONS, QUANTITIES, ModelError, Options
+from comparisons.options import BRANCHES, OPTIONS, QUANTITIES, ModelError, Options
 from comparisons.scene import built_in_scenes, load_scene
 
 if TYPE_CHECKING:
@@ -46,6 +46,11 @@ def add_to(commands: "Commands") -> None:
         help="tsm: error allowed to the integration inside exact elements (1e-9)",
     )
     solve.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
+    solve.add_argument(
+        "--branch",
+        choices=BRANCHES,
+        help="at a critical point: stop (the default), turn to the stable branch, or go on along the primary one, unstable",
+    )
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")
     solve.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -64,7 +69,9 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     file = None if given.json in (None, "-") else writable_file(Path(given.json))
     if given.vtk is not None:
-        writable_folder(given.vtk)
+        from comparisons.export import check_series
+
+        check_series(writable_folder(given.vtk), given.model or "tsm", scene)
     from comparisons.models import solve
     from comparisons.statement import as_json, summary
 
@@ -96,7 +103,13 @@ def run(given: "argparse.Namespace") -> int:
 
 
 def _options(given: "argparse.Namespace") -> Options:
-    return Options(elements=given.elements, element=given.element, tolerance=given.tolerance, mesh=given.mesh)
+    return Options(
+        elements=given.elements,
+        element=given.element,
+        tolerance=given.tolerance,
+        mesh=given.mesh,
+        branch=given.branch,
+    )
 
 
 def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":
@@ -108,7 +121,7 @@ def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":
         if given.model is None:
             raise ModelError("--model: must be given without --accuracy")
         return None
-    for option in ("elements", "tolerance", "mesh"):
+    for option in ("elements", "tolerance", "mesh", "branch"):
         if getattr(given, option) is not None:
             raise ModelError(f"--{option}: is what --accuracy chooses, give one of the two")
     from comparisons.accuracy import solve_to

@@ -45,6 +45,11 @@ def add_to(commands: "Commands") -> None:
         "--workers", type=values.count, metavar="N", help="study file: processes (one for each core)"
     )
     where.add_argument("--cluster", metavar="ADDRESS", help="study file: the scheduler of a Dask cluster")
+    study.add_argument(
+        "--keep-old-versions",
+        action="store_true",
+        help="study file: results that other versions of this program left in the file are not computed anew",
+    )
     study.add_argument("--quiet", action="store_true", help="study file: no progress bar")
     study.set_defaults(run=run)
 
@@ -60,9 +65,11 @@ def run(given: "argparse.Namespace") -> int:
 
 
 def _answer(given: "argparse.Namespace") -> int:
-    for option in ("results", "workers", "cluster"):
-        if getattr(given, option) is not None:
-            raise InputError(f"--{option}", f"belongs to a study file, {given.study} is a question")
+    for option in ("results", "workers", "cluster", "keep_old_versions"):
+        if getattr(given, option):
+            raise InputError(
+                f"--{option.replace('_', '-')}", f"belongs to a study file, {given.study} is a question"
+            )
     writable_folder(given.out)
     from comparisons.studies.output import tabulated, write_rows
     from comparisons.studies.solid_accuracy import STUDIES
@@ -83,7 +90,15 @@ def _run_file(given: "argparse.Namespace") -> int:
     file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
     where = workers(given)
     with line_ended(), Store(file) as store:
-        tally = run_cases(study.cases, store, where, repeats=study.repeats, progress=shown(quiet=given.quiet))
+        tally = run_cases(
+            study.cases,
+            store,
+            where,
+            repeats=study.repeats,
+            progress=shown(quiet=given.quiet),
+            keep=given.keep_old_versions,
+        )
+    report_older(tally, keep=given.keep_old_versions)
     return _concluded(study.name, tally, file)
 
 
@@ -92,6 +107,14 @@ def workers(given: "argparse.Namespace") -> "Workers":
     from comparisons.sweep.workers import cluster, local
 
     return local(given.workers) if given.cluster is None else cluster(given.cluster)
+
+
+def report_older(tally: "Tally", *, keep: bool = False) -> None:
+    """Say in one line what became of the results of other versions, if there are any."""
+    if tally.older:
+        versions = ", ".join(tally.older)
+        what = "kept" if keep else "left aside, and the cases computed anew"
+        report(f"crossval: {sum(tally.older.values())} results of other versions ({versions}) were {what}")
 
 
 def _concluded(name: str, tally: "Tally", file: Path) -> int:

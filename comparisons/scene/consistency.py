@@ -11,18 +11,21 @@ from comparisons.scene.rules import MISSING, FieldError, Point, shown
 def check_scene(scene: Scene) -> None:
     """Raise `FieldError` for the first rule that the records of `scene` break together."""
     beams = [(f"beam[{i}].name", beam.name) for i, beam in enumerate(scene.beams)]
-    _distinct(beams + [(f"pin[{i}].name", pin.name) for i, pin in enumerate(scene.pins)])
+    pins = [(f"pin[{i}].name", pin.name) for i, pin in enumerate(scene.pins)]
+    _distinct(beams + pins)
+    keys = {name: key.removesuffix(".name") for key, name in beams + pins}
     for i, contact in enumerate(scene.contacts):
         try:
-            _check_contact(scene, contact)
+            _check_contact(scene, contact, keys)
         except FieldError as error:
             raise error.within(f"contact[{i}].") from None
-        _check_side(scene, contact)
+        _check_side(scene, contact, keys)
     _distinct([(f"contact[{i}].node", contact.pair) for i, contact in enumerate(scene.contacts)])
     named = [(f"support[{i}].beam", support.beam) for i, support in enumerate(scene.supports)]
     named += [(f"load[{i}].beam", load.beam) for i, load in enumerate(scene.loads)]
+    known = {beam.name for beam in scene.beams}
     for key, name in named:
-        if name not in [beam.name for beam in scene.beams]:
+        if name not in known:
             raise FieldError(key, name, f"must name a beam: {_known(beam.name for beam in scene.beams)}")
     _distinct([(f"load[{i}].end", load.node) for i, load in enumerate(scene.loads)])
     check_joints(scene)
@@ -30,8 +33,9 @@ def check_scene(scene: Scene) -> None:
 
 
 def _check_cause(scene: Scene) -> None:
+    touching = {contact.node for contact in scene.contacts}
     for i, pin in enumerate(scene.pins):
-        if pin.name not in [contact.node for contact in scene.contacts]:
+        if pin.name not in touching:
             raise FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
     if not (scene.pins or scene.loads or any(support.moves for support in scene.all_supports)):
         raise FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
@@ -49,13 +53,17 @@ def _known(names: Iterable[str]) -> str:
     return ", ".join(shown(name) for name in names)
 
 
-def _check_contact(scene: Scene, contact: ContactSpec) -> None:
-    beams = [beam.name for beam in scene.beams]
-    nodes = [pin.name for pin in scene.pins] + [f"{name}.{end}" for name in beams for end in ("start", "end")]
-    if contact.beam not in beams:
-        raise FieldError("beam", contact.beam, f"must name a beam: {_known(beams)}")
-    if contact.node not in nodes:
-        raise FieldError("node", contact.node, f"must name a pin or a beam's end: {_known(nodes)}")
+def _check_contact(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> None:
+    """Check a contact; `keys` gives the place in the file, ``beam[0]`` or ``pin[0]``, of every name."""
+    if not keys.get(contact.beam, "").startswith("beam"):
+        known = _known(beam.name for beam in scene.beams)
+        raise FieldError("beam", contact.beam, f"must name a beam: {known}")
+    name, dot, end = contact.node.partition(".")
+    kind = keys.get(name, "").partition("[")[0]
+    if (kind, dot, end) not in (("pin", "", ""), ("beam", ".", "start"), ("beam", ".", "end")):
+        ends = (f"{beam.name}.{end}" for beam in scene.beams for end in ("start", "end"))
+        known = _known((*(pin.name for pin in scene.pins), *ends))
+        raise FieldError("node", contact.node, f"must name a pin or a beam's end: {known}")
     if contact.node.split(".")[0] == contact.beam and "." in contact.node:
         raise FieldError("node", contact.node, "must not be an end of the beam itself")
     beam = scene.beam(contact.beam)
@@ -76,16 +84,14 @@ def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[
     return sign * (tx * dy - ty * dx) - offset, (tx * dx + ty * dy) / beam.length
 
 
-def _check_side(scene: Scene, contact: ContactSpec) -> None:
+def _check_side(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> None:
     beam = scene.beam(contact.beam)
-    if "." in contact.node:
-        other, end = contact.node.split(".")
-        number = [item.name for item in scene.beams].index(other)
-        key, position = f"beam[{number}].{end}", scene.place(contact.node)
+    name, dot, end = contact.node.partition(".")
+    if dot:
+        key, position = f"{keys[name]}.{end}", scene.place(contact.node)
     else:
-        number = [item.name for item in scene.pins].index(contact.node)
-        pin = scene.pins[number]
-        key, position = f"pin[{number}].{'start' if pin.path is None else 'path'}", pin.points[0]
+        pin = scene.pin(name)
+        key, position = f"{keys[name]}.{'start' if pin.path is None else 'path'}", pin.points[0]
     gap, fraction = signed_gap(beam, contact.side, scene.offset(contact), position)
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'

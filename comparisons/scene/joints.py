@@ -1,10 +1,12 @@
 """Joints: beams that share an end are one structure, which must be held, and each of its joints by one support at most."""
 
 import math
-from itertools import combinations
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import combinations, product
 
 from comparisons.scene.records import BeamSpec, Scene
-from comparisons.scene.rules import FieldError
+from comparisons.scene.rules import FieldError, Point
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam, below which they are one joint by intention and must be so exactly."""
@@ -13,40 +15,100 @@ NEAR = 1e-6
 def check_joints(scene: Scene) -> None:
     """Raise `FieldError` for ends that nearly meet, for a joint with two supports and for a structure that is not held."""
     _check_meeting(scene)
+    _check_apart(scene)
     _check_one_support(scene)
+    touched = {name for contact in scene.contacts for name in (contact.beam, contact.node.split(".")[0])}
     for structure in structures(scene):
-        _check_held(scene, structure)
+        _check_held(scene, structure, touched)
 
 
 def structures(scene: Scene) -> list[list[BeamSpec]]:
     """Return the beams, grouped by what is joined together."""
+    meeting = _meeting(scene)
     groups: list[list[BeamSpec]] = []
+    grouped: set[str] = set()
     for beam in scene.beams:
-        joined = [group for group in groups if any(_meet(beam, other) for other in group)]
-        groups = [group for group in groups if group not in joined]
-        groups.append([other for group in joined for other in group] + [beam])
+        if beam.name in grouped:
+            continue
+        grouped.add(beam.name)
+        group = [beam]
+        for member in group:  # grows on the way
+            for other in (other for place in (member.start, member.end) for other in meeting.pop(place, ())):
+                if other.name not in grouped:
+                    grouped.add(other.name)
+                    group.append(other)
+        groups.append(group)
     return groups
 
 
-def _meet(a: BeamSpec, b: BeamSpec) -> bool:
-    return not {a.start, a.end}.isdisjoint({b.start, b.end})
+def _meeting(scene: Scene) -> dict[Point, list[BeamSpec]]:
+    """Return the beams at every end."""
+    meeting: dict[Point, list[BeamSpec]] = defaultdict(list)
+    for beam in scene.beams:
+        meeting[beam.start].append(beam)
+        meeting[beam.end].append(beam)
+    return meeting
 
 
 def _check_meeting(scene: Scene) -> None:
-    for (i, a), (j, b) in combinations(enumerate(scene.beams), 2):
-        for end in ("start", "end"):
-            for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
-                mine = getattr(b, end)
-                if mine != place and math.dist(mine, place) < NEAR * min(a.length, b.length):
-                    raise FieldError(
-                        f"beam[{j}].{end}", mine, f'must be "{node}" exactly, or stay clear of it'
-                    )
-        if {a.start, a.end} == {b.start, b.end}:
-            raise FieldError(f"beam[{j}].end", b.end, f'must not lie on beam[{i}], "{a.name}", end to end')
+    meeting = _meeting(scene)
+    longest = {place: max(beam.length for beam in beams) for place, beams in meeting.items()}
+    for place, other in _neighbours(longest):
+        if math.dist(place, other) >= NEAR * min(longest[place], longest[other]):
+            continue
+        numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
+        own = sorted({numbers[beam.name] for at in (place, other) for beam in meeting[at]})
+        for i, j in combinations(own, 2):
+            _check_pair(scene.beams[i], scene.beams[j], j)
+
+
+def _neighbours(longest: dict[Point, float]) -> Iterator[tuple[Point, Point]]:
+    """Yield the pairs of ends that are no farther apart than `NEAR` of the shorter beam, and some besides.
+
+    The ends lie in grids of squares, one grid for every power of two among the lengths; an end of a beam looks about in its own
+    grid, in which the ends of longer beams are too.
+    """
+    levels = {place: math.frexp(length)[1] for place, length in longest.items()}
+    for level in sorted(set(levels.values())):
+        size = NEAR * math.ldexp(1.0, level)
+        squares: dict[tuple[int, int], list[Point]] = defaultdict(list)
+        square = {
+            place: (math.floor(place[0] / size), math.floor(place[1] / size))
+            for place in longest
+            if levels[place] >= level
+        }
+        for place, own in square.items():
+            squares[own].append(place)
+        for place, (column, row) in square.items():
+            if levels[place] == level:
+                for dx, dy in product((-1, 0, 1), repeat=2):
+                    near = squares.get((column + dx, row + dy), ())
+                    yield from ((place, other) for other in near if other != place)
+
+
+def _check_pair(a: BeamSpec, b: BeamSpec, number: int) -> None:
+    """Raise for ends of `b`, the beam of that number, that nearly meet an end of `a`."""
+    for end in ("start", "end"):
+        for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
+            mine = getattr(b, end)
+            if mine != place and math.dist(mine, place) < NEAR * min(a.length, b.length):
+                raise FieldError(
+                    f"beam[{number}].{end}", mine, f'must be "{node}" exactly, or stay clear of it'
+                )
+
+
+def _check_apart(scene: Scene) -> None:
+    """Raise for two beams between the same ends."""
+    there: dict[frozenset[Point], int] = {}
+    for j, beam in enumerate(scene.beams):
+        i = there.setdefault(frozenset((beam.start, beam.end)), j)
+        if i != j:
+            rule = f'must not lie on beam[{i}], "{scene.beams[i].name}", end to end'
+            raise FieldError(f"beam[{j}].end", beam.end, rule)
 
 
 def _check_one_support(scene: Scene) -> None:
-    held: dict[tuple[float, float], str] = {}
+    held: dict[Point, str] = {}
     keys = [f"beam[{i}].clamped" for i, beam in enumerate(scene.beams) for _ in beam.clamped]
     keys += [f"support[{i}].end" for i in range(len(scene.supports))]
     for key, support in zip(keys, scene.all_supports, strict=True):
@@ -56,24 +118,21 @@ def _check_one_support(scene: Scene) -> None:
         held[place] = support.node
 
 
-def _check_held(scene: Scene, structure: list[BeamSpec]) -> None:
-    names = {beam.name for beam in structure}
-    supports = [support for support in scene.all_supports if support.beam in names]
-    key, beam = f"beam[{scene.beams.index(structure[0])}].clamped", structure[0]
-    if not supports:
-        rule = (
-            f'beam "{beam.name}" is free: clamp it, give it a [[support]] or join it to a beam that has one'
-        )
-        raise FieldError(key, beam.clamped, rule)
-    touched = {name for contact in scene.contacts for name in (contact.beam, contact.node.split(".")[0])}
-    if not touched & names and not _rigid(scene, structure):
-        rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
-        raise FieldError(key, beam.clamped, rule)
+def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str]) -> None:
+    beam = structure[0]
+    supported = any(scene.supports_of(member.name) for member in structure)
+    if not supported:
+        rule = "is free: clamp it, give it a [[support]] or join it to a beam that has one"
+    elif touched.isdisjoint(member.name for member in structure) and not _rigid(scene, structure):
+        rule = "can move without strain: its supports must hold x, y and the rotation"
+    else:
+        return
+    raise FieldError(f"beam[{scene.beams.index(beam)}].clamped", beam.clamped, f'beam "{beam.name}" {rule}')
 
 
 def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:
     """Whether the supports leave no rigid motion ``(a - c y, b + c x, c)``."""
-    own = [support for support in scene.all_supports if scene.beam(support.beam) in structure]
+    own = [support for beam in structure for support in scene.supports_of(beam.name)]
     levels = {scene.place(support.node)[1] for support in own if "x" in support.held}
     columns = {scene.place(support.node)[0] for support in own if "y" in support.held}
     turning = any("rotation" in support.held for support in own) or len(levels) > 1 or len(columns) > 1

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 from comparisons.scene import rules
@@ -99,13 +100,16 @@ class BeamSpec:
         apply_rules(self)
         exactly_one_of(vars(self), (("poissons_ratio",), ("shear_modulus",)))
         exactly_one_of(vars(self), (("width", "height"), ("area", "second_moment")))
-        if not 0.0 < self.length < math.inf:
-            raise FieldError("end", self.end, "must differ from start, at a finite distance")
-        for stiffness in ("EA", "GA", "EI"):
-            if not 0.0 < getattr(self, stiffness) < math.inf:
-                raise FieldError(
-                    "youngs_modulus", self.youngs_modulus, f"{stiffness} is out of floating-point range"
-                )
+        shortest = 1.0 / rules.LARGEST
+        if not shortest <= self.length <= rules.LARGEST:
+            rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
+            raise FieldError("end", self.end, rule)
+        least, most = rules.RANGE
+        for name in ("EA", "GA", "EI"):
+            stiffness = getattr(self, name)
+            if not least <= stiffness <= most:
+                rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
+                raise FieldError("youngs_modulus", self.youngs_modulus, rule)
 
     @property
     def length(self) -> float:
@@ -192,13 +196,21 @@ class Scene:
         apply_rules(self)
         check_scene(self)
 
+    @cached_property
+    def _beams(self) -> dict[str, BeamSpec]:
+        return {beam.name: beam for beam in self.beams}
+
+    @cached_property
+    def _pins(self) -> dict[str, PinSpec]:
+        return {pin.name: pin for pin in self.pins}
+
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
-        return next(beam for beam in self.beams if beam.name == name)
+        return self._beams[name]
 
     def pin(self, name: str) -> PinSpec:
         """Return the pin called `name`."""
-        return next(pin for pin in self.pins if pin.name == name)
+        return self._pins[name]
 
     def offset(self, contact: ContactSpec) -> float:
         """Distance of the contact's node, or of its pin's centre, from the axis where they touch."""
@@ -208,9 +220,10 @@ class Scene:
 
     def radius(self, contact: ContactSpec) -> float:
         """Radius of the contact's pin, zero for a point."""
-        return next((pin.radius or 0.0 for pin in self.pins if pin.name == contact.node), 0.0)
+        pin = self._pins.get(contact.node)
+        return (pin and pin.radius) or 0.0
 
-    @property
+    @cached_property
     def all_supports(self) -> tuple[SupportSpec, ...]:
         """The clamped ends of the beams, then `supports`."""
         clamps = (
@@ -220,6 +233,16 @@ class Scene:
         )
         return (*clamps, *self.supports)
 
+    @cached_property
+    def _supports_of(self) -> dict[str, tuple[SupportSpec, ...]]:
+        own: dict[str, list[SupportSpec]] = {beam.name: [] for beam in self.beams}
+        for support in self.all_supports:
+            own[support.beam].append(support)
+        return {
+            beam: tuple(sorted(all_own, key=lambda support: (-len(support.held), support.end == "end")))
+            for beam, all_own in own.items()
+        }
+
     def place(self, node: str) -> Point:
         """Return the undeformed position of a beam's end, ``upper.end``."""
         name, end = node.split(".")
@@ -228,8 +251,7 @@ class Scene:
 
     def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
         """Return the supports of a beam, the one that holds most first; of equals, the start's."""
-        own = (support for support in self.all_supports if support.beam == beam)
-        return tuple(sorted(own, key=lambda support: (-len(support.held), support.end == "end")))
+        return self._supports_of[beam]
 
     def tip(self, beam: str) -> str:
         """Return the less held end of a beam: "end", but "start" where the beam's end holds more."""

@@ -14,6 +14,12 @@ Point = tuple[float, float]
 Rule = Callable[[object], object]
 
 
+LARGEST = 1e50
+"""Largest size of a number, a coordinate or a length: squares, products and quotients of such numbers stay in floating-point range."""
+RANGE = (1e-100, 1e100)
+"""Sizes of what must be positive: moduli, dimensions of sections, stiffnesses."""
+
+
 class RuleError(ValueError):
     """The sentence of a rule that a value breaks."""
 
@@ -51,7 +57,10 @@ def shown(value: object) -> str:
     """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
     from comparisons.scene.toml import toml_value
 
-    text = "(missing)" if value is MISSING else " ".join(toml_value(value).split())
+    try:
+        text = "(missing)" if value is MISSING else " ".join(toml_value(value).split())
+    except RecursionError:
+        text = "(nested too deeply)"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -84,8 +93,8 @@ def apply_rules(record: Any) -> None:
             raise FieldError(item.name, value, str(error)) from None
 
 
-def number(value: object) -> float:
-    """Accept a finite number; a truth value is not a number."""
+def number(value: object, largest: float = LARGEST) -> float:
+    """Accept a finite number of at most 1e50 in size; a truth value is not a number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise RuleError("must be a number")
     try:
@@ -94,14 +103,18 @@ def number(value: object) -> float:
         result = math.inf
     if not math.isfinite(result):
         raise RuleError("must be a finite number")
+    if abs(result) > largest:
+        raise RuleError(f"must be at most {largest:g} in size")
     return result
 
 
 def positive(value: object) -> float:
-    """Accept a finite number above zero."""
-    result = number(value)
+    """Accept a number above zero, from 1e-100 to 1e100."""
+    result = number(value, math.inf)
     if result <= 0.0:
         raise RuleError("must be positive")
+    if not RANGE[0] <= result <= RANGE[1]:
+        raise RuleError(f"must lie between {RANGE[0]:g} and {RANGE[1]:g}")
     return result
 
 

@@ -1,12 +1,20 @@
 """Input files of TOML tables: read them, check their keys, and say in one line what is wrong."""
 
 import difflib
+import os
+import re
+import stat
 import tomllib
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 from comparisons.scene.rules import MISSING, FieldError
+
+LARGEST_FILE = 16_000_000
+"""Bytes of an input file."""
+DEEPEST = 50
+"""Parts of a dotted key; the time to parse one rises with the square of their number."""
+_DEEP = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{DEEPEST}}}""")
 
 
 class InputError(ValueError):
@@ -21,7 +29,7 @@ class SceneError(InputError):
 
 
 def read_text(path: str, absent: str, kind: type[InputError]) -> str:
-    """Return the text of the file `path`.
+    """Return the text of the regular file `path`, of 16 MB at most.
 
     Raises
     ------
@@ -29,7 +37,16 @@ def read_text(path: str, absent: str, kind: type[InputError]) -> str:
         Of the given kind; it says `absent` where there is no such file.
     """
     try:
-        return Path(path).read_bytes().decode("utf-8")
+        # without waiting for the other end of a pipe
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise kind(path, "must be a regular file")
+            data = file.read(LARGEST_FILE + 1)
+        if len(data) > LARGEST_FILE:
+            raise kind(path, f"must have at most {LARGEST_FILE} bytes")
+        return data.decode("utf-8")
+    except InputError:
+        raise
     except FileNotFoundError:
         raise kind(path, absent) from None
     except UnicodeDecodeError as error:
@@ -41,6 +58,8 @@ def read_text(path: str, absent: str, kind: type[InputError]) -> str:
 
 def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any]:
     """Return the tables of the TOML `text`; `source` names it in errors of the given kind."""
+    if _DEEP.search(text):
+        raise kind(source, f"must be valid TOML: a key has more than {DEEPEST} parts")
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:

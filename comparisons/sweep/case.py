@@ -3,11 +3,11 @@
 import hashlib
 import json
 from dataclasses import asdict, dataclass, field
-from importlib import metadata
 from pathlib import Path
 
 from comparisons.options import OPTIONS, ModelError, Options
 from comparisons.scene import Scene, to_toml
+from comparisons.version import version
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +42,9 @@ class Case:
 
     @property
     def key(self) -> str:
-        """SHA-256 of scene, mesh files, model, options and the version of this package, in hexadecimal digits."""
+        """SHA-256 of scene, mesh files, model, options and the version of the sources, in hexadecimal digits."""
         content = {
-            "version": metadata.version("tsm-crossval"),
+            "version": version(),
             "scene": to_toml(self.scene),
             "mesh_files": [_digest(beam.solid_mesh_file) for beam in self.scene.beams],
             "model": self.model,

@@ -1,5 +1,6 @@
 """What the results file of a sweep holds, as records and as a table."""
 
+import sqlite3
 import zlib
 from contextlib import closing
 from dataclasses import dataclass
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from comparisons.files import OutputError
 from comparisons.response import Array
 from comparisons.studies.output import Row, tabulated
 from comparisons.sweep.measure import Measurement
@@ -48,18 +50,11 @@ def read_results(path: Path) -> list[Result]:
     Raises
     ------
     OutputError
-        If there is no such file, or it is something else.
+        If there is no such file, or it is something else, or damaged.
     """
     with closing(open_for_reading(path)) as connection, database_errors(path, "cannot be read"):
         rows = connection.execute("SELECT * FROM result").fetchall()
-    found = [
-        Result(
-            **{name: row[name] for name in ("key", "scene", "model", "label", "version")},
-            settings=settings(row["definition"], row["options"]),
-            measurement=Measurement.from_json(zlib.decompress(row["measurement"]).decode()),
-        )
-        for row in rows
-    ]
+    found = [_result(path, row) for row in rows]
     names = varied(found)
     return sorted(
         found,
@@ -71,6 +66,18 @@ def read_results(path: Path) -> list[Result]:
             result.key,
         ),
     )
+
+
+def _result(path: Path, row: sqlite3.Row) -> Result:
+    try:
+        return Result(
+            **{name: row[name] for name in ("key", "scene", "model", "label", "version")},
+            settings=settings(row["definition"], row["options"]),
+            measurement=Measurement.from_json(zlib.decompress(row["measurement"]).decode()),
+        )
+    except (zlib.error, ValueError, LookupError, TypeError, AttributeError):
+        case = ascii(f"{row['scene']}, {row['label']}")
+        raise OutputError(f"{path}: cannot be read: the result of {case} is damaged") from None
 
 
 def varied(results: list[Result]) -> list[str]:
@@ -119,8 +126,10 @@ def result_table(results: list[Result], *, timings: bool = True) -> str:
     """Return a table for a reader, and below it why the cases that stopped did."""
     if not results:
         return "no results yet"
-    hidden = {"load_parameter", "cutbacks", "repeats", "version", "message"}
+    hidden = {"load_parameter", "cutbacks", "repeats", "message"}
     hidden |= {"scene"} if len({result.scene for result in results}) == 1 else set()
+    versions = sorted({result.version for result in results})
+    hidden |= {"version"} if len(versions) == 1 else set()
     rows = [
         {name: value for name, value in row.items() if name not in hidden and not name.startswith(DETAILS)}
         for row in result_rows(results, timings=timings)
@@ -130,7 +139,9 @@ def result_table(results: list[Result], *, timings: bool = True) -> str:
         for result in results
         if not result.measurement.completed
     ]
-    return "\n".join([tabulated(rows), *([""] if stopped else []), *stopped])
+    return "\n".join(
+        [tabulated(rows), f"\nversion {', '.join(versions)}", *([""] if stopped else []), *stopped]
+    )
 
 
 def _answers(measurement: Measurement) -> dict[str, float]:

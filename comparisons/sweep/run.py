@@ -6,10 +6,11 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, 
 from dataclasses import dataclass
 from time import monotonic, sleep
 
+from comparisons.files import interrupts_held
 from comparisons.sweep.case import Case
 from comparisons.sweep.measure import Measurement, measure, unmeasured
 from comparisons.sweep.store import ERROR, UNSETTLED, WORKER_LOST, Store
-from comparisons.sweep.workers import Workers, WorkersError, interrupts_held
+from comparisons.sweep.workers import Workers, WorkersError
 
 BEAT = 5.0
 """Seconds between signs of life, far below the lease."""
@@ -31,6 +32,8 @@ class Tally:
         Recorded cases by status.
     seconds, left : float
         Time since the run began, and what is left at the pace so far; nan while there is no pace.
+    older : dict of int
+        Cases that other versions have results of, by version; these are among the recorded ones only where they are kept.
     """
 
     total: int
@@ -39,6 +42,7 @@ class Tally:
     statuses: dict[str, int]
     seconds: float
     left: float
+    older: dict[str, int]
 
 
 Progress = Callable[[Tally], None]
@@ -52,8 +56,9 @@ def run(
     *,
     repeats: int = 3,
     progress: Progress = lambda _: None,
+    keep: bool = False,
 ) -> Tally:
-    """Do all `cases` that `store` has no result of; return when all are recorded.
+    """Do all `cases` that `store` has no result of this version of; return when all are recorded.
 
     Other runs may work on the same store: every case is done by one of them. A case whose worker dies is tried once more, alone;
     if its worker dies again, it is recorded as ``WORKER_LOST``, and one that raises as ``ERROR``. These two a later run tries
@@ -71,6 +76,8 @@ def run(
         Runs timed for each case.
     progress : callable
         Told of the progress.
+    keep : bool
+        Whether results of other versions do as well.
 
     Raises
     ------
@@ -79,7 +86,7 @@ def run(
     WorkersError
         If the cluster is gone.
     """
-    sweep = _Sweep({case.key: case for case in cases}, store, repeats, progress)
+    sweep = _Sweep({case.key: case for case in cases}, store, repeats, progress, keep=keep)
     while sweep.unfinished:
         with workers.start() as executor:
             sweep.work(executor, workers)
@@ -89,8 +96,14 @@ def run(
 class _Sweep:
     """The state of one run."""
 
-    def __init__(self, cases: dict[str, Case], store: Store, repeats: int, progress: Progress) -> None:
-        recorded = store.statuses()
+    def __init__(
+        self, cases: dict[str, Case], store: Store, repeats: int, progress: Progress, *, keep: bool
+    ) -> None:
+        recorded, older = store.statuses(), store.older(cases)
+        older = {key: found for key, found in older.items() if recorded.get(key, ERROR) in UNSETTLED}
+        self.older = dict(sorted(Counter(version for version, _ in older.values()).items()))
+        if keep:
+            recorded |= {key: status for key, (_, status) in older.items()}
         self.cases, self.store, self.repeats, self.progress = cases, store, repeats, progress
         self.again = frozenset(key for key in cases if recorded.get(key) in UNSETTLED)
         self.statuses = {key: recorded[key] for key in cases if key in recorded and key not in self.again}
@@ -183,6 +196,7 @@ class _Sweep:
             statuses=dict(sorted(self.counts.items())),
             seconds=seconds,
             left=seconds / pace * left if pace else float("nan") if left else 0.0,
+            older=self.older,
         )
 
 

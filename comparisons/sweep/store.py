@@ -3,10 +3,9 @@
 import json
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
-from importlib import metadata
 from pathlib import Path
 from time import time
 from types import TracebackType
@@ -17,6 +16,7 @@ from comparisons.scene import to_toml
 from comparisons.sweep.case import Case
 from comparisons.sweep.owner import Owner
 from comparisons.sweep.schema import database_errors, open_for_writing
+from comparisons.version import version
 
 if TYPE_CHECKING:
     from comparisons.sweep.measure import Measurement
@@ -81,10 +81,31 @@ class Store:
         self._connection.close()
 
     def statuses(self) -> dict[str, str]:
-        """Return the status of every recorded case, by key."""
+        """Return the status of every case that this version has recorded, by key."""
         with database_errors(self.path, "cannot be read"):
-            rows = self._connection.execute("SELECT key, status FROM result").fetchall()
+            rows = self._connection.execute(
+                "SELECT key, status FROM result WHERE version = ?", (version(),)
+            ).fetchall()
         return {row["key"]: row["status"] for row in rows}
+
+    def older(self, cases: Mapping[str, Case]) -> dict[str, tuple[str, str]]:
+        """Return version and status of the settled results that other versions have of `cases`, by the cases' keys.
+
+        Of several versions the last by name; where a mesh file has a part in it, its content then is not known, and none is given.
+        """
+        keys = {
+            (to_toml(case.scene), case.model, options_text(case)): key
+            for key, case in cases.items()
+            if not any(beam.solid_mesh_file for beam in case.scene.beams)
+        }
+        with database_errors(self.path, "cannot be read"):
+            rows = self._connection.execute(
+                "SELECT definition, model, options, version, status FROM result "
+                "WHERE version != ? AND status NOT IN (?, ?) ORDER BY version",
+                (version(), *UNSETTLED),
+            ).fetchall()
+        found = ((keys.get((row["definition"], row["model"], row["options"])), row) for row in rows)
+        return {key: (row["version"], row["status"]) for key, row in found if key is not None}
 
     def claim(self, keys: Iterable[str], *, limit: int, again: frozenset[str] = frozenset()) -> Claim:
         """Claim at most `limit` cases that nobody has done or is working on, in the order of `keys`.
@@ -97,7 +118,9 @@ class Store:
             for key in keys:
                 if len(found.mine) == limit:
                     break
-                recorded = self._one("SELECT status FROM result WHERE key = ?", key)
+                recorded = self._one(
+                    "SELECT status FROM result WHERE key = ? AND version = ?", key, version()
+                )
                 if recorded is not None and key not in again:
                     found.done[key] = recorded["status"]
                 elif self._taken(key):
@@ -123,7 +146,8 @@ class Store:
         with self._transaction():
             self._connection.execute(
                 f"INSERT INTO result ({names}) VALUES ({', '.join('?' * len(row))}) "  # noqa: S608 - own names
-                f"ON CONFLICT (key) DO UPDATE SET {update} WHERE result.status IN (?, ?)",
+                f"ON CONFLICT (key) DO UPDATE SET {update} "
+                "WHERE result.status IN (?, ?) OR result.version != excluded.version",
                 (*row.values(), *UNSETTLED),
             )
             self._connection.execute("DELETE FROM claim WHERE key = ? AND run = ?", (key, self._run))
@@ -139,8 +163,8 @@ class Store:
             return False
         return Owner(host=owner["host"], pid=owner["pid"], born=owner["born"]).alive(owner["heard"])
 
-    def _one(self, query: str, key: str) -> sqlite3.Row | None:
-        row: sqlite3.Row | None = self._connection.execute(query, (key,)).fetchone()
+    def _one(self, query: str, *values: str) -> sqlite3.Row | None:
+        row: sqlite3.Row | None = self._connection.execute(query, values).fetchone()
         return row
 
     @contextmanager
@@ -156,17 +180,21 @@ class Store:
                 raise
 
 
+def options_text(case: Case) -> str:
+    """Return the options given, as JSON."""
+    return json.dumps({name: value for name, value in asdict(case.options).items() if value is not None})
+
+
 def _row(key: str, case: Case, measurement: "Measurement") -> dict[str, object]:
     """Return the columns of a result; a number of seconds that is not there becomes null."""
-    options = {name: value for name, value in asdict(case.options).items() if value is not None}
     return {
         "key": key,
         "scene": case.scene.name,
         "model": case.model,
         "label": case.label,
         "definition": to_toml(case.scene),
-        "options": json.dumps(options),
-        "version": metadata.version("tsm-crossval"),
+        "options": options_text(case),
+        "version": version(),
         "status": measurement.status,
         "message": measurement.message,
         "completed": measurement.completed,

@@ -10,7 +10,7 @@ from comparisons.scene import Scene, to_toml
 from comparisons.studies.output import Row, write_numbers, write_rows
 from comparisons.sweep import Case
 from comparisons.sweep.results import read_results
-from comparisons.sweep.run import Progress, run
+from comparisons.sweep.run import Progress, Tally, run
 from comparisons.sweep.store import Store
 from comparisons.sweep.workers import Workers
 from comparisons.trade.answers import QUANTITIES, SCOPES
@@ -31,16 +31,17 @@ SHOWN = "force"
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """A trade-off and the files that hold it."""
+    """A trade-off, the files that hold it, and how its cases went."""
 
     trade: Trade
     files: list[Path]
+    tallies: list[Tally]
 
 
 def trade_off(
     scene: Scene, folder: Path, workers: Workers, *, quick: bool = False, progress: Progress = lambda _: None
 ) -> Written:
-    """Measure the trade-off of `scene` and write it to `folder`; what ``results.sqlite`` there has is not run again.
+    """Measure the trade-off of `scene` and write it to `folder`; what ``results.sqlite`` there has of this version is not run again.
 
     Parameters
     ----------
@@ -64,14 +65,16 @@ def trade_off(
     """
     file = writable_folder(folder) / "results.sqlite"
 
+    tallies: list[Tally] = []
+
     def measured(cases: Sequence[Case]) -> Measured:
         with Store(file) as store:
-            run(cases, store, workers, progress=progress)
+            tallies.append(run(cases, store, workers, progress=progress))
         found = {result.key: result.measurement for result in read_results(file)}
         return {case: found[case.key] for case in cases}
 
     trade = measure_trade(scene, measured, quick=quick)
-    return Written(trade=trade, files=[file, *write_trade(trade, folder)])
+    return Written(trade=trade, files=[file, *write_trade(trade, folder)], tallies=tallies)
 
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:

@@ -37,7 +37,7 @@ BEHIND = "[[0.5, 0.0], [0.5, 0.1], [-0.3, 0.1]]"
 STOPS = {
     "release of a contact that must persist": ("LOST_CONTACT", CLAMPED + pin(BACK, keep="true"), ["tsm", "rod", "elastica"], 8),
     "slip-off of a contact that must persist": ("SLIPPED_OFF", CLAMPED + pin(OFF, keep="true"), ["tsm", "rod", "elastica"], 6),
-    "pin behind the last equilibrium": ("UNREACHABLE", CLAMPED + pin(BEHIND), ["tsm"], 6),
+    "pin behind the last equilibrium": ("LIMIT_POINT", CLAMPED + pin(BEHIND), ["tsm"], 6),
     "no equilibrium of the rod": ("LOST", CLAMPED + pin(BEHIND), ["rod"], 6),
     "slid along to the clamp": ("FOLDED", CLAMPED + pin("[[0.5, 0.0], [-0.5, 0.0]]"), ["tsm"], 5),
     "pin on a node of the paper's elements": ("CUTBACK_FLOOR", CLAMPED + pin("[[0.5, 0.0], [0.5, 0.1]]"), ["tsm --element timoshenko"], 0),

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import Curve, averaging, closest
+from fem_reference.curve import Curve, averaging, band_slopes, closest
 from fem_reference.model import build
 
 STEP = 1e-30
@@ -85,7 +85,7 @@ def test_curve_converges_with_fourth_order(spread):
 
     def error(n):
         s = np.linspace(0, 1, n + 1)
-        slopes = CubicSpline(s, np.eye(n + 1))(s, 1)
+        slopes = band_slopes(s)
         offsets, kernel = averaging(spread, 1 / n)
         curve = Curve(
             stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"), offsets=offsets, kernel=kernel
@@ -93,6 +93,19 @@ def test_curve_converges_with_fourth_order(spread):
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
 
     assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
+
+
+@pytest.mark.parametrize("m", [3, 46, 300, 700])
+def test_slopes_window_by_window_are_those_of_the_whole_spline(m):
+    rng = np.random.default_rng(m)
+    s = np.cumsum(rng.uniform(0.5, 2, m))
+    values = rng.standard_normal(m)
+    band = band_slopes(s)
+    half = band.shape[1] // 2
+    found = [
+        band[k, max(0, half - k) : half + m - k] @ values[max(0, k - half) : k + half + 1] for k in range(m)
+    ]
+    np.testing.assert_allclose(found, CubicSpline(s, values)(s, 1), atol=1e-13)
 
 
 def test_average_leaves_cubics_and_reaches_no_further():

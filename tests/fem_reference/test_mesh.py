@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
+import fem_reference as fr
+from fem_reference.body import build_body
 from fem_reference.mesh import discretise
-from fem_reference.strip import ELEMENTS
+from fem_reference.strip import ELEMENTS, solution_cost
 
 
 @pytest.mark.parametrize("mesh", [(2, 1), (5, 2), (4, 3)])
@@ -61,3 +63,41 @@ def test_gradients_are_exact_for_biquadratic_fields(strip):
     xc, yc = x[d.cells], y[d.cells]
     np.testing.assert_allclose(at_nodes[:, 0], 2 * xc * yc, atol=1e-13)
     np.testing.assert_allclose(at_nodes[:, 1], xc**2 + 2 * yc, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "rule"),
+    [
+        ((100_000, 1), r"must need at most 2 GiB, needs about 3\.[3-6]"),
+        ((10**12, 1), "must need at most 2 GiB"),
+        ((10**400, 1), "must be two whole numbers"),
+        ((2, 500), "must need at most 1e\\+11 operations a factorisation"),
+    ],
+)
+def test_mesh_too_large_for_memory_or_time_costs_one_line(strip, mesh, rule):
+    with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh = .*" + rule) as caught:
+        strip(mesh=mesh)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("mesh", [(30, 1), (20, 4)])
+def test_estimated_cost_is_that_of_the_band(strip, mesh, element):
+    body = build_body(strip(mesh=mesh, element=element))
+    m, width = body.expansion.shape[1], body.stiffness.band.width
+    work = solution_cost(mesh, element)[1]
+    assert m * width**2 == pytest.approx(work, rel=0.05)
+
+
+def test_memory_is_what_was_estimated(strip):
+    import tracemalloc
+
+    from fem_reference.model import build
+
+    mesh = (1000, 2)
+    strip(mesh=(2, 1))
+    tracemalloc.start()
+    build(fr.SolidProblem(strips=(strip(mesh=mesh),)))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert 0.3 < peak / solution_cost(mesh, "Q2")[0] < 1.1

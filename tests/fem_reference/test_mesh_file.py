@@ -35,6 +35,28 @@ def write(path, points, quads, lines):
     return str(path)
 
 
+def write_4(path, points, quads, lines):
+    """Gmsh's text format 4.1, every edge and the body an entity of its own in a group of its own."""
+    names, n = list(lines), len(points)
+    text = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", f"{len(names) + 1}", '2 9 "body"']
+    text += [f'1 {tag} "{name}"' for tag, name in enumerate(names, 1)]
+    text += ["$EndPhysicalNames", "$Entities", f"0 {len(names)} 1 0"]
+    text += [f"{tag} 0 0 0 1 1 0 1 {tag} 0" for tag in range(1, len(names) + 1)]
+    text += ["1 0 0 0 1 1 0 1 9 0", "$EndEntities", "$Nodes", f"1 {n} 1 {n}", f"2 1 0 {n}"]
+    text += [str(number) for number in range(1, n + 1)]
+    text += [" ".join(map(repr, map(float, point))) for point in points]
+    count = len(quads) + sum(map(len, lines.values()))
+    text += ["$EndNodes", "$Elements", f"{len(names) + 1} {count} 1 {count}"]
+    number = 0
+    blocks = [(1, tag, 1, lines[name]) for tag, name in enumerate(names, 1)]
+    for dimension, tag, kind, cells in [*blocks, (2, 1, 3, quads)]:
+        text.append(f"{dimension} {tag} {kind} {len(cells)}")
+        for cell in cells:
+            number += 1
+            text.append(" ".join(map(str, [number, *(int(node) + 1 for node in cell)])))
+    path.write_text("\n".join([*text, "$EndElements", ""]))
+
+
 @pytest.mark.parametrize("element", fr.ELEMENTS)
 def test_mesh_of_the_users_own_has_the_strips_edges_and_sections(strip, tmp_path, element):
     file = write(tmp_path / "a.msh", *parts(height=0.3))
@@ -105,7 +127,10 @@ def flat(points, quads, lines):
 
 def parted(points, quads, lines):
     split = np.where(quads[:, :1] >= 30, quads + len(points), quads)
-    return np.concatenate([points, points]), split, lines
+    used, local = np.unique(split, return_inverse=True)
+    number = {int(node): place for place, node in enumerate(used % len(points))}
+    moved = {name: np.vectorize(number.get)(part) for name, part in lines.items()}
+    return np.concatenate([points, points])[used], local.reshape(-1, 4), moved
 
 
 def without(points, quads, lines):
@@ -114,6 +139,22 @@ def without(points, quads, lines):
 
 def upside_down(points, quads, lines):
     return points, quads, {**lines, "right": lines["left"], "left": lines["right"]}
+
+
+def turned(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+def bowed(points, quads, lines):
+    """The left face is a bow of a hundredth of the height."""
+    y = points[:, 1:2]
+    return points + (y > 0.005) * np.sin(np.pi * points[:, :1]) * 2e-4 * [0, 1, 0], quads, lines
+
+
+def short(points, quads, lines):
+    """The start names only the lower of its two lines."""
+    return points, quads, {**lines, "start": lines["start"][:1]}
 
 
 @pytest.mark.parametrize(
@@ -130,6 +171,24 @@ def upside_down(points, quads, lines):
             lambda p, q, lines: (p, q, {**lines, "end": q[3:4, [0, 2]]}),
             'the edge "end" must lie on the boundary',
         ),
+        (lambda p, q, lines: (p * [1, 3, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
+        (
+            lambda p, q, lines: (p + [0, 0.006, 0], q, lines),
+            r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004',
+        ),
+        (lambda p, q, lines: (p * [1, 0.5, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
+        (lambda p, q, lines: (p @ turned(0.1), q, lines), 'the edge "start" must lie at x = 0'),
+        (
+            lambda p, q, lines: (p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1], q, lines),
+            r"node 32 must have z = 0, it has 0\.001",
+        ),
+        (
+            lambda p, q, lines: (np.concatenate([p, [[0.3, 0.0, 0.0]]]), q, lines),
+            "node 63 must belong to a quadrilateral",
+        ),
+        (lambda p, q, lines: (p, np.delete(q, 7, axis=0), lines), "the (boundary from|edge)"),
+        (bowed, 'the edge "left" must lie at y = 0.01'),
+        (short, "the boundary from .* must belong to an edge"),
     ],
 )
 def test_mesh_that_breaks_a_rule_costs_one_line(strip, tmp_path, change, rule):
@@ -150,6 +209,70 @@ def test_mesh_of_triangles_and_files_that_are_not_there_are_refused(strip, tmp_p
         discretise(strip(mesh_file=str(tmp_path / "nothing.msh")))
 
 
+def refused(strip, path):
+    with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh_file = ") as caught:
+        discretise(strip(mesh_file=str(path)))
+    said = str(caught.value)
+    assert len(said.splitlines()) == 1
+    return said
+
+
+@pytest.mark.parametrize("version", ["2", "4"])
+def test_every_broken_line_of_a_mesh_text_is_named(strip, tmp_path, version):
+    """Every line of a small mesh spoilt in turn, and the text cut off behind it."""
+    path = tmp_path / "a.msh"
+    (write if version == "2" else write_4)(path, *parts(nx=2, ny=1))
+    discretise(strip(mesh_file=str(path)))
+    lines = path.read_text().splitlines()
+    sections = [k for k, line in enumerate(lines) if line.startswith("$")]
+    begin, end = (lines.index(name) for name in ("$Nodes", "$EndElements"))
+    assert {lines[k] for k in sections} >= {"$Nodes", "$EndNodes", "$Elements"}
+    for number in range(begin + 1, end):
+        for spoilt in ([*lines[:number], lines[number] + " x", *lines[number + 1 :]], lines[:number]):
+            path.write_text("\n".join(spoilt) + "\n")
+            said = refused(strip, path)
+            assert "line " in said or "ends before" in said, (number, said)
+
+
+@pytest.mark.parametrize("section", ["$Nodes", "$Elements"])
+@pytest.mark.parametrize("number", ["9999999999", "-1", "1e3", ""])
+def test_numbers_that_a_mesh_text_states_but_does_not_hold_are_refused_before_anything_is_allocated(
+    strip, tmp_path, section, number
+):
+    path = tmp_path / "a.msh"
+    write(path, *parts())
+    lines = path.read_text().splitlines()
+    lines[lines.index(section) + 1] = number
+    path.write_text("\n".join(lines) + "\n")
+    assert f"line {lines.index(section) + 2}: " in refused(strip, path)
+
+
+def test_only_regular_files_of_at_most_16_mb_are_read(strip, tmp_path):
+    import os
+
+    fifo, large, folder = tmp_path / "fifo.msh", tmp_path / "large.msh", tmp_path / "folder.msh"
+    os.mkfifo(fifo)
+    folder.mkdir()
+    with large.open("wb") as file:
+        file.truncate(2**24 + 1)
+    for path in (fifo, folder, "/dev/zero"):
+        assert "must be a regular file" in refused(strip, path)
+    assert "must not be larger than 16 MB" in refused(strip, large)
+    binary = tmp_path / "binary.msh"
+    binary.write_bytes(b"$MeshFormat\n2.2 1 8\n\x01\x00\x00\x00\n$EndMeshFormat\n")
+    assert "line 2: must be Gmsh's text format" in refused(strip, binary)
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\xff\x00", b"<VTKFile>", b"# vtk DataFile Version 3.0\nx\nASCII\n"]
+)
+@pytest.mark.parametrize("kind", ["msh", "vtu", "vtk", "inp", "nothing"])
+def test_broken_files_of_any_format_cost_one_line(strip, tmp_path, kind, content):
+    path = tmp_path / f"a.{kind}"
+    path.write_bytes(content)
+    refused(strip, path)
+
+
 @pytest.mark.parametrize("element", fr.ELEMENTS)
 def test_samples_are_exact_for_the_elements_own_fields(strip, element):
     d = discretise(strip(mesh=(5, 3), element=element))
@@ -168,7 +291,8 @@ def test_samples_are_exact_for_the_elements_own_fields(strip, element):
 def test_clamp_without_a_node_at_the_middle_holds_what_its_neighbours_interpolate(strip, tmp_path):
     """A rigid rotation about the middle moves both neighbours by what the clamp leaves them: nothing across."""
     points, quads, lines = parts(ny=3, height=0.3, tilt=0.0)
-    points[:, 1] = 0.15 * np.sinh(3 * (points[:, 1] / 0.15 - 0.1)) / np.sinh(3)
+    y = points[:, 1] / 0.15
+    points[:, 1] = 0.15 * (y + 0.4 * (1 - y**2))
     body = build_body(
         strip(mesh_file=write(tmp_path / "a.msh", points, quads, lines), element="Q1", height=0.3)
     )

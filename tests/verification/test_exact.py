@@ -521,7 +521,7 @@ def test_work_of_the_pin_is_the_strain_energy(section):
     t = np.append((gauss + 1) / 2, 1.0)
     structure = cantilever(((1.0, 0.0), (0.0, 2 / np.pi)), section=section)
     result = tsm.solve(structure, t)
-    velocity = np.array(structure.pins[0].velocity(0.5))
+    velocity = np.array(structure.pins[0].velocity(0.5, 0.5))
     power = -result.supports["b"].force @ velocity
     assert result.strain_energy[-1] == pytest.approx(weight @ power[:-1] / 2, rel=1e-9)
 

@@ -247,7 +247,7 @@ class March:
             stepper = Stepper(Model(self.structures[structure]), self.settings)
             self.steppers[structure] = stepper
         if front.history.entered[n]:
-            stepper.resume(states_of(front, n), float(front.step[n]), int(front.orientation[n]))
+            stepper.resume(states_of(front, n), float(front.step[n]))
         target = int(front.target[n])
         steps = list(stepper.march(self.targets[target : target + 1]))
         record.cutbacks[structure] += sum(step.cutbacks for step in steps)
@@ -262,7 +262,7 @@ class March:
         replace_history(front, n, stepper.history)
         which = np.array([n])
         front.normal[:, which], front.arc[:, which] = measure(self.equations, front.numbers, front.at, which)
-        front.step[n], front.orientation[n] = stepper.step, stepper.orientation
+        front.step[n], front.orientation[n] = stepper.step, 0
         reaction = steps[-1].equilibrium.system.nodal[self.model.fixed]
         self._enter(front, which, reaction[:, None])
 

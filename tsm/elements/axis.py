@@ -69,7 +69,9 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
 
 def _sums(values: Array) -> Array:
     """Sums up to every station, from zero."""
-    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+    sums = np.zeros((len(values), values.shape[1] + 1), values.dtype)
+    np.cumsum(values, axis=1, out=sums[:, 1:])
+    return sums
 
 
 def _positions(p: Properties, angle: Array, bend: Array, n: Array, at: Array) -> Array:

@@ -141,12 +141,15 @@ class RodTangent(NamedTuple):
         Elements with contacts; what they have in common with the others is in the arrays above too.
     inner : ndarray, shape (s, p, 7)
         Derivatives of the angles inside by the inputs of the segments.
+    transfer : ndarray, shape (s, 4, 7)
+        Derivatives of their outputs, see `rod.Condensed`.
     """
 
     carried: Array
     tangent: Array
     cut: tuple[CutElement, ...]
     inner: Array
+    transfer: Array
 
 
 class Memo(NamedTuple):
@@ -267,7 +270,9 @@ class Rods:
         for part in cut:
             e = part.element
             tangent[e], carried[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
-        return RodTangent(carried, tangent.reshape(len(first), -1).T, cut, condensed.inner)
+        return RodTangent(
+            carried, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer
+        )
 
     def _cut(
         self, state: State, element: int, pairs: tuple[int, ...], balance: RodBalance, transfer: Array

@@ -74,6 +74,42 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "tiny.sqlite"
 
 
+@pytest.mark.parametrize("kept", [False, True])
+def test_results_of_another_version(kept: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Half of them, wrong ones: computed anew, or kept when that is asked for; one line says which."""
+    command = [
+        "study",
+        str(tiny(tmp_path / "tiny.toml", 2)),
+        "--out",
+        str(tmp_path),
+        "--workers",
+        "1",
+        "--quiet",
+    ]
+    file = tmp_path / "tiny.sqlite"
+    assert main(command) == 0
+    assert capsys.readouterr().err == ""
+    right = histories(file)
+    with closing(sqlite3.connect(file)) as connection, connection:
+        connection.execute(
+            "UPDATE result SET version = '0.1.0', key = 'x' || key, status = 'WRONG' WHERE label LIKE '% 5'"
+        )
+    assert main([*command, *(["--keep-old-versions"] if kept else [])]) == 0
+    out, err = capsys.readouterr()
+    what = "kept" if kept else "left aside, and the cases computed anew"
+    assert err == f"crossval: 3 results of other versions (0.1.0) were {what}\n"
+    assert ("WRONG 3" in out) is kept
+    found = histories(file)
+    assert len(found) == (6 if kept else 9)
+    assert (found.items() >= right.items()) is not kept
+    assert main(command) == 0
+    assert capsys.readouterr().err == (
+        "crossval: 3 results of other versions (0.1.0) were left aside, and the cases computed anew\n"
+        if kept
+        else ""
+    )
+
+
 def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) -> bool:
     """Kill the command, or all its processes, at a random point; whether it was still at work."""
     if chance.random() < 1 / 3:

@@ -11,7 +11,7 @@ from comparisons.sweep.run import Tally
 
 def tally(done: int, failed: int = 0, total: int = 40) -> Tally:
     left = float("nan") if not done else (total - done) * 2.5
-    return Tally(total=total, done=done, failed=failed, statuses={}, seconds=done * 2.5, left=left)
+    return Tally(total=total, done=done, failed=failed, statuses={}, seconds=done * 2.5, left=left, older={})
 
 
 class Terminal(io.StringIO):

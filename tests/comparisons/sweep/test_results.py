@@ -2,6 +2,9 @@
 
 import csv
 import io
+import sqlite3
+import zlib
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +18,7 @@ from comparisons.sweep.measure import Measurement, measure
 from comparisons.sweep.results import read_results, result_rows, result_table, varied
 from comparisons.sweep.settings import in_order, settings
 from comparisons.sweep.store import Store
+from comparisons.version import version
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 
@@ -122,3 +126,33 @@ def test_order_of_values_of_any_kind() -> None:
     values = ["b", 10, None, [50, 2], 9.5, "a", [6, 1], True]
     ordered = sorted(values, key=lambda value: in_order([value]))
     assert ordered == [None, True, 9.5, 10, "a", "b", [6, 1], [50, 2]]
+
+
+@pytest.mark.parametrize(
+    "blob",
+    [b"", b"mine", zlib.compress(b"{}"), zlib.compress(b"[1]"), zlib.compress(b"\xff"), "text", None, 7],
+)
+def test_a_damaged_result_is_one_line(blob: object, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with closing(sqlite3.connect(file)) as connection, connection:
+        if blob is None:
+            connection.execute(
+                "UPDATE result SET measurement = substr(measurement, 1, 40) WHERE model = 'rod'"
+            )
+        else:
+            connection.execute("UPDATE result SET measurement = ? WHERE model = 'rod'", (blob,))
+    assert main(["results", str(file)]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert (
+        captured.err == f"crossval: {file}: cannot be read: the result of 'ks-cantilever, rod' is damaged\n"
+    )
+
+
+def test_versions_are_shown(file: Path) -> None:
+    assert f"\nversion {version()}\n" in result_table(read_results(file))
+    with closing(sqlite3.connect(file)) as connection, connection:
+        connection.execute("UPDATE result SET version = '0.1.0' WHERE model = 'rod'")
+    text = result_table(read_results(file))
+    assert f"\nversion 0.1.0, {version()}\n" in text
+    assert text.splitlines()[0].endswith("version")
+    assert text.splitlines()[1].endswith("0.1.0")

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import replace
+from importlib import metadata
 from multiprocessing import get_context
 from pathlib import Path
 from time import time
@@ -23,6 +24,7 @@ from comparisons.sweep.measure import Measurement, measure, unmeasured
 from comparisons.sweep.owner import Owner
 from comparisons.sweep.results import read_results
 from comparisons.sweep.store import WORKER_LOST, Store
+from comparisons.version import version
 from tests.comparisons.sweep.faults import write_many
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
@@ -218,3 +220,54 @@ def test_a_folder_that_is_only_read(tmp_path: Path, measured: Measurement) -> No
         tmp_path.chmod(0o755)
     assert path.read_bytes() == before
     assert [item.name for item in tmp_path.iterdir()] == ["a.sqlite"]
+
+
+def of_version(path: Path, version: str, *, key: str | None = None) -> None:
+    """Let the results in a file be those of another version, whose keys differ."""
+    with closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE result SET version = ?, key = coalesce(?, key)", (version, key))
+
+
+@pytest.mark.parametrize("key", [None, "other"])
+def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, measured: Measurement) -> None:
+    path = tmp_path / "a.sqlite"
+    with Store(path) as store:
+        store.record(CASE.key, CASE, replace(measured, iterations=12345))
+    of_version(path, "0.1.0", key=key)
+    with Store(path) as store:
+        assert store.statuses() == {}
+        assert store.older({CASE.key: CASE}) == {CASE.key: ("0.1.0", "COMPLETED")}
+        assert store.claim([CASE.key], limit=1).mine == [CASE.key]
+        store.record(CASE.key, CASE, measured)
+        assert store.statuses() == {CASE.key: "COMPLETED"}
+    found = {result.version: result.measurement.iterations for result in read_results(path)}
+    assert found[version()] == int(measured.iterations)
+    assert ("0.1.0" in found) is (key is not None)
+
+
+def test_older_results_are_those_of_the_same_case(tmp_path: Path, measured: Measurement) -> None:
+    path = tmp_path / "a.sqlite"
+    cases = {
+        "scene": replace(CASE, scene=replace(KS, load_parameters=3)),
+        "model": replace(CASE, model="rod", options=Options()),
+        "options": replace(CASE, options=Options(elements=4)),
+        "file": replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),))),
+    }
+    with Store(path) as store:
+        store.record(CASE.key, CASE, measured)
+        store.record("file", cases["file"], measured)
+        of_version(path.resolve(), "0.1.0")
+        assert store.older({"same": CASE, **cases}) == {"same": ("0.1.0", "COMPLETED")}
+
+
+def test_the_version_tells_sources_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "version_probe"
+    package.mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("comparisons.version.PACKAGES", ("version_probe",))
+    seen = []
+    for text in ("a = 1\n", "a = 2\n", "a = 1\r\n"):
+        (package / "__init__.py").write_text(text)
+        seen.append(version.__wrapped__())
+    assert seen[0] == seen[2] != seen[1]
+    assert seen[0].startswith(f"{metadata.version('tsm-crossval')}+")

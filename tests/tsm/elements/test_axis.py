@@ -34,7 +34,7 @@ def apart(found: tsm.Result, exact: tsm.Result) -> tuple[float, float]:
 
 SECTIONS = {
     "slender": STRIP,
-    "sheared": replace(STRIP, GA=10 * STRIP.EI),
+    "sheared": replace(STRIP, GA=50 * STRIP.EI),
     "stretched": replace(STRIP, EA=300 * STRIP.EI),
 }
 

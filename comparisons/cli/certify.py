@@ -1,0 +1,107 @@
+"""``crossval certify``: what an answer is worth, by the exact equilibrium next to it."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from comparisons.cli import values
+from comparisons.cli.outcome import DONE, STOPPED, WRONG
+from comparisons.files import writable_file, write_text
+from comparisons.options import OPTIONS, ModelError, Options
+from comparisons.scene import load_scene
+
+if TYPE_CHECKING:
+    import argparse
+
+    from comparisons.cli.outcome import Commands
+    from comparisons.referee import Certificate, Judgement
+
+EPILOG = """exit status: 0 certified, 1 a wrong answer (UNSTABLE, INADMISSIBLE, NOT_AN_EQUILIBRIUM), 2 bad input, 3 not judged"""
+
+
+def add_to(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "certify",
+        help="judge an answer by the exact equilibrium next to it",
+        description="The exact equilibrium of the scene's rods next to an answer is found by another discretisation than any "
+        "model's; the answer is certified where it is near, stable and admissible.",
+        epilog=EPILOG,
+    )
+    parser.add_argument(
+        "answer", metavar="RESPONSE.json|SCENE", help="what solve --json wrote, or a scene to solve and judge"
+    )
+    parser.add_argument("--scene", metavar="SCENE", help="of a response, where it is not a built-in one")
+    parser.add_argument("--model", choices=OPTIONS, help="of a scene: the model that answers (tsm)")
+    parser.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
+    parser.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
+    parser.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
+    parser.add_argument(
+        "--all", action="store_true", help="judge every load parameter and follow the path between them"
+    )
+    parser.add_argument(
+        "--allowance",
+        type=values.part,
+        metavar="X",
+        help="largest relative distance from the exact equilibrium (.01)",
+    )
+    parser.add_argument("--json", metavar="FILE", help="write the certificate as JSON; - is standard output")
+    parser.set_defaults(run=run)
+
+
+def run(given: "argparse.Namespace") -> int:
+    """Read or solve, judge, and print the certificate."""
+    file = None if given.json in (None, "-") else writable_file(Path(given.json))
+    from comparisons.referee import Verdict, certify
+    from comparisons.restated import read_response
+    from comparisons.statement import to_text
+
+    stored = given.answer.endswith(".json")
+    if stored:
+        for option in ("model", "elements", "element", "mesh"):
+            if getattr(given, option) is not None:
+                raise ModelError(f"--{option}: belongs to a scene, {given.answer} is a response")
+        response = read_response(given.answer)
+        scene = load_scene(given.scene or response.scene)
+    else:
+        if given.scene is not None:
+            raise ModelError("--scene: belongs to a response in JSON")
+        from comparisons.models import solve
+
+        scene = load_scene(given.answer)
+        options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
+        response = solve(scene, given.model or "tsm", options)
+    every = range(len(response.load_parameter)) if given.all else None
+    found = certify(response, scene, at=every, allowance=given.allowance)
+    text = to_text({"scene": scene.name, "model": response.model, **found.as_dict()})
+    if given.json == "-":
+        sys.stdout.write(text)
+    else:
+        if file is not None:
+            write_text(file, text)
+        print(f"{scene.name}, model {response.model}, {response.status}")
+        for line in lines(found):
+            print(f"  {line}")
+    if found.verdict is Verdict.NOT_JUDGED:
+        return STOPPED
+    return DONE if found.certified else WRONG
+
+
+def lines(found: "Certificate") -> list[str]:
+    """Return a certificate as a verdict, a line for each load parameter that was judged, and what is wrong between them."""
+    rows = [found.line()]
+    rows += [_row(item) for item in found.judged]
+    rows += list(found.path)
+    rows += [
+        f"energy jumps by {energy:.6g} from {first:.6g} to {last:.6g}" for first, last, energy in found.jumps
+    ]
+    return rows
+
+
+def _row(item: "Judgement") -> str:
+    text = f"at {item.load_parameter:.6g}: {item.verdict.name}"
+    if item.distance is None:
+        return f"{text}, {item.reason}"
+    apart = vars(item.distance)
+    sizes = ", ".join(f"{name.replace('_', ' ')} {size:.2g}" for name, size in apart.items())
+    return f"{text}, off by: {sizes}; index {item.index}, residual {item.residual:.1g}"

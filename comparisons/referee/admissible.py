@@ -1,0 +1,87 @@
+"""Whether an equilibrium is one of unilateral contact: forces push, and no node or round pin is inside a beam, anywhere along it."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.referee.distance import least_force
+from comparisons.referee.state import Equilibrium
+from comparisons.scene import ContactSpec, Scene
+
+Array = NDArray[np.float64]
+
+INSIDE = 1e-9
+"""Largest penetration, over the beam's length: round-off of the models' own contacts."""
+PULL = 1e-9
+"""Largest pulling force of a contact at its release, over EI/L^2: round-off of the models."""
+_POINTS = 201
+
+
+def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
+    """Yield a sentence for everything that a frictionless unilateral contact does not admit."""
+    for spec in scene.contacts:
+        beam = scene.beam(spec.beam)
+        contact = exact.contacts.get(spec.pair)
+        if contact is not None:
+            if contact.push < -PULL * least_force(scene):
+                yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
+            if not 0.0 <= contact.arc_position <= beam.length:
+                yield f"{spec.pair} is closed beyond the end of its beam"
+        gap, arc = least_gap(scene, exact, spec)
+        if gap < -INSIDE * beam.length:
+            what = "the round pin" if scene.radius(spec) else "the node"
+            yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
+
+
+def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
+    """Return the smallest gap of a pair at the feet on the stated side and where it is; infinite where there is none.
+
+    A foot is where the distance from the node to the axis is least between the beam's ends. At the contact itself shear bends the axis
+    sharply, by an angle 2 a, and the contact is normal to the mean of its two directions; so a round pin is inside the beam beside it, at
+    the distance d by ``a d - (1/offset - curvature) d^2/2``. What exceeds a d is line contact, and only that counts.
+    """
+    beam, node = scene.beam(spec.beam), _node(scene, exact, spec)
+    offset, side = scene.offset(spec), 1.0 if spec.side == "left" else -1.0
+    if offset == 0.0:
+        return np.inf, np.nan
+    arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
+    if contact is not None:
+        arcs = np.sort(np.append(arcs, contact.arc_position))
+        half = _kink(exact, spec.beam, contact.arc_position) / 2.0
+    away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T)
+    least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
+    best, place = np.inf, np.nan
+    for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
+        arc = _foot(exact, spec.beam, node, float(arcs[k - 1]), float(arcs[k + 1]))
+        there = exact.shape(spec.beam, np.array([arc]))
+        (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
+        gap = math.hypot(out_x, out_y) - offset
+        if contact is not None:
+            gap += half * abs(arc - contact.arc_position)
+        if side * (x * out_y - y * out_x) > 0.0 and gap < best:
+            best, place = gap, arc
+    return best, place
+
+
+def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
+    """Angle between the axis' directions before and behind a contact."""
+    a, b = exact.shape(beam, np.array([arc * (1.0 - 1e-14), arc])).tangent
+    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
+
+
+def _node(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Array:
+    if "." in spec.node:
+        return exact.ends[spec.node]
+    return np.array(scene.pin(spec.node).position(exact.load_parameter))
+
+
+def _foot(exact: Equilibrium, beam: str, node: Array, low: float, high: float) -> float:
+    """Where between two arc positions the axis is nearest: the grid is refined around the best place until round-off."""
+    for _ in range(9):
+        arcs = np.linspace(low, high, 11)
+        away = np.hypot(*(exact.shape(beam, arcs).position - node).T)
+        k = int(np.argmin(away))
+        low, high = float(arcs[max(k - 1, 0)]), float(arcs[min(k + 1, 10)])
+    return (low + high) / 2.0

@@ -1,0 +1,171 @@
+"""The certificate of an answer: load parameters judged one by one, and what happens between them."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import sqrt
+from time import perf_counter
+
+import numpy as np
+
+from comparisons.referee.certificate import Certificate, Judgement, Verdict
+from comparisons.referee.equilibrium import Found
+from comparisons.referee.follow import at_rest, departs
+from comparisons.referee.judge import impossible, judged
+from comparisons.referee.passing import changes, passages
+from comparisons.referee.state import Equilibrium
+from comparisons.referee.work import jumps
+from comparisons.response import Response
+from comparisons.scene import Scene
+
+ALLOWED = 1e-2
+"""Largest distance of an answer, unless it is given: what the eye takes for the same."""
+
+
+def certify(
+    response: Response, scene: Scene, *, at: Sequence[int] | None = None, allowance: float | None = None
+) -> Certificate:
+    """Judge `response` to `scene`.
+
+    Parameters
+    ----------
+    response : Response
+        The answer of any model, complete or not.
+    scene : Scene
+        What was asked.
+    at : sequence of int, optional
+        Numbers of the load parameters to judge, negative ones from the end: the last and those beside events if not given. Of all in
+        a row, the path between them is followed and its work is compared as well.
+    allowance : float, optional
+        Largest distance allowed: `default_allowance` if not given.
+    """
+    began = perf_counter()
+    allowed = default_allowance(response, scene) if allowance is None else allowance
+    steps = len(response.load_parameter)
+    numbers = (
+        beside_events(response)
+        if at is None
+        else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
+    )
+    states = tuple(judged(response, scene, k, allowed) for k in numbers)
+    path = tuple(_path(response, scene))
+    verdict, reason = _worst(states, path, steps)
+    found: tuple[tuple[float, float, float], ...] = ()
+    if verdict is Verdict.CERTIFIED:
+        gone = next(_departures(response, scene, states, numbers), "")
+        found = _jumps(response, scene, states, numbers)
+        if found and not gone:
+            first, last, energy = found[0]
+            gone = f"energy jumps by {energy:.3g} between load parameters {first:.6g} and {last:.6g} without an event"
+        if gone:
+            verdict, reason = Verdict.UNSTABLE, gone
+    return Certificate(
+        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path, jumps=found,
+        seconds=perf_counter() - began,
+    )  # fmt: skip
+
+
+_GRAVITY = (
+    Verdict.CERTIFIED,
+    Verdict.NOT_JUDGED,
+    Verdict.UNSTABLE,
+    Verdict.INADMISSIBLE,
+    Verdict.NOT_AN_EQUILIBRIUM,
+)
+
+
+def _worst(states: Sequence[Judgement], path: Sequence[str], steps: int) -> tuple[Verdict, str]:
+    """Return the gravest verdict and its reason."""
+    if not states:
+        what = "asked for" if steps else "reached"
+        return Verdict.NOT_JUDGED, f"no load parameter was {what}"
+    worst = max(states, key=lambda item: _GRAVITY.index(item.verdict))
+    if path and worst.verdict is not Verdict.NOT_AN_EQUILIBRIUM:
+        return Verdict.INADMISSIBLE, path[0]
+    if worst.verdict is Verdict.CERTIFIED:
+        return Verdict.CERTIFIED, _good(states)
+    return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
+
+
+def default_allowance(response: Response, scene: Scene) -> float:
+    """Return the largest distance allowed to a model: `ALLOWED`; a solid is a rod only to its height over its length, which is added.
+
+    The disturbance of a support or a contact fades over the height (Saint-Venant's principle), so that a rod leaves out
+    a part of the deflection of that order.
+    """
+    if response.model != "solid":
+        return ALLOWED
+    heights = [
+        sqrt(12.0 * beam.cross_section[1] / beam.cross_section[0]) / beam.length for beam in scene.beams
+    ]
+    return ALLOWED + max(heights)
+
+
+def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
+    """Return the numbers of the last load parameter and of those beside events, the latest if there are more than `most`."""
+    steps = len(response.load_parameter)
+    if not steps:
+        return ()
+    numbers = {steps - 1}
+    events = [event for event in response.events or () if event.kind != "pass-through"]
+    for event in sorted(events, key=lambda event: -event.load_parameter):
+        after = int(np.searchsorted(response.load_parameter, event.load_parameter))
+        for k in (after, after - 1):
+            if 0 <= k < steps and len(numbers) < most:
+                numbers.add(k)
+    return tuple(sorted(numbers))
+
+
+def _good(states: Sequence[Judgement]) -> str:
+    name, size = max((item.distance.largest for item in states if item.distance), key=lambda item: item[1])
+    return f"{name} off by {size:.2g}, index 0, admissible, at {len(states)} load parameters"
+
+
+def _path(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield what is wrong between load parameters; only of an answer that states what the scene has."""
+    steps = range(len(response.load_parameter))
+    if any(next(impossible(response, scene, k), "") for k in steps):
+        return
+    yield from passages(response, scene)
+    yield from changes(response, scene)
+    for spec in scene.contacts:
+        closed = response.contacts[spec.pair].force > 0.0
+        dropped = np.logical_or.accumulate(closed) & ~closed
+        if spec.keep and dropped.any():
+            yield f"{spec.pair} must persist and is open at load parameter {response.load_parameter[np.argmax(dropped)]:.6g}"
+
+
+def _intervals(
+    response: Response, states: Sequence[Judgement], numbers: Sequence[int]
+) -> Iterator[tuple[Equilibrium, Equilibrium]]:
+    """Yield neighbouring equilibria with the same contacts and no event between them."""
+    times = [event.load_parameter for event in response.events or () if event.kind != "pass-through"]
+    for (j, a), (k, b) in pairwise(zip(numbers, states, strict=True)):
+        one, other = a.exact, b.exact
+        if one is None or other is None or k != j + 1 or one.contacts.keys() != other.contacts.keys():
+            continue
+        if not any(one.load_parameter <= t <= other.load_parameter for t in times):
+            yield one, other
+
+
+def _departures(
+    response: Response, scene: Scene, states: Sequence[Judgement], numbers: Sequence[int]
+) -> Iterator[str]:
+    """Yield why an answer is not on the branch that it began on, from the undeformed state on and between judged neighbours."""
+    first = states[0].exact
+    if numbers[0] == 0 and first is not None and not first.contacts:
+        rest = at_rest(scene)
+        if rest.found is Found.FOUND:
+            yield from filter(None, [departs(scene, rest, first.solution)])
+    for one, other in _intervals(response, states, numbers):
+        yield from filter(None, [departs(scene, one.solution, other.solution)])
+
+
+def _jumps(
+    response: Response, scene: Scene, states: Sequence[Judgement], numbers: Sequence[int]
+) -> tuple[tuple[float, float, float], ...]:
+    """Return the jumps of energy where all load parameters are judged."""
+    if len(numbers) < 3 or list(numbers) != list(range(len(response.load_parameter))):
+        return ()
+    smooth = {item.load_parameter for item, _ in _intervals(response, states, numbers)}
+    path = [item.exact for item in states if item.exact is not None]
+    return tuple(jumps(scene, path, [item.load_parameter not in smooth for item in path[:-1]]))

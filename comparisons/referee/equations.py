@@ -1,0 +1,281 @@
+"""The rods' energy with its gradient and Hessian, exact, the unknowns inside the elements condensed.
+
+With the constant force n of a part in the beam's own frame, ``N = n_x cos th + n_y sin th``, ``Q = -n_x sin th + n_y cos th``:
+
+    Pi = sum_parts n.(r_b - r_a - l e) + int EI th'^2/2 - (n.(d - e) + N^2/2EA + Q^2/2GA) ds  -  loads
+
+stationary in the rotation th, the stations' positions, the contacts' arc positions (which move the mesh) and, as a maximum, in n. The
+forces as unknowns keep their digits however large EA and GA are, and nothing locks. Stationary in an arc position s it says that
+``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` does not jump there, which is ``F.(r'_- + r'_+) = 0``: no friction.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.referee.basis import SLOPES, VALUES, WEIGHTS
+from comparisons.referee.layout import NONE, Layout, normal
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_STIFF = (SLOPES.T * WEIGHTS) @ SLOPES
+_OUTER = 5
+
+
+class Mesh(NamedTuple):
+    """Elements of all parts, in order.
+
+    part, first (e,): number of the part, and of the vertex at the start; the vertex at the end is the next one.
+    start, share (e,): where the element begins and how long it is, as fractions of the part.
+    vertices (v,): number of the unknown rotation at each vertex, `NONE` where it is given.
+    turned (v,): rotations that are given.
+    unknowns: number of unknowns with the vertices inside the parts, without those inside the elements.
+    """
+
+    part: Ints
+    first: Ints
+    start: Array
+    share: Array
+    vertices: Ints
+    turned: Array
+    unknowns: int
+
+
+def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
+    """Return the elements between the fractions `grids`, from 0 to 1, of every part."""
+    part: list[int] = []
+    first: list[int] = []
+    vertices: list[int] = []
+    turned: list[float] = []
+    count = layout.unknowns
+    for number, (item, grid) in enumerate(zip(layout.parts, grids, strict=True)):
+        inner = len(grid) - 2
+        part += [number] * (inner + 1)
+        first += list(range(len(vertices), len(vertices) + inner + 1))
+        ends = [layout.stations[k] for k in (item.first, item.last)]
+        vertices += [ends[0].turn, *range(count, count + inner), ends[1].turn]
+        turned += [ends[0].turned, *[0.0] * inner, ends[1].turned]
+        count += inner
+    return Mesh(
+        part=np.array(part),
+        first=np.array(first),
+        start=np.concatenate([grid[:-1] for grid in grids]),
+        share=np.concatenate([np.diff(grid) for grid in grids]),
+        vertices=np.array(vertices),
+        turned=np.array(turned),
+        unknowns=count,
+    )
+
+
+class Properties(NamedTuple):
+    """Of every element's part, each (e,), and the numbers of its force unknowns."""
+
+    EI: Array
+    stretch: Array
+    shear: Array
+    force: Ints
+
+
+def properties(layout: Layout, mesh: Mesh) -> Properties:
+    """Return what the elements are made of."""
+    table = np.array([(item.EI, item.stretch, item.shear) for item in layout.parts])[mesh.part]
+    force = np.array([item.force for item in layout.parts])[mesh.part]
+    return Properties(table[:, 0], table[:, 1], table[:, 2], force)
+
+
+def rotations(mesh: Mesh, z: Array, bubbles: Array) -> Array:
+    """Coefficients (e, p + 1) of the rotation."""
+    there = np.where(mesh.vertices == NONE, mesh.turned, z[mesh.vertices])
+    return np.column_stack([there[mesh.first], there[mesh.first + 1], bubbles])
+
+
+class Fields(NamedTuple):
+    """Section forces of a rotation th at given places in the beam's own frame, and ``r'`` less the undeformed direction."""
+
+    N: Array
+    Q: Array
+    tangent: Array
+
+
+def fields(theta: Array, n: Array, stretch: Array | float, shear: Array | float) -> Fields:
+    """Return the fields; n (..., 2), the others of one shape."""
+    c, s = np.cos(theta), np.sin(theta)
+    N, Q = n[..., 0] * c + n[..., 1] * s, n[..., 1] * c - n[..., 0] * s
+    x = -2.0 * np.sin(theta / 2.0) ** 2 + stretch * N * c - shear * Q * s
+    y = s + stretch * N * s + shear * Q * c
+    return Fields(N, Q, np.stack([x, y], axis=-1))
+
+
+class Elements(NamedTuple):
+    """Gradient (e, p + 4) and Hessian of the elements' energy in `theta_a, theta_b, n_x, n_y, l` and the bubbles; energy (e,).
+
+    The energy is the strain energy; the rest of the stationary function is not needed.
+    """
+
+    gradient: Array
+    hessian: Array
+    energy: Array
+
+
+def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, n: Array) -> Elements:
+    """Evaluate the elements for the parts' `extents` by element (e,), the rotations (e, p + 1) and n (e, 2)."""
+    half = (mesh.share * extents / 2.0)[:, None]
+    theta = coefficients @ VALUES.T
+    a, c = made.stretch[:, None], made.shear[:, None]
+    N, Q, tangent = fields(theta, n[:, None, :], a, c)
+    stretched = 1.0 + N * (a - c)
+    cos, sin = np.cos(theta), np.sin(theta)
+    d_turn = Q * stretched
+    d_turn2 = Q**2 * (a - c) - N * stretched
+    # derivative of r' in theta: d2 (1 + N (a - c)) + d1 Q (a - c)
+    cross = np.stack([-sin * stretched + cos * Q * (a - c), cos * stretched + sin * Q * (a - c)], axis=-1)
+    bend = made.EI[:, None] / half
+    bent = coefficients @ _STIFF
+    size = coefficients.shape[1]
+    gradient = np.empty((len(theta), size + 3))
+    hessian = np.empty((len(theta), size + 3, size + 3))
+    turn = np.r_[0, 1, _OUTER : size + 3]
+    w = WEIGHTS
+    by_turn = (d_turn * w) @ VALUES
+    by_force = w @ tangent
+    straight = ((n[:, None, :] * tangent).sum(axis=-1) - a * N**2 / 2.0 - c * Q**2 / 2.0) @ w
+    bending = np.einsum("ei,ei->e", bent, coefficients)
+    share = mesh.share
+    gradient[:, turn] = bend * bent - half * by_turn
+    gradient[:, 2:4] = -half * by_force
+    gradient[:, 4] = -bending * made.EI / (2.0 * half[:, 0] ** 2) * share / 2.0 - straight * share / 2.0
+    inner = bend[:, :, None] * _STIFF - (VALUES.T * (half * d_turn2 * w)[:, None, :]) @ VALUES
+    hessian[:, turn[:, None], turn[None, :]] = inner
+    mixed = -half[:, :, None] * (VALUES.T @ (cross * w[:, None]))
+    hessian[:, turn, 2:4] = mixed
+    hessian[:, 2:4, turn] = mixed.transpose(0, 2, 1)
+    by_extent = -(bend / half * bent + by_turn) * (share / 2.0)[:, None]
+    hessian[:, turn, 4] = hessian[:, 4, turn] = by_extent
+    hessian[:, 2:4, 4] = hessian[:, 4, 2:4] = -by_force * (share / 2.0)[:, None]
+    hessian[:, 4, 4] = bending * made.EI / half[:, 0] ** 3 * share**2 / 4.0
+    xx = (a * cos**2 + c * sin**2) @ w
+    yy = (a * sin**2 + c * cos**2) @ w
+    xy = ((a - c) * sin * cos) @ w
+    hessian[:, 2:4, 2:4] = -half[:, :, None] * np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
+    stored = made.EI / (2.0 * half[:, 0]) * bending + half[:, 0] * ((a * N**2 + c * Q**2) @ w) / 2.0
+    return Elements(gradient, hessian, stored)
+
+
+class System(NamedTuple):
+    """Gradient (u,) and Hessian (u, u) with the bubbles condensed, and what gives those back.
+
+    With the change x of an element's own unknowns its bubbles change by ``-(shift + lever x)``; `ends` (e, 2) are the moments on the
+    elements' ends, from balance: a derivative of the rotation would lose digits.
+    """
+
+    gradient: Array
+    hessian: Array
+    shift: Array
+    lever: Array
+    blocks: Array
+    local: Ints
+    sign: Array
+    ends: Array
+    energy: float
+
+
+def assemble(layout: Layout, mesh: Mesh, made: Properties, z: Array, bubbles: Array) -> System:
+    """Return the condensed equations at the unknowns `z` and the `bubbles` (e, p - 1)."""
+    extents = np.array([layout.extent(z, part) for part in layout.parts])[mesh.part]
+    n = np.stack([z[made.force], z[made.force + 1]], axis=1)
+    parts = elements(mesh, made, extents, rotations(mesh, z, bubbles), n)
+    blocks = parts.hessian[:, _OUTER:, _OUTER:]
+    rhs = np.concatenate([parts.gradient[:, _OUTER:, None], parts.hessian[:, _OUTER:, :_OUTER]], axis=2)
+    solved = np.linalg.solve(blocks, rhs)
+    shift, lever = solved[:, :, 0], solved[:, :, 1:]
+    across = parts.hessian[:, :_OUTER, _OUTER:]
+    gradient = parts.gradient[:, :_OUTER] - np.einsum("eij,ej->ei", across, shift)
+    hessian = parts.hessian[:, :_OUTER, :_OUTER] - across @ lever
+    local, sign = _numbers(layout, mesh, made)
+    spread = np.array([0, 1, 2, 3, 4, 4])
+    size = mesh.unknowns + 1
+    g, k = np.zeros(size), np.zeros((size, size))
+    np.add.at(g, local, sign * gradient[:, spread])
+    np.add.at(
+        k,
+        (local[:, :, None], local[:, None, :]),
+        sign[:, :, None] * sign[:, None, :] * hessian[:, spread[:, None], spread[None, :]],
+    )
+    _add_stations(layout, z, g, k)
+    return System(
+        gradient=g[:-1],
+        hessian=k[:-1, :-1],
+        shift=shift,
+        lever=lever,
+        blocks=blocks,
+        local=local,
+        sign=sign,
+        ends=parts.gradient[:, :2],
+        energy=float(parts.energy.sum()),
+    )
+
+
+def _numbers(layout: Layout, mesh: Mesh, made: Properties) -> tuple[Ints, Array]:
+    """Numbers of the elements' unknowns, ends, force, arc positions of the part's two ends, and their signs; `NONE` is the last, dropped."""
+
+    def arc(station: int) -> int:
+        touch = layout.stations[station].touch
+        return NONE if touch == NONE else layout.touches[touch].arc
+
+    arcs = np.array([(arc(part.first), arc(part.last)) for part in layout.parts])[mesh.part]
+    local = np.column_stack(
+        [mesh.vertices[mesh.first], mesh.vertices[mesh.first + 1], made.force, made.force + 1, arcs]
+    )
+    local[local == NONE] = mesh.unknowns
+    return local, np.tile([1.0, 1.0, 1.0, 1.0, -1.0, 1.0], (len(local), 1))
+
+
+def _add_stations(layout: Layout, z: Array, g: Array, k: Array) -> None:
+    """Add ``n.(r_b - r_a - l e)`` of the parts and the loads; the last row and column take what is not unknown."""
+    for part in layout.parts:
+        rows = np.array([part.force, part.force + 1])
+        n = z[rows]
+        apart = _chord(layout, z, part.first, part.last, part.axes, layout.extent(z, part))
+        g[rows] += apart
+        for station, sign in ((part.first, -1.0), (part.last, 1.0)):
+            there = layout.stations[station]
+            touch = None if there.touch == NONE else layout.touches[there.touch]
+            for component, number in enumerate(there.place.unknown):
+                g[number] += sign * part.axes[component] @ n
+                k[rows, number] += sign * part.axes[component]
+                k[number, rows] += sign * part.axes[component]
+            if touch is None:
+                continue
+            g[touch.arc] -= sign * n[0]
+            k[part.force, touch.arc] -= sign
+            k[touch.arc, part.force] -= sign
+            if touch.angle != NONE:
+                nu = normal(float(z[touch.angle]))
+                way = touch.offset * part.axes.T @ np.array([nu[1], -nu[0]])
+                g[touch.angle] += sign * way @ n
+                k[rows, touch.angle] += sign * way
+                k[touch.angle, rows] += sign * way
+                k[touch.angle, touch.angle] += sign * touch.offset * nu @ part.axes @ n
+    for there in layout.stations:
+        if there.touch == NONE:
+            for number, load in zip(
+                (*there.place.unknown, there.turn), (*there.force, there.moment), strict=True
+            ):
+                g[number] -= load
+
+
+def _chord(layout: Layout, z: Array, first: int, last: int, axes: Array, extent: float) -> Array:
+    """``r_b - r_a - l e`` in the beam's frame; exactly zero for an undeformed beam."""
+    a, b = layout.stations[first], layout.stations[last]
+    moved = b.place.moved(z) - a.place.moved(z)
+    for there, sign in ((a, -1.0), (b, 1.0)):
+        if there.touch != NONE and layout.touches[there.touch].angle != NONE:
+            touch = layout.touches[there.touch]
+            moved = moved - sign * touch.offset * normal(float(z[touch.angle]))
+    apart = np.asarray(axes.T @ moved)
+    if a.touch == NONE and b.touch == NONE:
+        return apart
+    rest = axes.T @ (np.array(b.place.rest) - np.array(a.place.rest))
+    return np.asarray(apart + rest - np.array([extent, 0.0]))

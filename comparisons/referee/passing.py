@@ -1,0 +1,148 @@
+"""What happens between the load parameters of an answer: nodes do not pass through beams, and contacts change at events only."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.response import ContactHistory, Response
+from comparisons.scene import ContactSpec, Scene
+
+Array = NDArray[np.float64]
+
+SAMPLES = 101
+"""Places on the way of a node from load parameter to load parameter at which it is looked for."""
+
+
+def passages(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield a sentence for every open pair whose node, pin or beam's end, went through the beam."""
+    for spec in scene.contacts:
+        through = _passed_through(response, scene, spec, response.contacts[spec.pair])
+        if through is not None:
+            yield f"{spec.pair} is open and its node goes through the beam up to load parameter {through:.6g}"
+
+
+def changes(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield a sentence for every pair that closes or opens without an event, where the answer states events."""
+    if response.events is None:
+        return
+    times = np.concatenate([[0.0], response.load_parameter])
+    for spec in scene.contacts:
+        closed = response.contacts[spec.pair].force != 0.0
+        own = np.array(
+            [
+                event.load_parameter
+                for event in response.events
+                if event.pair == spec.pair and event.kind != "pass-through"
+            ]
+        )
+        for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
+            if not np.any((own >= times[k]) & (own <= times[k + 1])):
+                what = "closes" if closed[k] else "opens"
+                yield f"{spec.pair} {what} without an event up to load parameter {times[k + 1]:.6g}"
+
+
+def _passed_through(
+    response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory
+) -> float | None:
+    """Load parameter up to which the node of an open pair went through the deflected axis, not around an end; None if it did not.
+
+    Its way is followed from load parameter to load parameter, the axis and a beam's end taken to move straight. From a closed contact it
+    is followed only where it ends behind the axis, and not at all over a slip-off.
+    """
+    closed = contact.force > 0.0
+    where = _whereabouts(
+        _line(response, scene, spec.beam, -1), _node(response, scene, spec.node, -1, 0.0), scene, spec
+    )
+    for k, t in enumerate(map(float, response.load_parameter)):
+        if t >= contact.slip_off:
+            return None
+        if closed[k]:
+            where = "before"
+            continue
+        line, node = _line(response, scene, spec.beam, k), _node(response, scene, spec.node, k, t)
+        last, where = where, _whereabouts(line, node, scene, spec)
+        if where == "before" or (k > 0 and closed[k - 1] and where != "behind"):
+            continue
+        if _goes_through(response, scene, spec, k, last):
+            return t
+    return None
+
+
+def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, where: str) -> bool:
+    """Whether a node, which is first `where`, goes through the axis on the way to load parameter k and does not come back.
+
+    One that comes back may have been in contact meanwhile.
+    """
+    t, t_after = (0.0 if k == 0 else float(response.load_parameter[k - 1])), float(response.load_parameter[k])
+    line, line_after = _line(response, scene, spec.beam, k - 1), _line(response, scene, spec.beam, k)
+    parts = np.linspace(0.0, 1.0, SAMPLES)
+    touched = np.concatenate([line, line_after])
+    if "." in spec.node:
+        first, last = (_node(response, scene, spec.node, j, 0.0) for j in (k - 1, k))
+        nodes = (1.0 - parts)[:, None] * first + parts[:, None] * last
+    else:
+        pin = scene.pin(spec.node)
+        nodes = np.array([pin.position(float((1.0 - u) * t + u * t_after)) for u in parts])
+    apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
+    if apart.max() > scene.offset(spec):
+        return False
+    through = False
+    for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
+        moved = (1.0 - u) * line + u * line_after
+        before, where = where, _whereabouts(moved, node, scene, spec)
+        if before == "before" and where != "before":
+            through = where == "behind" or _cuts(moved, start, node, scene, spec)
+        through = through and where != "before"
+    return through
+
+
+def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
+    """The axis of a beam at load parameter k; of -1 the undeformed one."""
+    arc, line = response.axis_line(beam, max(k, 0))
+    if k >= 0:
+        return line
+    spec = scene.beam(beam)
+    return np.asarray(np.array(spec.start) + np.outer(arc, spec.direction))
+
+
+def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Array:
+    if "." not in node:
+        return np.array(scene.pin(node).position(t))
+    beam, end = node.split(".")
+    return np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1])
+
+
+def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
+    """Whether the way from start to end leads from the stated side through the line that a touching node is on."""
+    near = 1e-6 * scene.beam(spec.beam).length
+    side = 1.0 if spec.side == "left" else -1.0
+    pieces, way = np.diff(line, axis=0), end - start
+    lengths = np.hypot(*pieces.T)
+    before, after = (
+        side * _cross(pieces, node - line[:-1]) / lengths - scene.offset(spec) for node in (start, end)
+    )
+    left = side * scene.offset(spec) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
+    first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
+    return bool(((before > near) & (after < -near) & (first != last)).any())
+
+
+def _cross(a: Array, b: Array) -> Array:
+    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
+
+
+def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
+    """Where a node is: "beyond" an end of the axis, "before" it, on the stated side, or "behind" it."""
+    near = 1e-6 * scene.beam(spec.beam).length
+    nearest = int(np.argmin(np.hypot(*(line - node).T)))
+    first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
+    tangent, away = line[last] - line[first], node - line[nearest]
+    tangent = tangent / np.hypot(*tangent)
+    along = float(tangent @ away)
+    if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
+        return "beyond"
+    distance = tangent[0] * away[1] - tangent[1] * away[0]
+    gap = (distance if spec.side == "left" else -distance) - scene.offset(spec)
+    return "behind" if gap < -near else "before"

@@ -1,0 +1,57 @@
+"""The index of an equilibrium: how many directions lower the energy among those that supports and closed contacts admit."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.referee.equations import fields
+from comparisons.referee.equilibrium import Solution, scales
+from comparisons.referee.layout import NONE
+
+Array = NDArray[np.float64]
+
+
+def count(solution: Solution) -> tuple[int, float]:
+    """Return the index and the smallest eigenvalue, in size, of the scaled condensed Hessian.
+
+    The forces of the parts are maxima, two for each: their block ``-C`` is negative definite, and Haynsworth's formula gives
+    ``index = negatives(K) - 2 parts``, where the elements' condensed blocks are counted as well. A contact with offset keeps its normal
+    on the mean of the two tangent directions: the angle phi follows them, it is no direction of its own.
+    """
+    system = solution.system
+    assert system is not None, "an equilibrium has its equations"
+    held = _directions(solution)
+    reduced = held.T @ system.hessian @ held
+    scale = scales(reduced)
+    values = np.linalg.eigvalsh(scale[:, None] * reduced * scale)
+    inside = np.linalg.eigvalsh(system.blocks)
+    negatives = int((values < 0.0).sum() + (inside < 0.0).sum())
+    return negatives - 2 * len(solution.layout.parts), float(np.abs(values).min())
+
+
+def _directions(solution: Solution) -> Array:
+    """Admissible variations as columns: of everything but the angles phi, which turn as ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
+    layout, z = solution.layout, solution.z
+    size = solution.mesh.unknowns
+    free = np.eye(size)
+    angles = []
+    for number, station in enumerate(layout.stations):
+        if station.touch == NONE or layout.touches[station.touch].angle == NONE:
+            continue
+        angle = layout.touches[station.touch].angle
+        angles.append(angle)
+        turned, forced, whole = np.zeros(2), [], np.zeros(2)
+        for part in (item for item in layout.parts if number in (item.first, item.last)):
+            theta, n = float(z[station.turn]), z[part.force : part.force + 2]
+            here, a, c = fields(np.array(theta), n, part.stretch, part.shear), part.stretch, part.shear
+            d1 = np.array([np.cos(theta), np.sin(theta)])
+            d2 = np.array([-d1[1], d1[0]])
+            whole += here.tangent + np.array([1.0, 0.0])
+            turned += d2 * (1.0 + here.N * (a - c)) + d1 * here.Q * (a - c)
+            forced.append((part.force, a * np.outer(d1, d1) + c * np.outer(d2, d2)))
+        across = np.array([-whole[1], whole[0]]) / (whole @ whole)
+        row = np.zeros(size)
+        row[station.turn] = across @ turned
+        for force, by_force in forced:
+            row[force : force + 2] = across @ by_force
+        free[angle] = row
+    return np.delete(free, angles, axis=1)

@@ -1,0 +1,240 @@
+"""The referee's index against buckling loads, folds and units; its answer where there are many contacts, and on finer meshes."""
+
+import math
+from dataclasses import replace
+from time import process_time
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from comparisons.exact.elastica import fold_angle
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.referee import Equilibrium, Found, Given, equilibrium, given_by
+from comparisons.referee.equations import assemble, mesh_of, properties
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
+
+GA, EA = 50.0, 400.0
+SECTION = {"youngs_modulus": 1.0, "shear_modulus": 1.0, "second_moment": 1.0}
+
+
+def column(ends: str, load: float) -> Equilibrium:
+    """A straight column, EI = L = 1, under an end load, with the ends "clamped-free", "pinned", "clamped" or "clamped-pinned"."""
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.0), area=EA, shear_area=GA, **SECTION,
+        clamped=() if ends == "pinned" else ("start",),
+    )  # fmt: skip
+    supports = {
+        "clamped-free": (),
+        "pinned": (
+            SupportSpec(beam="b", end="start", kind="pinned"),
+            SupportSpec(beam="b", end="end", fixed=("y",)),
+        ),
+        "clamped": (SupportSpec(beam="b", end="end", fixed=("y", "rotation")),),
+        "clamped-pinned": (SupportSpec(beam="b", end="end", fixed=("y",)),),
+    }[ends]
+    push = LoadSpec(beam="b", end="end", force=(-load, 0.0))
+    scene = Scene(name="column", load_parameters=1, beams=(beam,), supports=supports, loads=(push,))
+    arc = np.linspace(0.0, 1.0, 5)
+    line = np.stack([arc * (1.0 - load / EA), 0.0 * arc], axis=1)
+    exact = equilibrium(
+        scene, Given(load_parameter=1.0, arcs={}, forces={}, axes={"b": (arc, line)}, reactions={}, tips={})
+    )
+    assert exact.found is Found.FOUND
+    assert not exact.shape("b", arc).rotation.any()
+    return exact
+
+
+def critical(ends: str, mode: int) -> float:
+    """Load of a mode: ``P (1 + P (1/GA - 1/EA)) = k^2``, the end reaction of clamped-pinned apart."""
+    if ends == "clamped-pinned":
+
+        def miss(P: float) -> float:
+            k = math.sqrt(P * (1.0 + P / GA - P / EA))
+            return math.sin(k) - k * math.cos(k) * (1.0 - P / EA) / (1.0 + P / GA - P / EA)
+
+        return float(brentq(miss, 10.0, 25.0, xtol=1e-14))
+    k = math.pi * {"clamped-free": mode - 0.5, "pinned": mode, "clamped": 2.0 * mode}[ends]
+    a = 1.0 / GA - 1.0 / EA
+    return (math.sqrt(1.0 + 4.0 * a * k**2) - 1.0) / (2.0 * a)
+
+
+@pytest.mark.parametrize(
+    ("ends", "mode"),
+    [("clamped-free", 1), ("clamped-free", 2), ("clamped-free", 3), ("pinned", 1), ("pinned", 2), ("clamped", 1), ("clamped-pinned", 1)],
+)  # fmt: skip
+def test_the_index_grows_by_one_at_every_buckling_load_to_1e_10(ends: str, mode: int) -> None:
+    load = critical(ends, mode)
+    assert [column(ends, load * part).index for part in (1.0 - 1e-10, 1.0 + 1e-10)] == [mode - 1, mode]
+
+
+def test_printed_number_of_the_clamped_pinned_column() -> None:
+    a = 1.0 / GA
+    P = brentq(lambda P: math.tan(k := math.sqrt(P * (1.0 + P * a))) - k / (1.0 + P * a), 14.0, 16.0)
+    assert pytest.approx(15.0586, abs=1e-4) == P
+
+
+def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, Given]:
+    """A pin under a stiff rod, EI = 1, where the tangent has the angle tc at s = .9, and the shape of an elastica."""
+    EI, s = 1.0, 0.9
+
+    def rate(_: float, state: np.ndarray, force: float) -> list[float]:
+        _, _, theta, m = state
+        c, si = math.cos(theta), math.sin(theta)
+        return [c, si, m, -force * (si * math.sin(tc) + c * math.cos(tc))]
+
+    def shot(force: float) -> np.ndarray:
+        back = solve_ivp(
+            rate, (s, 0.0), [0.0, 0.0, tc, 0.0], args=(force,), rtol=1e-11, atol=1e-12, dense_output=True
+        )
+        return np.array(back.sol(np.linspace(0.0, s, 91)).T)
+
+    force = brentq(lambda f: shot(f)[0, 2], 0.5, next(f for f in np.arange(1.0, 60.0) if shot(f)[0, 2] < 0.0))
+    line = shot(force)[:, :2]
+    line -= line[0]
+    direction = np.array([math.cos(tc), math.sin(tc)])
+    tail = line[-1] + np.outer(np.linspace(0.01, 0.1, 10), direction)
+    arc = np.concatenate([np.linspace(0.0, s, 91), np.linspace(s + 0.01, 1.0, 10)])
+    normal = np.array([-direction[1], direction[0]])
+    pin = line[-1] - offset * normal
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=1e9, shear_area=1e9, **SECTION
+    )
+    scene = Scene(
+        name="fold",
+        load_parameters=1,
+        beams=(beam,),
+        pins=(PinSpec(name="p", path=((1.5, -1.0), (float(pin[0]), float(pin[1]))), radius=offset or None),),
+        contacts=(ContactSpec(node="p", beam="b", side="right"),),
+    )
+    pushed = force * EI * normal
+    given = Given(
+        load_parameter=1.0, arcs={"p->b": s}, forces={"p->b": (float(pushed[0]), float(pushed[1]))},
+        axes={"b": (arc, np.vstack([line, tail]))}, reactions={}, tips={},
+    )  # fmt: skip
+    return scene, given
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-6])
+@pytest.mark.parametrize(("beyond", "index"), [(-0.02, 0), (-0.005, 0), (0.005, 1), (0.02, 1)])
+def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(beyond: float, index: int, offset: float) -> None:
+    exact = equilibrium(*elastica(fold_angle() + beyond, offset))
+    assert exact.found is Found.FOUND
+    assert exact.contacts["p->b"].push > 0.0
+    assert exact.index == index
+
+
+CROWD = Scene(
+    name="crowd",
+    load_parameters=4,
+    beams=(
+        BeamSpec(
+            name="b", start=(0.0, 0.0), end=(11.0, 0.0), clamped=("start", "end"), width=0.2, height=0.1,
+            youngs_modulus=1e7, poissons_ratio=0.3,
+        ),
+    ),
+    pins=tuple(
+        PinSpec(name=f"p{k}", start=(k + 0.03 * math.sin(k), 0.05 * (-1) ** k), displacement=(0.05, -0.12 * (-1) ** k))
+        for k in range(1, 11)
+    ),
+    contacts=tuple(
+        ContactSpec(node=f"p{k}", beam="b", side="left" if k % 2 == 0 else "right", surface="face") for k in range(1, 11)
+    ),
+)  # fmt: skip
+"""Ten pins on both sides of one beam, in turn."""
+
+
+def test_ten_contacts_in_three_tenths_of_a_second() -> None:
+    answer = solve(CROWD, "tsm", Options(element="exact"))
+    assert answer.completed, answer.message
+    given = given_by(answer, CROWD, -1)
+    began = process_time()
+    exact = equilibrium(CROWD, given)
+    spent = process_time() - began
+    assert exact.found is Found.FOUND
+    assert len(exact.contacts) == 10
+    assert exact.index == 0
+    print(f"{spent:.3f} s, {exact.iterations} iterations, error {exact.error:.1e}")
+    assert spent < 0.3
+    for pair, here in exact.contacts.items():
+        assert here.push == pytest.approx(answer.contacts[pair].force[-1], rel=1e-8)
+        assert abs(here.drag) < 1e-10 * here.push
+
+
+@pytest.mark.parametrize("force", [1e-9, 1e9])
+@pytest.mark.parametrize("length", [1e-6, 1e6])
+def test_units_change_nothing(length: float, force: float) -> None:
+    scene = replace(load_scene("ks-face"), load_parameters=2)
+    plain = equilibrium(scene, given := given_by(solve(scene, "rod"), scene, -1))
+    beam, pin = scene.beams[0], scene.pins[0]
+    start, way = np.array(pin.start) * length, np.array(pin.displacement) * length
+    other = replace(
+        scene,
+        beams=(
+            replace(
+                beam, end=(length, 0.0), width=beam.width * length, height=beam.height * length,
+                youngs_modulus=beam.youngs_modulus * force / length**2,
+            ),
+        ),
+        pins=(replace(pin, start=(start[0], start[1]), displacement=(way[0], way[1])),),
+    )  # fmt: skip
+    scaled = replace(
+        given,
+        arcs={pair: arc * length for pair, arc in given.arcs.items()},
+        forces={pair: (x * force, y * force) for pair, (x, y) in given.forces.items()},
+        axes={name: (arc * length, line * length) for name, (arc, line) in given.axes.items()},
+        reactions={
+            end: (x * force, y * force, m * force * length) for end, (x, y, m) in given.reactions.items()
+        },
+    )
+    found = equilibrium(other, scaled)
+    (a,), (b,) = plain.contacts.values(), found.contacts.values()
+    np.testing.assert_allclose(b.force / force, a.force, rtol=1e-13)
+    assert b.arc_position / length == pytest.approx(a.arc_position, rel=1e-13)
+    assert found.index == plain.index
+
+
+@pytest.mark.parametrize("name", ["ks-face", "double-beam"])
+def test_finer_elements_change_nothing(name: str) -> None:
+    """The found unknowns solve the equations on halved elements as well, to round-off."""
+    scene = replace(load_scene(name), load_parameters=3)
+    exact = equilibrium(scene, given_by(solve(scene, "tsm"), scene, 1))
+    from comparisons.referee.equilibrium import _carried, _newton, _refined
+
+    old = exact.solution
+    grids = _refined(old.mesh, np.ones(len(old.mesh.part), dtype=bool))
+    z, bubbles, finer = _carried(old.layout, old.mesh, old.z, old.bubbles, grids)
+    again = _newton(old.layout, finer, z, bubbles, 10)
+    assert again.converged
+    n = old.layout.unknowns
+    np.testing.assert_allclose(again.z[:n], old.z[:n], rtol=0.0, atol=1e-13 * np.abs(old.z[:n]).max())
+
+
+@pytest.mark.parametrize("name", ["ks-face", "double-beam"])
+def test_the_hessian_is_that_of_the_gradient(name: str) -> None:
+    """By central differences, away from equilibrium, the condensed bubbles following."""
+    scene = replace(load_scene(name), load_parameters=3)
+    old = equilibrium(scene, given_by(solve(scene, "tsm"), scene, 1)).solution
+    random = np.random.default_rng(5)
+    made = properties(old.layout, old.mesh)
+    mesh = mesh_of(
+        old.layout, [np.append(old.mesh.start[old.mesh.part == k], 1.0) for k in range(len(old.layout.parts))]
+    )
+    z = old.z + 0.01 * random.standard_normal(len(old.z))
+
+    def relaxed(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        bubbles = old.bubbles
+        for _ in range(8):
+            system = assemble(old.layout, mesh, made, z, bubbles)
+            bubbles = bubbles - system.shift
+        return system.gradient, system.hessian
+
+    _, hessian = relaxed(z)
+    step = 1e-5
+    for k in random.permutation(len(z))[:12]:
+        unit = step * np.eye(len(z))[k]
+        rate = (relaxed(z + unit)[0] - relaxed(z - unit)[0]) / (2.0 * step)
+        np.testing.assert_allclose(rate, hessian[k], rtol=0.0, atol=1e-7 * np.abs(hessian).max())
+    np.testing.assert_allclose(hessian, hessian.T, rtol=0.0, atol=1e-12 * np.abs(hessian).max())

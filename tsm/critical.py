@@ -1,0 +1,199 @@
+"""Critical points: where the tangent of the equilibrium path is singular, so that a buckling mode needs no force.
+
+At a limit point the load parameter is stationary along the path, and no equilibrium of this branch lies beyond. At a bifurcation point
+the path goes on, unstable, and another branch crosses it. Both are located by a number g that vanishes with the tangent K and is
+smooth there (Griewank and Reddien 1984)::
+
+    [ K  b ] [ v ]   [ 0 ]
+    [ c  0 ] [ g ] = [ 1 ],     g = -1/(c . y),  v = y/(c . y),  K y = b
+
+for any fixed b and c; v is the mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.axis import axis_line
+from tsm.elements.properties import Array
+from tsm.newton import Equilibrium, Newton
+from tsm.path import PathTangent
+from tsm.stability import mode
+
+_SOLVES = 60
+_LOCATED = 1e-13
+"""Bracket of a critical load parameter at which it is found."""
+_SHIFT = 1e-6
+"""Part of a mode by which the axis is moved to see its shape."""
+
+
+class CriticalKind(Enum):
+    """Kind of a critical point."""
+
+    LIMIT_POINT = "limit point"
+    BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CriticalPoint:
+    """A located critical point of the equilibrium path.
+
+    Attributes
+    ----------
+    kind : CriticalKind
+        Limit point or bifurcation.
+    load_parameter : float
+        Where.
+    mode : dict of ndarray, shape (m, 2)
+        Displacements of the beams' axes in the buckling mode, at the stations of `Result.axis_line`; the largest is 1.
+    """
+
+    kind: CriticalKind
+    load_parameter: float
+    mode: dict[str, Array]
+
+
+class Bracket(NamedTuple):
+    """Two ends of a step between which the index changes.
+
+    Attributes
+    ----------
+    before, after : tuple of (float, int)
+        Load parameters and indices.
+    """
+
+    before: tuple[float, int]
+    after: tuple[float, int]
+
+
+def _bordered(newton: Newton, equilibrium: Equilibrium, across: Array | None = None) -> tuple[float, Array]:
+    """Return g and v of the module's equation, v over the equations and the contacts' unknowns.
+
+    Parameters
+    ----------
+    newton : Newton
+        Of the structure.
+    equilibrium : Equilibrium
+        Where.
+    across : ndarray, optional
+        The vector c; a fixed one with parts along all displacements if not given.
+    """
+    size = len(newton.scale)
+    draw = np.random.default_rng(1)
+    b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
+    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
+    solved = newton.assembler.solve(equilibrium.system, b)
+    if solved is None or not np.isfinite(solved.x[:, 1]).all():
+        return 0.0, np.zeros(size)
+    y = solved.x[:, 1]
+    along = float(c @ y) or np.finfo(float).tiny
+    return -1 / along, y / along
+
+
+def locate_bifurcation(
+    newton: Newton, bracket: Bracket, solve: Callable[[float], Equilibrium | None]
+) -> Equilibrium | None:
+    """Equilibrium at the first singular tangent of a path that goes on beyond it.
+
+    The index brackets the point; false position on g finds it where the bracket holds a single one.
+
+    Parameters
+    ----------
+    newton : Newton
+        Of the structure.
+    bracket : Bracket
+        Indices that differ at two load parameters.
+    solve : callable
+        Equilibrium of the path at a load parameter, None where none is found.
+
+    Returns
+    -------
+    Equilibrium or None
+        The last found before the point, None where the path is not found between the two ends.
+    """
+    (low, index), (high, _) = bracket
+    across: Array | None = None
+    known: list[tuple[float, float]] = []
+    found: Equilibrium | None = None
+    for _ in range(_SOLVES):
+        t = _secant(known, low, high)
+        equilibrium = solve(t)
+        if equilibrium is None:
+            return None
+        g, v = _bordered(newton, equilibrium, across)
+        if across is None:
+            weights = newton.per_unknown**2
+            across, g = weights * v / float(v @ (weights * v)), float("nan")
+            g, _ = _bordered(newton, equilibrium, across)
+        known = [*known[-1:], (t, g)]
+        if PathTangent(newton, equilibrium).index == index:
+            low, found = t, equilibrium
+        else:
+            high, found = t, found or equilibrium
+        if high - low <= _LOCATED * max(1.0, high) or g == 0.0 or _stationary(known):
+            return equilibrium
+    return found
+
+
+def _secant(known: list[tuple[float, float]], low: float, high: float) -> float:
+    """Zero of the line through the last two values, or the middle where it lies outside the bracket."""
+    if len(known) == 2 and known[0][1] != known[1][1]:
+        (t0, g0), (t1, g1) = known
+        t = t1 - g1 * (t1 - t0) / (g1 - g0)
+        if low < t < high:
+            return t
+    return (low + high) / 2
+
+
+def _stationary(known: list[tuple[float, float]]) -> bool:
+    return len(known) == 2 and abs(known[1][0] - known[0][0]) <= _LOCATED * max(1.0, known[1][0])
+
+
+def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
+    """Load parameter of a limit point from two load parameters before it and the speeds of the path there.
+
+    Near it the speed is ``a/sqrt(t_c - t)``.
+
+    >>> round(limit_load((0.0, 1.0), (0.75, 2.0)), 12)
+    1.0
+    """
+    (t0, v0), (t1, v1) = before, last
+    if not np.isfinite(v1) or not v1 > v0 > 0:
+        return t1
+    return t1 + (t1 - t0) * v0**2 / (v1**2 - v0**2)
+
+
+def critical_point(
+    newton: Newton, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float
+) -> CriticalPoint:
+    """Critical point with the mode of the tangent at an equilibrium beside it."""
+    found = mode_shape(newton, equilibrium)
+    shapes = {} if found is None else found[1]
+    return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
+
+
+def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
+    """Buckling mode near a critical point.
+
+    Returns
+    -------
+    tuple or None
+        Change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the axes; None without a single mode.
+    """
+    model, state = newton.model, equilibrium.state
+    found = mode(newton.assembler, state, equilibrium.system)
+    if found is None:
+        return None
+    moved = newton.update(state, found.x * _SHIFT, equilibrium.system)
+    system = newton.assembler.linearise(moved)
+    shapes = {
+        beam: axis_line(model, moved, system, beam)[1] - axis_line(model, state, equilibrium.system, beam)[1]
+        for beam in model.beams
+    }
+    most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
+    return found.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}

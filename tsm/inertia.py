@@ -1,0 +1,103 @@
+"""Inertia of a symmetric matrix that is a band with a border: how many of its eigenvalues are negative.
+
+``negatives(K) = negatives(A) + negatives(D - B^T A^-1 B)`` (Haynsworth 1968) for a band A, border columns B and a corner D. Most bands
+pass Cholesky's factorisation and have none; where one does not, the whole is factorised.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dpbtrf, dpbtrs, dsytrf
+
+from tsm.elements.properties import Array
+
+_EPS = float(np.finfo(float).eps)
+_WEAK = 1e-13
+"""Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
+_SOFT = 1e5
+"""Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
+_DENSE = 1500
+"""Most unknowns of a dense matrix."""
+
+
+class Symmetric(NamedTuple):
+    """Symmetric tangent, a band with a border.
+
+    Attributes
+    ----------
+    band : ndarray, shape (k + 1, n)
+        LAPACK's lower band storage.
+    right : ndarray, shape (n, b)
+        Border columns, for plain numbers as unknowns.
+    corner : ndarray, shape (b, b)
+        Where they meet, likewise.
+    units : ndarray, shape (n,)
+        Of the unknowns of the band, over the root of an energy.
+    multipliers : int
+        Unknowns that are forces or moments.
+    """
+
+    band: Array
+    right: Array
+    corner: Array
+    units: Array
+    multipliers: int
+
+
+def negatives(symmetric: Symmetric) -> int | None:
+    """Number of negative eigenvalues, None where one of them is zero or not a number."""
+    band, right, corner, units, _ = symmetric
+    factor, info = dpbtrf(band, lower=1)
+    if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
+        if not len(corner):
+            return 0
+        inside, _ = dpbtrs(factor, right, lower=1)
+        reduced = corner - right.T @ inside
+        if np.abs(reduced).max() < _SOFT:
+            return _negatives_dense(reduced)
+    count, width = band.shape[1], len(corner)
+    if count + width > _DENSE:
+        return _negatives_sparse(symmetric)
+    whole = np.zeros((count + width, count + width))
+    for k, diagonal in enumerate(band[:count]):
+        whole[range(k, count), range(count - k)] = diagonal[: count - k] * units[k:] * units[: count - k]
+    whole[count:, :count], whole[count:, count:] = right.T * units, corner
+    return _negatives_dense(whole)
+
+
+def _negatives_sparse(symmetric: Symmetric) -> int | None:
+    """The same for a large matrix, by an LU decomposition whose pivots stay on the diagonal; None where they do not."""
+    from scipy.sparse import block_array, coo_array, dia_array
+    from scipy.sparse.linalg import splu
+
+    band, right, corner, units, _ = symmetric
+    count = band.shape[1]
+    lower = dia_array((band, -np.arange(len(band))), shape=(count, count))
+    scale = dia_array((units[None], [0]), shape=(count, count))
+    inside = scale @ (lower + dia_array((band[1:], -np.arange(1, len(band))), shape=(count, count)).T) @ scale
+    beside = coo_array(right * units[:, None])
+    whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
+    options = {"SymmetricMode": True, "Equil": False}
+    try:
+        lu = splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    except RuntimeError:
+        return None
+    pivots = lu.U.diagonal()
+    smallest = _EPS * np.abs(whole.diagonal()).max()
+    if (lu.perm_r != lu.perm_c).any() or not (np.abs(pivots) > smallest).all():
+        return None
+    return int(np.count_nonzero(pivots < 0))
+
+
+def _negatives_dense(matrix: Array) -> int | None:
+    """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
+    factors, exchanges, _ = dsytrf(matrix, lower=1)
+    single = exchanges > 0
+    pivots = factors.diagonal()[single]
+    smallest = _EPS * np.abs(matrix.diagonal()).max(initial=0.0)
+    if not np.isfinite(factors).all() or (np.abs(pivots) <= smallest).any():
+        return None
+    # the pivots of two rows are indefinite
+    return int(np.count_nonzero(pivots < 0)) + int(np.count_nonzero(~single)) // 2

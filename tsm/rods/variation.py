@@ -1,0 +1,299 @@
+"""Second variation of exact elements: a symmetric tangent, in which no mode inside an element is hidden.
+
+Between two loads the force n is constant and the positions follow from it, so a segment of length h adds ::
+
+    n . (r_j - r_i) + G,   G(phi_i, phi_j, n, h) = ext over phi(s) of  int EI phi'^2/2 - N - N^2/2EA - Q^2/2GA ds
+
+and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under constant n, are those of
+``EI eta'' = f_phi eta``: none where ``- f_phi h^2/EI < pi^2`` everywhere (Sturm). Longer segments are divided, so every mode
+shows in the matrix; each component of n and F takes one negative eigenvalue of it, and the rest is the index. The rows of
+`tsm.rods.assembly` say the same in another form, which is not symmetric.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements import rod
+from tsm.elements.collocation import collocation
+from tsm.elements.properties import Array
+from tsm.rods.assembly import RodBalance, Rods, profile_of, touch_of
+from tsm.rods.layout import COLUMNS, CUT, OWN
+from tsm.rods.shape import plain_shape
+from tsm.state import State
+
+_LONGEST = 7.0
+"""Largest ``- f_phi h^2/EI`` of a segment that is not divided; its first mode lies at ``pi^2``."""
+_PIECE = math.pi / 2
+"""Root of the same in the pieces of a divided segment."""
+_SHORT = 1e-4
+"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by a length near zero or negative."""
+_PULL = np.zeros((OWN, OWN))
+"""Derivatives of ``n . (r_j - r_i)``, and a unit for the moment, which has been eliminated."""
+_PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
+_PULL[[3, 4, 0, 1], [0, 1, 3, 4]] = -1
+_PULL[5, 5] = 1
+
+
+class Bordered(NamedTuple):
+    """Element with contacts, or with modes inside.
+
+    Attributes
+    ----------
+    element : int
+        Counted over the exact elements.
+    matrix : ndarray, shape (9 + b, 9 + b)
+        Over the element's degrees of freedom, then what it has in the border.
+    slots : list of int
+        Positions of the latter among the contacts' unknowns, -1 for the angles and moments that are the element's own.
+    moments : int
+        How many of the latter are moments; they are the last.
+    """
+
+    element: int
+    matrix: Array
+    slots: list[int]
+    moments: int
+
+
+class Variation(NamedTuple):
+    """Symmetric tangent of the exact elements, their forces and moments eliminated.
+
+    Attributes
+    ----------
+    tangent : ndarray, shape (r, 9, 9)
+        Over the degrees of freedom of the elements, with units for force and moment.
+    bordered : tuple of Bordered
+        Elements that have more unknowns; their first nine are in `tangent` too.
+    """
+
+    tangent: Array
+    bordered: tuple[Bordered, ...]
+
+
+class _Pieces(NamedTuple):
+    """Segments, divided where modes could hide: p pieces of s segments.
+
+    Attributes
+    ----------
+    counts : ndarray of int, shape (s,)
+        Pieces of every segment.
+    short : ndarray of bool, shape (p,)
+        Those that keep their moment.
+    hessian : ndarray, shape (p, 6, 6)
+        Of G, over the inputs of `rod`; only those of short pieces have the moment.
+    """
+
+    counts: Array
+    short: Array
+    hessian: Array
+
+    @property
+    def divided(self) -> bool:
+        """Whether any segment is."""
+        return len(self.short) > len(self.counts)
+
+
+def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
+    """Second variation at a state in equilibrium.
+
+    Parameters
+    ----------
+    rods : Rods
+        The exact elements.
+    state : State
+        In equilibrium.
+    balance : RodBalance
+        Their residual there.
+    transfer : ndarray, shape (s, 4, 7), optional
+        Of the segments there, see `rod.Condensed`, where it is known.
+    """
+    pieces = _pieces(rods, state, balance, transfer)
+    place, pairs = balance.entry.place, dict(profile_of(state).cuts)
+    begin = np.cumsum(pieces.counts) - pieces.counts
+    divided = {int(place.owner[s]) for s in np.flatnonzero(pieces.counts > 1)} if pieces.divided else set()
+    many = sorted(divided.union(pairs))
+    tangent = np.empty((len(place.first), OWN, OWN))
+    if len(many) < len(tangent):
+        tangent[:] = _PULL
+        tangent[:, COLUMNS[:, None], COLUMNS] += pieces.hessian[begin[place.first], :5, :5]
+        tangent = _without_force(tangent)
+    bordered = tuple(_bordered(rods, state, balance, pieces, e, pairs.get(e, ())) for e in many)
+    for part in bordered:
+        tangent[part.element] = part.matrix[:OWN, :OWN]
+    return Variation(tangent, bordered)
+
+
+def _without_force(tangent: Array) -> Array:
+    """Eliminate the rows 3 and 4 of matrices (..., n, n); a unit matrix takes their place."""
+    of_force = tangent[..., 3:5, :].copy()
+    xx, xy, yy = of_force[..., 0, 3], of_force[..., 0, 4], of_force[..., 1, 4]
+    adjoint = np.empty_like(of_force[..., 3:5])
+    adjoint[..., 0, 0], adjoint[..., 1, 1] = yy, xx
+    adjoint[..., 0, 1] = adjoint[..., 1, 0] = -xy
+    adjoint /= (xx * yy - xy * xy)[..., None, None]
+    of_force[..., 3:5] = 0.0
+    tangent = tangent - np.swapaxes(of_force, -1, -2) @ (adjoint @ of_force)
+    tangent[..., 3:5, :] = tangent[..., :, 3:5] = 0.0
+    tangent[..., [3, 4], [3, 4]] = 1.0
+    return tangent
+
+
+def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
+    entry = balance.entry
+    at, of, start, moment, end = entry.at, entry.of, entry.start, entry.moment, entry.end
+    arrival, gain, bend = balance.arrival, entry.gain, entry.at.flexibility.bend[:, 0]
+    length, whole = at.length[:, 0], rods.length[entry.place.owner]
+    falling = (of.gq * of.q - of.N * of.turn).max(axis=1) * length * length * bend
+    counts = np.ones(len(length), dtype=int)
+    if falling.max() > _LONGEST:
+        long = falling > _LONGEST
+        counts[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
+        at, start, moment, end = _divided(rods, state, balance, counts)
+        of, transfer = rod.field(at), None
+        length, whole, bend = at.length[:, 0], np.repeat(whole, counts), np.repeat(bend, counts)
+        arrival, gain = rod.arrival(at, of, start, moment, end), of.sums[0, :, 0] * length
+    if transfer is None:
+        transfer = rod.condense(at, of, arrival, moment).transfer
+    bent, short = (moment[:, 0] + gain) * bend, length < _SHORT * whole
+    hessian = _hessian(transfer, bent)
+    if short.any():
+        hessian[short] = _hessian_with_moment(transfer[short], bent[short])
+    return _Pieces(counts, short, hessian)
+
+
+def _divided(
+    rods: Rods, state: State, balance: RodBalance, count: Array
+) -> tuple[rod.Segments, Array, Array, Array]:
+    """Equal pieces of the segments, with their angles and moments at the ends."""
+    entry, own = balance.entry, np.repeat(np.arange(len(count)), count)
+    shape, nodes = plain_shape(rods, state, entry), collocation(entry.at.angle.shape[1]).c
+    inside, ends = [], []
+    for s, parts in enumerate(count.tolist()):
+        sigma = (np.arange(parts)[:, None] + nodes) / parts
+        inside.append(shape.within(s, sigma.ravel()).angle.reshape(sigma.shape))
+        at = shape.within(s, np.arange(parts + 1) / parts)
+        ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
+    flexibility = rod.Flexibility(*(value[own] for value in entry.at.flexibility))
+    length = entry.at.length[own] / count[own, None]
+    segments = rod.Segments(flexibility, entry.at.force[:, own], length, np.concatenate(inside))
+    start, moment, end = np.concatenate(ends).T[:, :, None]
+    return segments, start, moment, end
+
+
+def _hessian(transfer: Array, bent: Array) -> Array:
+    """Hessians of G (s, 6, 6) over the inputs of segments: the moment at the start is that with which the angle arrives.
+
+    The length's own is that of ``dG/dh = - m^2/2EI - N - N^2/2EA - Q^2/2GA`` at the end.
+    """
+    with np.errstate(all="ignore"):
+        moment = transfer[:, 0, :6] / -transfer[:, 0, 1, None]
+        arriving = transfer[:, 1:, :6] + transfer[:, 1:, 1, None] * moment[:, None, :]
+    hessian = np.empty((len(transfer), 6, 6))
+    hessian[:, 0], hessian[:, 2] = -moment, arriving[:, 0]
+    np.negative(arriving[:, 1:], out=hessian[:, 3:5])
+    hessian[:, 1] = hessian[:, :, 1] = 0.0
+    hessian[:, 5, :5] = hessian[:, :5, 5]
+    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
+    return hessian
+
+
+def _hessian_with_moment(transfer: Array, bent: Array) -> Array:
+    """The same of ``G* (m, phi_j, n, h) - m phi_i``, whose extremum in m is G; regular at ``h = 0``."""
+    angle = transfer[:, 0, :6] / -transfer[:, 0, 0, None]
+    angle[:, 0] = 0.0
+    arriving = transfer[:, 1:, :6] + transfer[:, 1:, 0, None] * angle[:, None, :]
+    hessian = np.zeros((len(transfer), 6, 6))
+    hessian[:, 1], hessian[:, 2], hessian[:, 3:5] = angle, arriving[:, 0], -arriving[:, 1:]
+    hessian[:, :, 0] = 0.0
+    hessian[:, 0, 1] = hessian[:, 1, 0] = -1.0
+    hessian[:, 5, :5] = hessian[:, :5, 5]
+    hessian[:, 5, 5] = -bent * hessian[:, 2, 5]
+    return hessian
+
+
+def _bordered(
+    rods: Rods, state: State, balance: RodBalance, pieces: _Pieces, element: int, pairs: tuple[int, ...]
+) -> Bordered:
+    """Matrix of an element of several pieces; its stations are the contacts and where a segment is divided."""
+    place, model = balance.entry.place, rods.model
+    first, last = int(place.first[element]), int(place.last[element])
+    counts = tuple(pieces.counts[first : last + 1].tolist())
+    begin = int(pieces.counts[:first].sum())
+    own = slice(begin, begin + sum(counts))
+    short = tuple(pieces.short[own].tolist())
+    fixed, inputs, directions = _stations(counts, short)
+    matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
+    for n, k in enumerate(pairs):
+        if model.pairs[k].reach:
+            matrix += _surface(
+                touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, directions[n]
+            )
+    slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
+    slots += [-1] * (len(matrix) - OWN - len(slots))
+    return Bordered(element, _without_force(matrix), slots, sum(short))
+
+
+@lru_cache(maxsize=64)
+def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, Array, Array]:
+    """What is constant in an element whose segments have `counts` pieces, some of them short.
+
+    Returns
+    -------
+    fixed : ndarray, shape (n, n)
+        Second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``.
+    inputs : ndarray, shape (pieces, 6, n)
+        Inputs of the pieces by the element's unknowns; only short pieces have a moment.
+    directions : ndarray, shape (contacts, 5, n)
+        Angle, force before and contact force of every contact by the same.
+    """
+    contacts, pieces = len(counts) - 1, sum(counts)
+    own_angle = OWN + CUT * contacts
+    own_moment = own_angle + pieces - len(counts)
+    rows = np.eye(own_moment + sum(short))
+    fixed, inputs = np.zeros_like(rows), np.zeros((pieces, 6, len(rows)))
+    fixed[:OWN, :OWN] = _PULL
+    directions = np.zeros((contacts, 5, len(rows)))
+    force, angle, arc, piece = rows[3:5].copy(), rows[2], np.zeros(len(rows)), 0
+    for segment, count in enumerate(counts):
+        own, ahead = OWN + CUT * segment, segment < contacts
+        ends = rows[own + 2] if ahead else np.zeros(len(rows))
+        for part in range(count):
+            arriving = rows[own_angle] if part < count - 1 else rows[own + 3] if ahead else rows[8]
+            own_angle += part < count - 1
+            inputs[piece, [0, 2, 3, 4, 5]] = [angle, arriving, *force, (ends - arc) / count]
+            if short[piece]:
+                inputs[piece, 1] = rows[own_moment]
+                own_moment += 1
+            angle, piece = arriving, piece + 1
+        arc = ends
+        if ahead:
+            fixed[[own, own + 1, 6, 7], [6, 7, own, own + 1]] -= 1
+            directions[segment] = [rows[own + 3], *force, *rows[own : own + 2]]
+            force -= rows[own : own + 2]
+    return fixed, inputs, directions
+
+
+def _surface(
+    force: tuple[float, float], tangents: tuple[rod.Tangent, rod.Tangent], reach: float, selectors: Array
+) -> Array:
+    """Second derivatives of ``- reach F . nu``, nu across the sum of the tangent vectors, where F is parallel to nu.
+
+    With beta the angle of that sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
+    """
+    before, after = tangents
+    tx, ty = before.vector[0] + after.vector[0], before.vector[1] + after.vector[1]
+    (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance
+    turned_x = [before.turned[0] + after.turned[0], xx + ax, xy + ay, -ax, -ay]
+    turned_y = [before.turned[1] + after.turned[1], xy + ay, yy + aa, -ay, -aa]
+    size = math.hypot(tx, ty)
+    turn = (tx * np.array(turned_y) - ty * np.array(turned_x)) / size**2 @ selectors
+    along = np.array([tx, ty]) / size @ selectors[3:]
+    across = (force[0] * ty - force[1] * tx) / size
+    both = np.outer(along, turn)
+    surface: Array = -reach * (both + both.T - across * np.outer(turn, turn))
+    return surface

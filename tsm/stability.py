@@ -1,0 +1,238 @@
+"""Stability: index of an equilibrium and shape of its critical mode.
+
+The energy's Hessian, bordered by the contacts, is a symmetric matrix K::
+
+    [ A   B ]   A: band of the beams
+    [ B^T D ]   D: the contacts' forces, arc positions and angles
+
+A contact force is the multiplier of a position that is held: with m of them the Hessian over the variations that the closed
+contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968), and the same holds with a flexibility at the contact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tsm.elements.properties import Array
+from tsm.inertia import Symmetric, negatives
+from tsm.rods.layout import OWN
+from tsm.rods.variation import Bordered, variation
+from tsm.state import State
+from tsm.system import Assembler, Linearisation
+
+_IDLE = 1e-9
+"""Force of a closed contact, over ``EI/L^2``, that does not push."""
+_TURNS = 4
+"""Times that the null vectors are found anew."""
+UNDEFINED = -1
+"""Index of what has none."""
+
+
+class Mode(NamedTuple):
+    """Softest direction at a critical point.
+
+    Attributes
+    ----------
+    x : ndarray, shape (equations + contact unknowns,)
+        Change of the unknowns, the largest one 1 in lengths of the longest beam, radians and ``EI/L^2``.
+    softness : float
+        Smallest singular value of the tangent in the same units, 0 at the critical point.
+    driven : float
+        Share of the load rate that works on the mode, ``|psi . rate| / (|psi| |rate|)`` with the left null vector psi: about 0 at a
+        bifurcation, not at a limit point.
+    """
+
+    x: Array
+    softness: float
+    driven: float
+
+
+def index(assembler: Assembler, state: State, system: Linearisation) -> int:
+    """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
+
+    A contact that is closed without force admits variations to one side; there is an index only if it is the same with the contact open.
+
+    Parameters
+    ----------
+    assembler : Assembler
+        Of the model.
+    state : State
+        In equilibrium under the model's own loads.
+    system : Linearisation
+        There.
+
+    Returns
+    -------
+    int
+        -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
+    """
+    symmetric = _symmetric(assembler, state, system)
+    if symmetric is None:
+        return UNDEFINED
+    found = negatives(symmetric)
+    if found is None:
+        return UNDEFINED
+    held = found - symmetric.multipliers
+    model = assembler.model
+    idle = [
+        slot
+        for pair, touch in zip(model.pairs, state.touches, strict=True)
+        if touch is not None and math.hypot(*touch.force) <= _IDLE * model.force_scale
+        for slot in range(model.border_dofs + pair.slot, model.border_dofs + pair.slot + 3)
+    ]
+    if not idle:
+        return held
+    free = negatives(_freed(symmetric, idle))
+    return (
+        held if free is not None and free - symmetric.multipliers + 2 * len(idle) // 3 == held else UNDEFINED
+    )
+
+
+def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
+    """The same without the force and arc position of contacts that carry no force."""
+    right, corner = symmetric.right.copy(), symmetric.corner.copy()
+    right[:, idle] = corner[idle] = corner[:, idle] = 0.0
+    corner[idle, idle] = 1.0
+    return symmetric._replace(right=right, corner=corner)
+
+
+def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | None:
+    """Null vector of a tangent near a critical point, and whether the load drives it.
+
+    The tangent is bordered by a column and a row, which makes it regular; both come to be the null vectors (Govaerts 2000).
+
+    Parameters
+    ----------
+    assembler : Assembler
+        Of the model.
+    state : State
+        In equilibrium.
+    system : Linearisation
+        There.
+
+    Returns
+    -------
+    Mode or None
+        None where the tangent has two null vectors at once, or numbers that are not finite.
+    """
+    from scipy.sparse.linalg import splu
+
+    model, tangent = assembler.model, assembler.whole(system.tangent)
+    columns, rows = model.units, 1 / model.row_units
+    plain = tangent.multiply(rows[:, None]).multiply(columns).tocoo()
+    size = plain.shape[0]
+    unit = np.append(np.zeros(size), 1.0)
+    x, left = np.random.default_rng(0).standard_normal((2, size)) / np.sqrt(size)
+    for _ in range(_TURNS):
+        try:
+            lu = splu(_bordered(plain, left, x))
+        except (RuntimeError, ValueError):
+            return None
+        (*found, soft), (*found_left, _) = lu.solve(unit), lu.solve(unit, trans="T")
+        x, left = np.array(found), np.array(found_left)
+        if not (np.isfinite(x).all() and np.isfinite(left).all()):
+            return None
+        x, left = x / np.linalg.norm(x), left / np.linalg.norm(left)
+    rate = assembler.rate(state) * rows
+    driven = abs(float(left @ rate)) / (float(np.linalg.norm(rate)) or 1.0)
+    largest = x[np.abs(x).argmax()]
+    return Mode(x=x / largest * columns, softness=abs(float(soft)), driven=driven)
+
+
+def _bordered(plain: Any, column: Array, row: Array) -> Any:
+    from scipy.sparse import block_array, coo_array
+
+    blocks = [[plain, coo_array(column[:, None])], [coo_array(row[None]), None]]
+    return block_array(blocks, format="csc")
+
+
+def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> Symmetric | None:
+    """Symmetric tangent, None where the tangent is not symmetric."""
+    model, closed = assembler.model, 0
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is not None:
+            if pair.slot < 0:
+                return None
+            closed += 1
+    units = model.units / math.sqrt(model.force_scale * model.length)
+    if model.rods is not None:
+        return _with_rods(assembler, state, system, units, 2 * closed)
+    tangent, beside = system.tangent, units[model.banded :]
+    return Symmetric(
+        band=tangent.band[:, 2 * assembler.k :].T,
+        right=tangent.right[: model.banded] * beside,
+        corner=tangent.corner * beside * beside[:, None],
+        units=units[: model.banded],
+        multipliers=2 * closed,
+    )
+
+
+def _with_rods(
+    assembler: Assembler, state: State, system: Linearisation, units: Array, multipliers: int
+) -> Symmetric:
+    """The same with exact elements, whose own tangent gives way to their second variation."""
+    model = assembler.model
+    assert model.rods is not None, "the model has exact elements"
+    assert system.rods is not None, "the model has exact elements"
+    known = system.tangent.rods if model.coefficients or "tangent" in system.__dict__ else None
+    found = variation(model.rods, state, system.rods, known.transfer if known else None)
+    border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
+    moments = [part.moments for part in found.bordered]
+    angles = [part.slots.count(-1) - part.moments for part in found.bordered]
+    right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
+    corner = np.eye(right.shape[1])
+    values = found.tangent.reshape(len(found.tangent), -1).T
+    if model.coefficients:
+        tangent = system.tangent
+        assert tangent.rods is not None, "the model has exact elements"
+        values = values - tangent.rods.tangent
+        right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
+    flat = values.ravel()
+    band = np.bincount(assembler.scatter[before:], flat, assembler.band_size + 1)[:-1].reshape(
+        model.banded, -1
+    )
+    if model.coefficients:
+        band = band + system.tangent.band
+    if aside:
+        added = np.bincount(assembler.scatter_right[before:], flat, assembler.size + 1)[:-1]
+        right[:, :border] += added.reshape(-1, border)
+    spare = border
+    for part in found.bordered:
+        own, spare = _columns(part, aside, spare)
+        if model.coefficients:
+            right[:, own] = corner[own] = corner[:, own] = 0.0
+        right[model.equation[model.exact_dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
+        corner[own[:, None], own] = part.matrix[OWN:, OWN:]
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if pair.node >= 0 and pair.cuts and touch is not None:
+            for i in range(2):
+                right[model.equation[3 * pair.node + i], aside + pair.slot + i] += 1
+    if aside:
+        corner[:aside] = right[model.banded : model.equations]
+        corner[:, :aside] = corner[:aside].T
+    # angles inside the elements, and moments
+    energy = model.force_scale * model.length
+    own_units = [
+        [1 / math.sqrt(energy)] * a + [math.sqrt(energy)] * m for a, m in zip(angles, moments, strict=True)
+    ]
+    beside = np.concatenate([units[model.banded :], *own_units])
+    return Symmetric(
+        band=band[:, 2 * assembler.k :].T,
+        right=right[: model.banded] * beside,
+        corner=corner * beside * beside[:, None],
+        units=units[: model.banded],
+        multipliers=multipliers + sum(moments),
+    )
+
+
+def _columns(part: Bordered, aside: int, spare: int) -> tuple[Array, int]:
+    """Places of an element's unknowns in the border, and the next free one."""
+    own = np.array(part.slots) + aside
+    new = np.array(part.slots) < 0
+    count = int(np.count_nonzero(new))
+    own[new] = np.arange(spare, spare + count)
+    return own, spare + count
