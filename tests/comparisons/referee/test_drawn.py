@@ -94,11 +94,8 @@ def test_what_exact_elements_complete_is_certified_all_along(draw: object) -> No
         found = certify(response, scene, at=range(scene.load_parameters))
         assert found.certified, f"seed {seed}: {found.line()}"
         for item in found.judged:
-            assert item.distance is not None
-            assert (
-                max(
-                    item.distance.force, item.distance.arc_position, item.distance.reaction, item.distance.tip
-                )
-                < 1e-6
-            )
+            apart, unloaded = item.distance, item.exact.strain_energy < 1e-15 * scene.beams[0].EI
+            assert max(apart.force, apart.arc_position, apart.tip) < 1e-6
+            # of an unloaded beam the solver's forces are its tolerance
+            assert unloaded or apart.reaction < 1e-6
     assert completed >= 6
