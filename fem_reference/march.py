@@ -99,7 +99,8 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
     """Yield the accepted state at every load parameter; if one cannot be reached, a last step says why."""
     start = accept(model, at_rest(model), settings)
     assert start is not None, "a strip at rest has a stiffness"
-    track, trial = (start,), settings.first_step
+    track: tuple[Accepted, ...] = (start,)
+    trial = settings.first_step
     for target in map(float, load_parameters):
         walk = _Walk(track=track, trial=trial, order=settings.predictor_order)
         status = _reach(model, target, walk, settings)

@@ -113,7 +113,7 @@ def _check_points(mesh: Any) -> None:
     for block in mesh.cells:
         nodes = np.asarray(block.data)
         if nodes.size and not 0 <= nodes.min() <= nodes.max() < len(points):
-            raise MeshError(f"cells of type \"{block.type}\" must have nodes below {len(points)}")
+            raise MeshError(f'cells of type "{block.type}" must have nodes below {len(points)}')
         if block.type.startswith("quad"):
             used[nodes] = True
     if used.any() and not used.all():
@@ -219,7 +219,9 @@ def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
     for name, y, place in (("right", low, -h / 2), ("left", high, h / 2)):
         off = y[np.argmax(np.abs(y - place))]
         if abs(off - place) > _HEIGHT * h:
-            raise MeshError(f'the edge "{name}" must lie at y = {place:g} (half the height), it reaches {off:g}')
+            raise MeshError(
+                f'the edge "{name}" must lie at y = {place:g} (half the height), it reaches {off:g}'
+            )
     for name in ("start", "end"):
         y = nodes[edges[name], 1]
         if max(abs(y[0] + h / 2), abs(y[-1] - h / 2)) > _HEIGHT * h:

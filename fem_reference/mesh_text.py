@@ -40,7 +40,9 @@ def _check_gmsh(content: bytes) -> None:
         raise MeshError("line 1: must begin with $MeshFormat")
     version, binary = [*lines[first + 1].split(), "", ""][:2]
     if binary != "0" or version[:1] not in ("2", "4"):
-        raise MeshError(f"line {first + 2}: must be Gmsh's text format 2 or 4, it is {lines[first + 1].strip()!r}")
+        raise MeshError(
+            f"line {first + 2}: must be Gmsh's text format 2 or 4, it is {lines[first + 1].strip()!r}"
+        )
     rows, missing = iter(enumerate(lines[first + 2 :], first + 3)), ["$Nodes", "$Elements"]
     for number, line in rows:
         section = line.strip()
@@ -97,7 +99,9 @@ def _count(
     except ValueError:
         found = []
     if len(found) != size:
-        raise MeshError(f"line {at}: must be {size} whole number{'s' * (size > 1)}, it is {line.strip()[:40]!r}")
+        raise MeshError(
+            f"line {at}: must be {size} whole number{'s' * (size > 1)}, it is {line.strip()[:40]!r}"
+        )
     for place in counts:
         if not 0 <= found[place] <= lines - at:
             raise MeshError(f"line {at}: states {found[place]}, but {lines - at} lines follow")

@@ -65,7 +65,15 @@ class Settings:
     branch: str = "stop"
 
     def __post_init__(self) -> None:
-        for field in ("tolerance", "smallest_damping", "max_penetration", "balance_tolerance", "min_step", "first_step", "largest_departure"):
+        for field in (
+            "tolerance",
+            "smallest_damping",
+            "max_penetration",
+            "balance_tolerance",
+            "min_step",
+            "first_step",
+            "largest_departure",
+        ):
             value = getattr(self, field)
             if not 0 < value < 1:
                 raise ValueError(f"Settings.{field} = {value!r}: must lie strictly between 0 and 1")
@@ -82,4 +90,6 @@ class Settings:
             if not isinstance(value, int) or value < low:
                 raise ValueError(f"Settings.{field} = {value!r}: must be a whole number, >= {low}")
         if self.branch not in BRANCHES:
-            raise ValueError(f"Settings.branch = {self.branch!r}: must be one of {', '.join(map(repr, BRANCHES))}")
+            raise ValueError(
+                f"Settings.branch = {self.branch!r}: must be one of {', '.join(map(repr, BRANCHES))}"
+            )

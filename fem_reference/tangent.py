@@ -127,7 +127,10 @@ class Tangent:
         if not D:
             return negatives
         T = block_diag(*blocks)
-        S = np.diag(np.where(np.isneginf(D), _flexibilities(self.at, chosen), D)) - T.T @ (self.U.T @ self.Y) @ T
+        S = (
+            np.diag(np.where(np.isneginf(D), _flexibilities(self.at, chosen), D))
+            - T.T @ (self.U.T @ self.Y) @ T
+        )
         scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0), np.finfo(float).tiny))
         values = np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale)
         return negatives + int((values < 0).sum()) - int((np.array(D) < 0).sum())

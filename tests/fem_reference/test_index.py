@@ -33,14 +33,17 @@ def drawn(rng, strip):
         side, sign = (("left", 1), ("right", -1))[rng.integers(2)]
         surface = str(rng.choice(["axis", "face"]))
         y = sign * (radius + 0.2)
-        pins.append(
-            fr.Pin(name=f"p{number}", path=((float(x), y), (float(x), 0.0)), radius=float(radius))
-        )
+        pins.append(fr.Pin(name=f"p{number}", path=((float(x), y), (float(x), 0.0)), radius=float(radius)))
         penetration = [None, 1e-9][rng.integers(2)]
         penalty = [None, float(10 ** rng.uniform(-2, 3))][rng.integers(2)]
         contacts.append(
             fr.Contact(
-                node=f"p{number}", strip="a", side=side, surface=surface, penalty=penalty, penetration=penetration
+                node=f"p{number}",
+                strip="a",
+                side=side,
+                surface=surface,
+                penalty=penalty,
+                penetration=penetration,
             )
         )
     if len(strips) == 2:
@@ -56,7 +59,8 @@ def drawn(rng, strip):
         u[part] += 0.02 * changes["height"] * rng.standard_normal(X.shape)
     EI = strips[0].bending_stiffness
     conditions = tuple(
-        Condition(closed=bool(rng.random() < 0.7), force=float(EI * 10 ** rng.uniform(-1, 2))) for _ in contacts
+        Condition(closed=bool(rng.random() < 0.7), force=float(EI * 10 ** rng.uniform(-1, 2)))
+        for _ in contacts
     )
     return model, state(model, u, 1.0, conditions)
 

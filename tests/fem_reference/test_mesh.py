@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-
 from fem_reference.body import build_body
 from fem_reference.mesh import discretise
 from fem_reference.strip import ELEMENTS, solution_cost

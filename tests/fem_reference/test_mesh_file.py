@@ -172,14 +172,23 @@ def short(points, quads, lines):
             'the edge "end" must lie on the boundary',
         ),
         (lambda p, q, lines: (p * [1, 3, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
-        (lambda p, q, lines: (p + [0, 0.006, 0], q, lines), r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004'),
+        (
+            lambda p, q, lines: (p + np.array([0, 0.006, 0]), q, lines),
+            r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004',
+        ),
         (lambda p, q, lines: (p * [1, 0.5, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
         (lambda p, q, lines: (p @ turned(0.1), q, lines), 'the edge "start" must lie at x = 0'),
-        (lambda p, q, lines: (p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1], q, lines), r"node 32 must have z = 0, it has 0\.001"),
-        (lambda p, q, lines: (np.concatenate([p, [[0.3, 0.0, 0.0]]]), q, lines), "node 63 must belong to a quadrilateral"),
+        (
+            lambda p, q, lines: (p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1], q, lines),
+            r"node 32 must have z = 0, it has 0\.001",
+        ),
+        (
+            lambda p, q, lines: (np.concatenate([p, [[0.3, 0.0, 0.0]]]), q, lines),
+            "node 63 must belong to a quadrilateral",
+        ),
         (lambda p, q, lines: (p, np.delete(q, 7, axis=0), lines), "the (boundary from|edge)"),
         (bowed, 'the edge "left" must lie at y = 0.01'),
-        (short, 'the boundary from .* must belong to an edge'),
+        (short, "the boundary from .* must belong to an edge"),
     ],
 )
 def test_mesh_that_breaks_a_rule_costs_one_line(strip, tmp_path, change, rule):
@@ -254,7 +263,9 @@ def test_only_regular_files_of_at_most_16_mb_are_read(strip, tmp_path):
     assert "line 2: must be Gmsh's text format" in refused(strip, binary)
 
 
-@pytest.mark.parametrize("content", [b"", b"\xff\x00", b"<VTKFile>", b"# vtk DataFile Version 3.0\nx\nASCII\n"])
+@pytest.mark.parametrize(
+    "content", [b"", b"\xff\x00", b"<VTKFile>", b"# vtk DataFile Version 3.0\nx\nASCII\n"]
+)
 @pytest.mark.parametrize("kind", ["msh", "vtu", "vtk", "inp", "nothing"])
 def test_broken_files_of_any_format_cost_one_line(strip, tmp_path, kind, content):
     path = tmp_path / f"a.{kind}"
