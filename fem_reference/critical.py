@@ -140,6 +140,28 @@ def limit_point(model: Model, a: Accepted, step: float, settings: Settings) -> L
     return Located(point=_point(model, LIMIT, near.at.t, vector), near=near, vector=vector) if limit else None
 
 
+def release(model: Model, a: Accepted, settings: Settings) -> CriticalPoint | None:
+    """Name the limit at which a contact is about to open and leaves an unstable state; None if none does.
+
+    No eigenvalue passes zero there: the opening contact frees a direction. The mode is that of the free state.
+    """
+    rate = a.rate(a.at.t, a.at.t + settings.min_step)
+    forces = iter(rate.forces)
+    for number, touch in enumerate(a.at.touches):
+        if not touch.closed or touch.force + _STEPS_LEFT * settings.min_step * float(next(forces)) > 0:
+            continue
+        conditions = list(a.at.conditions)
+        conditions[number] = touch.condition.opened(armed=True)
+        free = accept(model, state(model, a.at.u, a.at.t, tuple(conditions)), settings)
+        if free is not None and free.index > max(a.index, 0):
+            return _point(model, LIMIT, a.at.t, smallest(model, free.tangent)[1])
+    return None
+
+
+_STEPS_LEFT = 20
+"""Smallest steps within which a contact has to open if the path ends for that reason."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Turn:
     """A state on the way round a limit point: its displacement along the rate, ``dt/ddelta`` there, and itself."""
