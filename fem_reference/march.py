@@ -17,6 +17,7 @@ from fem_reference.critical import (
     bifurcation,
     limit_point,
     noise,
+    release,
     stable_branch,
 )
 from fem_reference.line_contact import line_contact, tightest
@@ -99,7 +100,8 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
     """Yield the accepted state at every load parameter; if one cannot be reached, a last step says why."""
     start = accept(model, at_rest(model), settings)
     assert start is not None, "a strip at rest has a stiffness"
-    track, trial = (start,), settings.first_step
+    track: tuple[Accepted, ...] = (start,)
+    trial = settings.first_step
     for target in map(float, load_parameters):
         walk = _Walk(track=track, trial=trial, order=settings.predictor_order)
         status = _reach(model, target, walk, settings)
@@ -225,8 +227,16 @@ def _blocked(
         walk.ended_at, walk.pair = located.point.load_parameter, None
         walk.cause = Status.LIMIT_POINT
         return Status.LIMIT_POINT
-    if not floor:
-        return None
+    return _at_floor(model, walk, attempt, goal, settings) if floor else None
+
+
+def _at_floor(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings) -> Status | None:
+    """Let go of a contact that slips off where that is allowed; return a status if the path ends here."""
+    loosened = release(model, walk.last, settings)
+    if loosened is not None:
+        walk.critical.append(loosened)
+        walk.cause, walk.pair = Status.LIMIT_POINT, None
+        return Status.LIMIT_POINT
     after = _after_slip(model, walk.last.at, goal, attempt, settings)
     found = None
     if after is not None and after.status is Status.CONVERGED:

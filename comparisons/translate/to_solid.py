@@ -32,14 +32,11 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
 
     if not scene.pins and not scene.loads:
         raise ModelError("the solid model has a pin that moves or a dead load, the scene has none")
-    clamps = {beam.name: _clamp(scene, beam) for beam in scene.beams}
     for load in scene.loads:
         if load.moment:
-            raise ModelError(f'the solid model has no moments at ends, the scene has one at "{load.node}"')
-        if load.end == clamps[load.beam]:
-            raise ModelError(f'the solid model has loads on free ends, the scene loads the clamped "{load.node}"')
+            raise ModelError(f'the solid model has no dead moments, the scene loads "{load.node}"')
     return SolidProblem(
-        strips=tuple(_strip(beam, clamps[beam.name], mesh) for beam in scene.beams),
+        strips=tuple(_strip(beam, _clamp(scene, beam), mesh) for beam in scene.beams),
         loads=tuple(EndLoad(strip=load.beam, force=load.force) for load in scene.loads),
         pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
