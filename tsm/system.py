@@ -29,6 +29,8 @@ from tsm.state import State, Touch
 from tsm.structure import Point
 
 _EPS = float(np.finfo(float).eps)
+_WEAK = 1e-12
+"""Pivot of the band, in parts of its column, below which only the contacts hold the beams: their Schur complement would have no digits."""
 
 
 @dataclass(kw_only=True, eq=False)
@@ -338,8 +340,10 @@ class Assembler:
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
         lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        if border and (info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()):
+            return self._solve_whole(tangent, given)
         if info != 0:
-            return self._solve_whole(tangent, given) if border else None
+            return None
         factors = (lu[2 * self.k], pivots)
         if not border:
             return Solved(self._with_units(X), (factors,))

@@ -72,8 +72,8 @@ def test_cutback_floor():
 
 
 def test_step_limit():
-    """The first step is too long for two iterations."""
-    ends_in(Status.STEP_LIMIT, structure(), max_iterations=2, max_attempts=1)
+    """The first step is too long for one iteration."""
+    ends_in(Status.STEP_LIMIT, structure(), max_iterations=1, max_attempts=1)
 
 
 def test_singular_tangent():
