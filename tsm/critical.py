@@ -91,8 +91,10 @@ def _bordered(newton: Newton, equilibrium: Equilibrium, across: Array | None = N
     if solved is None or not np.isfinite(solved.x[:, 1]).all():
         return 0.0, np.zeros(size)
     y = solved.x[:, 1]
-    along = float(c @ y) or np.finfo(float).tiny
-    return -1 / along, y / along
+    along = float(c @ y)
+    with np.errstate(all="ignore"):
+        v = y / along if along else np.zeros(size)
+    return (-1 / along, v) if along and np.isfinite(v).all() else (0.0, np.zeros(size))
 
 
 def locate_bifurcation(
@@ -128,7 +130,10 @@ def locate_bifurcation(
         g, v = _bordered(newton, equilibrium, across)
         if across is None:
             weights = newton.per_unknown**2
-            across, g = weights * v / float(v @ (weights * v)), float("nan")
+            length = float(v @ (weights * v))
+            if not 0 < length < np.inf:
+                return None
+            across = weights * v / length
             g, _ = _bordered(newton, equilibrium, across)
         known = [*known[-1:], (t, g)]
         if PathTangent(newton, equilibrium).index == index:
