@@ -22,6 +22,7 @@ _LARGEST = 0.5
 """Largest change of a rotation in an iteration [rad]."""
 _CONTRAST = 1e10
 """Largest ratio of the beams' EI/L^2: the forces of the most flexible one are round-off of the others'."""
+_AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 _MOST = 400
 """Most elements of a part."""
 
@@ -142,12 +143,12 @@ def _misplaced(layout: Layout, z: Array) -> str:
 
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
-    """About one element for 1.5 of the length sqrt(EI/n') over which the deflection changes, 12 at most."""
+    """About one element for 1.5 of the length sqrt(EI/n') over which the deflection changes, 50 at most."""
     grids = []
     for part in layout.parts:
         n = float(np.hypot(*z[part.force : part.force + 2]))
         rate = np.sqrt(n * (1.0 + n * abs(part.stretch - part.shear)) / part.EI)
-        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 12))
+        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
@@ -174,7 +175,7 @@ _LOW = np.linalg.pinv(VALUES[:, 2:6])
 class _Newton(NamedTuple):
     z: Array
     bubbles: Array
-    system: System
+    system: System | None
     converged: bool
     reason: str
     iterations: int
@@ -191,6 +192,8 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         turning[k] = False
     reason = Found.NO_EQUILIBRIUM.value
     for iteration in range(1, iterations + 1):
+        if min(layout.extent(z, item) for item in layout.parts) <= 0.0:
+            return _Newton(z, bubbles, None, False, _AT_ONE_PLACE, iteration, np.inf)
         system = assemble(layout, mesh, made, z, bubbles)
         change = _step(system)
         if change is None:
