@@ -124,7 +124,7 @@ def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Arra
         return np.array(scene.pin(node).position(t))
     beam, end = node.split(".")
     if k >= 0 and end == scene.tip(beam):
-        return response.tips[beam][k]
+        return np.asarray(response.tips[beam][k])
     return np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1])
 
 

@@ -124,7 +124,7 @@ def test_a_place_has_a_bound_of_its_own() -> None:
 
     def away(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
         arc, axis = line(beam, k)
-        return arc, axis + [0.0, 2e-3]
+        return arc, axis + np.array([0.0, 2e-3])
 
     refused = certify(replace(response, axis_line=away), SOFT, at=[-1], allowance=1.0)
     assert refused.verdict is Verdict.NOT_AN_EQUILIBRIUM
