@@ -93,8 +93,8 @@ def distance(scene: Scene, given: Given, exact: Equilibrium) -> Distance:
 
 
 def _beyond(off: float, size: float, last: float) -> float:
-    """Difference over the size, less what is round-off of the models: `last`, up to `UNRESOLVED` of the size."""
-    return _size(off if math.isnan(off) else max(0.0, off - min(last, UNRESOLVED * size)) / size)
+    """Difference over the size; zero where it is round-off of the models: `last` at most, and `UNRESOLVED` of the size."""
+    return 0.0 if off <= min(last, UNRESOLVED * size) else _size(off / size)
 
 
 def _max(values: list[float]) -> float:
