@@ -92,9 +92,6 @@ def lines(found: "Certificate") -> list[str]:
     rows = [found.line()]
     rows += [_row(item) for item in found.judged]
     rows += list(found.path)
-    rows += [
-        f"energy jumps by {energy:.6g} from {first:.6g} to {last:.6g}" for first, last, energy in found.jumps
-    ]
     return rows
 
 

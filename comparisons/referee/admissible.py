@@ -17,6 +17,8 @@ INSIDE = 1e-9
 PULL = 1e-9
 """Largest pulling force of a contact at its release, over EI/L^2: round-off of the models."""
 _POINTS = 201
+_BESIDE = 1e-12
+"""Part of an arc position that is beside it for certain, and as good as there."""
 
 
 def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
@@ -67,7 +69,7 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
 
 def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
     """Angle between the axis' directions before and behind a contact."""
-    a, b = exact.shape(beam, np.array([arc * (1.0 - 1e-14), arc])).tangent
+    a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
     return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
 
 

@@ -2,17 +2,12 @@
 
 import numpy as np
 
-from comparisons.referee.distance import node_place
+from comparisons.referee.distance import LAST_PLACES, LEAST, UNRESOLVED, least_force, node_place
 from comparisons.referee.start import Given
 from comparisons.scene import Scene
 
 BALANCE = 1e-6
 """Largest unbalanced part of the largest force: Newton's tolerances are far below."""
-LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
-"""A force follows from a stretch, which positions resolve to a few units in the last place: so much of EA is allowed besides, up to this
-part of the largest force."""
-LEAST = 1e-4
-"""Smallest force that is to balance to `BALANCE`, over EI/L^2: Newton's methods end at 1e-10."""
 
 
 def unbalanced(scene: Scene, given: Given) -> str:
@@ -29,8 +24,7 @@ def unbalanced(scene: Scene, given: Given) -> str:
     places = [node_place(scene, given, node) - origin for node, _, _ in acting]
     length = max(beam.length for beam in scene.beams)
     sizes = [max(float(np.hypot(*force)), abs(moment) / length) for _, force, moment in acting]
-    least = LEAST * min(beam.EI / beam.length**2 for beam in scene.beams)
-    largest = max([*sizes, least])
+    largest = max([*sizes, LEAST * least_force(scene)])
     allowed = BALANCE * largest + min(
         LAST_PLACES * max(beam.EA for beam in scene.beams), UNRESOLVED * largest
     )

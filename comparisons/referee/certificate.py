@@ -71,8 +71,6 @@ class Certificate:
         The load parameters that were judged, in order.
     path : tuple of str
         What is wrong between the load parameters, a sentence each.
-    jumps : tuple of (float, float, float)
-        From where to where strain energy and work differ by a jump, and by how much; looked for where all load parameters are judged.
     seconds : float
         Spent.
     """
@@ -82,7 +80,6 @@ class Certificate:
     allowance: float
     judged: tuple[Judgement, ...]
     path: tuple[str, ...]
-    jumps: tuple[tuple[float, float, float], ...]
     seconds: float
 
     @property
@@ -102,7 +99,6 @@ class Certificate:
             "allowance": self.allowance,
             "judged": [_stated(item) for item in self.judged],
             "path": list(self.path),
-            "jumps": [list(item) for item in self.jumps],
             "seconds": self.seconds,
         }
 

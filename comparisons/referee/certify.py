@@ -15,7 +15,6 @@ from comparisons.referee.follow import at_rest, departs
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
 from comparisons.referee.state import Equilibrium
-from comparisons.referee.work import jumps
 from comparisons.response import Response
 from comparisons.scene import Scene
 
@@ -35,8 +34,8 @@ def certify(
     scene : Scene
         What was asked.
     at : sequence of int, optional
-        Numbers of the load parameters to judge, negative ones from the end: the last and those beside events if not given. Of all in
-        a row, the path between them is followed and its work is compared as well.
+        Numbers of the load parameters to judge, negative ones from the end: the last and those beside events if not given. Between
+        neighbours without an event the path is followed as well.
     allowance : float, optional
         Largest distance allowed: `default_allowance` if not given.
     """
@@ -52,17 +51,11 @@ def certify(
     states = tuple(judged(response, scene, k, allowed) for k in numbers)
     path = tuple(_path(response, scene))
     verdict, reason = _worst(states, path, steps)
-    found: tuple[tuple[float, float, float], ...] = ()
-    if verdict is Verdict.CERTIFIED:
-        gone = next(_departures(response, scene, states, numbers), "")
-        found = _jumps(response, scene, states, numbers)
-        if found and not gone:
-            first, last, energy = found[0]
-            gone = f"energy jumps by {energy:.3g} between load parameters {first:.6g} and {last:.6g} without an event"
-        if gone:
-            verdict, reason = Verdict.UNSTABLE, gone
+    gone = next(_departures(response, scene, states, numbers), "") if verdict is Verdict.CERTIFIED else ""
+    if gone:
+        verdict, reason = Verdict.UNSTABLE, gone
     return Certificate(
-        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path, jumps=found,
+        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
         seconds=perf_counter() - began,
     )  # fmt: skip
 
@@ -145,14 +138,24 @@ def _event_times(response: Response) -> list[float]:
 def _intervals(
     response: Response, states: Sequence[Judgement], numbers: Sequence[int]
 ) -> Iterator[tuple[Equilibrium, Equilibrium]]:
-    """Yield neighbouring equilibria with the same contacts and no event between them."""
+    """Yield neighbouring equilibria with the same contacts, in the same order along the beams, and no event between them.
+
+    Where two contacts pass each other, the part between them has no length, and the path is not followed.
+    """
     times = _event_times(response)
     for (j, a), (k, b) in pairwise(zip(numbers, states, strict=True)):
         one, other = a.exact, b.exact
         if one is None or other is None or k != j + 1 or one.contacts.keys() != other.contacts.keys():
             continue
-        if not any(one.load_parameter <= t <= other.load_parameter for t in times):
+        if _order(one) == _order(other) and not any(
+            one.load_parameter <= t <= other.load_parameter for t in times
+        ):
             yield one, other
+
+
+def _order(exact: Equilibrium) -> list[tuple[int, ...]]:
+    """Contacts along the beams: the stations between parts."""
+    return [(part.beam, part.first, part.last) for part in exact.solution.layout.parts]
 
 
 def _departures(
@@ -167,14 +170,3 @@ def _departures(
             yield from filter(None, [departs(scene, rest, first.solution)])
     for one, other in _intervals(response, states, numbers):
         yield from filter(None, [departs(scene, one.solution, other.solution)])
-
-
-def _jumps(
-    response: Response, scene: Scene, states: Sequence[Judgement], numbers: Sequence[int]
-) -> tuple[tuple[float, float, float], ...]:
-    """Return the jumps of energy where all load parameters are judged."""
-    if len(numbers) < 3 or list(numbers) != list(range(len(response.load_parameter))):
-        return ()
-    smooth = {item.load_parameter for item, _ in _intervals(response, states, numbers)}
-    path = [item.exact for item in states if item.exact is not None]
-    return tuple(jumps(scene, path, [item.load_parameter not in smooth for item in path[:-1]]))

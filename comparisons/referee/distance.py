@@ -12,8 +12,11 @@ from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-8
-"""Smallest force that distances are relative to, over EI/L^2: Newton's methods of the models end at 1e-10 of it."""
+LEAST = 1e-4
+"""Smallest force that distances are relative to, over EI/L^2: Newton's methods of the models end at 1e-10, and so much bends by 3e-5 L."""
+LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
+"""A force follows from a stretch, which positions resolve to a few units in the last place: so much of EA is round-off, up to this part
+of the largest force."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +49,9 @@ class Distance:
 
     @property
     def largest(self) -> tuple[str, float]:
-        """Name and size of the largest."""
-        name = max(fields(self), key=lambda item: _size(getattr(self, item.name))).name
+        """Name and size of the largest but `place`, which chords of the stated axis limit and which has a bound of its own."""
+        own = [item for item in fields(self) if item.name != "place"]
+        name = max(own, key=lambda item: _size(getattr(self, item.name))).name
         return name.replace("_", " "), float(getattr(self, name))
 
 
@@ -62,14 +66,19 @@ def distance(scene: Scene, given: Given, exact: Equilibrium) -> Distance:
     largest = max(
         [LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
     )
+    last = LAST_PLACES * max(beam.EA for beam in scene.beams)
+    length = max(beam.length for beam in scene.beams)
     for pair, contact in exact.contacts.items():
         touched = next(item.beam for item in scene.contacts if item.pair == pair)
-        force.append(float(np.hypot(*(contact.force - given.forces[pair]))) / largest)
+        force.append(_beyond(float(np.hypot(*(contact.force - given.forces[pair]))), largest, last))
         arc.append(abs(contact.arc_position - given.arcs[pair]) / scene.beam(touched).length)
     reaction = [0.0 if given.reactions.keys() == exact.reactions.keys() else math.inf]
     for end, held in exact.reactions.items():
         off = held - np.array(given.reactions.get(end, (math.nan,) * 3))
-        reaction += [float(np.hypot(*off[:2])) / size, abs(float(off[2])) / moment]
+        reaction += [
+            _beyond(float(np.hypot(*off[:2])), size, last),
+            _beyond(abs(float(off[2])), moment, last * length),
+        ]
     tip, shape = [0.0], [0.0]
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
@@ -81,6 +90,11 @@ def distance(scene: Scene, given: Given, exact: Equilibrium) -> Distance:
         force=_max(force), arc_position=_max(arc), reaction=_max(reaction), tip=_max(tip), shape=_max(shape),
         place=_max([0.0, *_misplaced(scene, given)]),
     )  # fmt: skip
+
+
+def _beyond(off: float, size: float, last: float) -> float:
+    """Difference over the size; zero where it is round-off of the models: `last` at most, and `UNRESOLVED` of the size."""
+    return 0.0 if off <= min(last, UNRESOLVED * size) else _size(off / size)
 
 
 def _max(values: list[float]) -> float:

@@ -22,6 +22,11 @@ _LARGEST = 0.5
 """Largest change of a rotation in an iteration [rad]."""
 _CONTRAST = 1e10
 """Largest ratio of the beams' EI/L^2: the forces of the most flexible one are round-off of the others'."""
+_SETTLED = 1e-10
+"""Largest correction that is round-off where it does not fall."""
+_LAST_PLACES = 10.0 * float(np.finfo(float).eps)
+"""Correction of a force, over EA, that is round-off: forces follow from stretches."""
+_AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 _MOST = 400
 """Most elements of a part."""
 
@@ -142,12 +147,12 @@ def _misplaced(layout: Layout, z: Array) -> str:
 
 
 def _first_grids(layout: Layout, z: Array) -> list[Array]:
-    """About one element for 1.5 of the length sqrt(EI/n') over which the deflection changes, 12 at most."""
+    """About one element for 1.5 of the length sqrt(EI/n') over which the deflection changes, 50 at most."""
     grids = []
     for part in layout.parts:
         n = float(np.hypot(*z[part.force : part.force + 2]))
         rate = np.sqrt(n * (1.0 + n * abs(part.stretch - part.shear)) / part.EI)
-        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 12))
+        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
@@ -174,7 +179,7 @@ _LOW = np.linalg.pinv(VALUES[:, 2:6])
 class _Newton(NamedTuple):
     z: Array
     bubbles: Array
-    system: System
+    system: System | None
     converged: bool
     reason: str
     iterations: int
@@ -183,7 +188,8 @@ class _Newton(NamedTuple):
 
 def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
     """Correct until the corrections are round-off."""
-    made, last, size = properties(layout, mesh), np.inf, np.inf
+    made, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
+    least = _LAST_PLACES / (_SETTLED * min(min(part.stretch, part.shear or np.inf) for part in layout.parts))
     arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
     forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)])
     turning = np.ones(mesh.unknowns, dtype=bool)
@@ -191,6 +197,8 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         turning[k] = False
     reason = Found.NO_EQUILIBRIUM.value
     for iteration in range(1, iterations + 1):
+        if min(layout.extent(z, item) for item in layout.parts) <= 0.0:
+            return _Newton(z, bubbles, None, False, _AT_ONE_PLACE, iteration, np.inf)
         system = assemble(layout, mesh, made, z, bubbles)
         change = _step(system)
         if change is None:
@@ -199,15 +207,16 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
         moved = float(np.abs(change[~turning & ~np.isin(np.arange(mesh.unknowns), forces)]).max(initial=0.0))
         scale = float(np.abs(z[forces]).max()) + 1e-6
-        size = max(turn, moved, float(np.abs(change[forces]).max()) / scale)
+        forced = float(np.abs(change[forces]).max())
+        size, error = max(turn, moved, forced / (scale + least)), max(turn, moved, forced / scale)
         part = min(1.0, _LARGEST / max(turn, 1e-300), _kept(layout, z, change))
         z, bubbles = z + part * change, bubbles + part * inside
         if not np.isfinite(size):
-            return _Newton(z, bubbles, system, False, reason, iteration, size)
-        if part == 1.0 and (size < 1e-15 or (size < 1e-10 and size >= 0.25 * last)):
-            return _Newton(z, bubbles, assemble(layout, mesh, made, z, bubbles), True, "", iteration, size)
+            return _Newton(z, bubbles, system, False, reason, iteration, error)
+        if part == 1.0 and (size < 1e-15 or (size < _SETTLED and size >= 0.25 * last)):
+            return _Newton(z, bubbles, assemble(layout, mesh, made, z, bubbles), True, "", iteration, error)
         last = size if part == 1.0 else np.inf
-    return _Newton(z, bubbles, system, False, reason, iterations, size)
+    return _Newton(z, bubbles, system, False, reason, iterations, error)
 
 
 def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:

@@ -99,18 +99,32 @@ def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, w
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
-    """The axis of a beam at load parameter k; of -1 the undeformed one."""
-    arc, line = response.axis_line(beam, max(k, 0))
-    if k >= 0:
-        return line
+    """The axis of a beam at load parameter k; the undeformed one of -1 and where nothing acts on the beam."""
+    if k >= 0 and not _at_rest(response, scene, beam, k):
+        return response.axis_line(beam, k)[1]
+    arc, _ = response.axis_line(beam, 0)
     spec = scene.beam(beam)
     return np.asarray(np.array(spec.start) + np.outer(arc, spec.direction))
+
+
+def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
+    """Whether a beam hangs at one clamp that does not move, with no load, joint or closed contact: it is straight, at no cost."""
+    ends, held = (f"{beam}.start", f"{beam}.end"), scene.supports_of(beam)
+    own = scene.beam(beam)
+    joined = any({own.start, own.end} & {item.start, item.end} for item in scene.beams if item is not own)
+    still = len(held) == 1 and held[0].motion == (0.0, 0.0, 0.0)
+    if joined or not still or any(load.node in ends for load in scene.loads):
+        return False
+    pairs = [spec.pair for spec in scene.contacts if spec.beam == beam or spec.node in ends]
+    return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)
 
 
 def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Array:
     if "." not in node:
         return np.array(scene.pin(node).position(t))
     beam, end = node.split(".")
+    if k >= 0 and end == scene.tip(beam):
+        return np.asarray(response.tips[beam][k])
     return np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1])
 
 

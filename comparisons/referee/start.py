@@ -93,7 +93,9 @@ def first_guess(layout: Layout, given: Given) -> tuple[Array, list[Rotations]]:
         z[touch.arc] = given.arcs[touch.spec.pair] / layout.length
     _place_stations(layout, given, turns, z)
     _balance(layout, given, turns, z)
-    turns = [_less_shear(layout, turn, number, z) for number, turn in enumerate(turns)]
+    turns = _aligned(
+        layout, [_less_shear(layout, given, turn, number, z) for number, turn in enumerate(turns)]
+    )
     for part in layout.parts:
         for number in (part.first, part.last):
             station = layout.stations[number]
@@ -102,16 +104,21 @@ def first_guess(layout: Layout, given: Given) -> tuple[Array, list[Rotations]]:
     return z, turns
 
 
-def _tangents(layout: Layout, given: Given, number: int) -> Rotations:
-    """Angles of the axis' chords from the undeformed direction, without jumps of a turn."""
+def _chords(layout: Layout, given: Given, number: int) -> tuple[Array, NDArray[np.complex128]]:
+    """Middles of the stated axis' chords and the chords over their arc lengths, as complex numbers from the undeformed direction."""
     beam = layout.scene.beams[number]
     arc, line = given.axes[beam.name]
-    pieces = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction)
-    long = (np.abs(pieces) > 0.0) & (np.diff(arc) > 0.0)
-    if not long.any():
+    pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
+    long = (np.abs(pieces) > 0.0) & (extents > 0.0)
+    return (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
+
+
+def _tangents(layout: Layout, given: Given, number: int) -> Rotations:
+    """Angles of the axis' chords from the undeformed direction, without jumps of a turn."""
+    middle, way = _chords(layout, given, number)
+    if not len(middle):
         return Rotations(arc=np.array([0.0]), theta=np.array([0.0]))
-    middle = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length)
-    return Rotations(arc=middle, theta=np.unwrap(np.angle(pieces[long])))
+    return Rotations(arc=middle, theta=np.unwrap(np.angle(way)))
 
 
 def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
@@ -215,18 +222,24 @@ def _moments(layout: Layout, part: Part, turns: list[Rotations], z: Array) -> tu
     return np.array([-chord[1], chord[0]]), m_a - m_b
 
 
-def _less_shear(layout: Layout, turn: Rotations, number: int, z: Array) -> Rotations:
-    """Take the direction of ``r' = (1 + N/EA) d1 + (Q/GA) d2`` from that of the axis."""
+def _less_shear(layout: Layout, given: Given, turn: Rotations, number: int, z: Array) -> Rotations:
+    """Take the sections' directions from the axis: ``r' - n/GA = (1 + N/EA - N/GA) d1``, since ``r' = d1 + (N/EA) d1 + (Q/GA) d2``.
+
+    The factor of d1 is negative in strong shear; of the two signs only one agrees with N.
+    """
+    _, way = _chords(layout, given, number)
     theta = turn.theta
+    if not len(way):
+        return turn
     for part in layout.parts:
-        if part.beam != number:
+        if part.beam != number or not part.shear:
             continue
         inside = (turn.arc >= layout.arc(z, part.first, part)) & (turn.arc <= layout.arc(z, part.last, part))
-        n, seen = z[part.force : part.force + 2], turn.theta
-        section = seen.copy()
-        for _ in range(8):
-            N = n[0] * np.cos(section) + n[1] * np.sin(section)
-            Q = n[1] * np.cos(section) - n[0] * np.sin(section)
-            section = seen - np.arctan2(part.shear * Q, np.maximum(1.0 + part.stretch * N, 0.1))
-        theta = np.where(inside, section, theta)
-    return Rotations(arc=turn.arc, theta=theta)
+        n = complex(z[part.force], z[part.force + 1])
+        along = way - part.shear * n
+        size = np.abs(along)
+        d1 = along / np.where(size > 0.0, size, 1.0)
+        factor = (part.stretch - part.shear) * (d1 * n.conjugate()).real
+        d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
+        theta = np.where(inside & (size > 0.0), np.angle(d1), theta)
+    return Rotations(arc=turn.arc, theta=np.unwrap(theta))

@@ -79,8 +79,8 @@ def _positions(p: Properties, angle: Array, bend: Array, n: Array, at: Array) ->
     step, stretch, shear = np.diff(at), 1 / p.EA[:, None], (p.Phi * p.l0**2 / (12 * p.EI))[:, None]
     middle = angle[:, :-1] + step * (3 * bend[:, :-1] + bend[:, 1:]) / 8
     total = np.zeros(n.shape, complex)
-    for weight, phi in ((1, angle[:, :-1]), (4, middle), (1, angle[:, 1:])):
-        t = np.exp(1j * phi)
+    t_ends = np.exp(1j * angle)
+    for weight, t in ((1, t_ends[:, :-1]), (4, np.exp(1j * middle)), (1, t_ends[:, 1:])):
         along = np.conj(t) * n
         total += weight / 6 * t * (1 + along.real * stretch + 1j * along.imag * shear)
     return _sums(p.l0[:, None] * step * total)

@@ -314,6 +314,7 @@ def test_a_clamp_that_turns_is_followed() -> None:
     assert found.certified, found.line()
 
 
+@pytest.mark.slow
 def test_a_stable_branch_that_is_not_the_path_is_seen_when_it_is_followed() -> None:
     """Index 0 all the way: only the path from the undeformed state tells."""
     scene, response = mirrored()
