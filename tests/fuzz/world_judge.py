@@ -1,0 +1,156 @@
+"""Judge the answers to a drawn scene: certified, the same by every element, and the same with any number of load parameters.
+
+A model may stop by name. It may not complete with what the referee does not certify, raise, hang, disagree with another that completed,
+or end otherwise because more or fewer load parameters were asked for.
+"""
+
+import math
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from comparisons.models import solve
+from comparisons.options import ModelError, Options
+from comparisons.referee import certify
+from comparisons.response import Response
+from comparisons.scene import Scene, to_toml
+from tests.fuzz.judge import Hang, time_limit
+
+LIMIT = 20.0
+"""Processor seconds from which a solution hangs."""
+MODELS = {
+    "exact": ("tsm", Options(element="exact")),
+    "mixed": ("tsm", Options(element="mixed")),
+    "solid": ("solid", Options()),
+}
+ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": None}
+"""Largest distance from the exact equilibrium."""
+SAME = 1e-6
+"""Largest difference between two answers of one element at the same load parameter."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Row:
+    """One solution: model, number of load parameters, how it ended, and its certificate."""
+
+    model: str
+    number: int
+    ended: str
+    response: Response | None = field(default=None, repr=False)
+    certificate: str = ""
+    off: float = math.nan
+    certified: bool = False
+
+    @property
+    def completed(self) -> bool:
+        return self.response is not None and self.response.completed
+
+    def line(self) -> str:
+        return f"{self.model}, {self.number} load parameters: {self.ended} {self.certificate}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What is wrong with the answers to a scene: a kind to sort by, and a sentence."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judged:
+    """All solutions of a scene and what is wrong with them."""
+
+    scene: Scene
+    rows: tuple[Row, ...]
+    findings: tuple[Finding, ...]
+
+    def report(self) -> str:
+        """Return what is wrong, the solutions and the scene."""
+        lines = [f"# WRONG {item.kind}: {item.text}" for item in self.findings]
+        lines += [f"# {row.line()}" for row in self.rows]
+        return "\n".join([*lines, to_toml(self.scene)])
+
+
+def judged(scene: Scene, models: Sequence[str] = ("exact", "mixed"), numbers: Sequence[int] = ()) -> Judged:
+    """Solve `scene` with its own and with other `numbers` of load parameters, and judge the answers."""
+    rows: list[Row] = []
+    for model in models:
+        own = run(scene, model)
+        rows.append(own)
+        if own.ended == "refused":
+            continue
+        if model != "solid":
+            others = [number for number in numbers if number != scene.load_parameters]
+            rows += [run(replace(scene, load_parameters=number), model, every=False) for number in others]
+    return Judged(scene=scene, rows=tuple(rows), findings=tuple(_findings(scene, rows)))
+
+
+def run(scene: Scene, model: str, *, every: bool = True) -> Row:
+    """Solve and certify: every load parameter, or the last one and those beside events."""
+    name, options = MODELS[model]
+    number = scene.load_parameters
+    try:
+        with time_limit(LIMIT):
+            response = solve(scene, name, options)
+    except ModelError as error:
+        return Row(model=model, number=number, ended="refused", certificate=str(error))
+    except Hang:
+        return Row(model=model, number=number, ended="HANG")
+    except Exception:  # noqa: BLE001 - whatever it is, it is found
+        return Row(model=model, number=number, ended="RAISED", certificate=traceback.format_exc())
+    row = Row(model=model, number=number, ended=response.status, response=response)
+    if not response.completed:
+        return replace(row, certificate=response.message)
+    try:
+        with time_limit(LIMIT):
+            found = certify(response, scene, at=range(number) if every else None, allowance=ALLOWED[model])
+    except Hang:
+        return replace(row, ended="HANG", certificate="certificate", response=None)
+    except Exception:  # noqa: BLE001 - whatever it is, it is found
+        return replace(row, ended="RAISED", certificate=traceback.format_exc(), response=None)
+    off = max((item.distance.largest[1] for item in found.judged if item.distance is not None), default=math.nan)
+    return replace(row, certificate=found.line(), off=off, certified=found.certified)
+
+
+def _findings(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
+    for row in rows:
+        if row.ended in ("HANG", "RAISED"):
+            yield Finding(kind=f"{row.ended} {row.model}", text=row.line())
+        elif row.completed and not row.certified:
+            yield Finding(kind=f"{row.certificate.partition(':')[0]} {row.model}", text=row.line())
+    good = [row for row in rows if row.completed]
+    for model in dict.fromkeys(row.model for row in rows):
+        own = [row for row in rows if row.model == model]
+        first = own[0]
+        for other in own[1:]:
+            if first.ended != other.ended:
+                yield Finding(kind=f"DEPENDS {model}", text=f"{first.line()} | {other.line()}")
+            elif first.completed:
+                off = apart(scene, first, other)
+                if not off <= SAME:
+                    yield Finding(kind=f"DEPENDS {model}", text=f"{off:.2g} apart: {first.line()} | {other.line()}")
+    certified = {row.model: row for row in reversed(good) if row.certified}
+    names = [name for name in ("exact", "mixed") if name in certified]
+    if len(names) == 2:
+        off = apart(scene, *(certified[name] for name in names))
+        if not off <= 2.0 * ALLOWED["mixed"]:
+            yield Finding(kind="BRANCHES", text=f"{off:.2g} apart: " + " | ".join(certified[name].line() for name in names))
+
+
+def apart(scene: Scene, one: Row, other: Row) -> float:
+    """Return the largest difference of two answers at the last load parameter: tips over the length, forces over the largest."""
+    a, b = one.response, other.response
+    assert a is not None and b is not None, "both are completed"
+    found = [0.0]
+    for beam in scene.beams:
+        found.append(float(np.hypot(*(a.tips[beam.name][-1] - b.tips[beam.name][-1]))) / beam.length)
+    forces = [np.hypot(*item.force[-1]) for answer in (a, b) for item in answer.supports.values()]
+    forces += [item.force[-1] for answer in (a, b) for item in answer.contacts.values()]
+    least = min(beam.EI / beam.length**2 for beam in scene.beams)
+    size = max(1e-3 * least, *map(float, forces))
+    found += [abs(float(a.contacts[pair].force[-1] - b.contacts[pair].force[-1])) / size for pair in a.contacts]
+    found += [float(np.hypot(*(a.supports[beam].force[-1] - b.supports[beam].force[-1]))) / size for beam in a.supports]
+    return max(found, key=lambda value: math.inf if math.isnan(value) else value)
