@@ -89,7 +89,9 @@ class _World:
 
     def caused(self) -> bool:
         """Whether anything happens: a bending force, a motion or a pin."""
-        return bool(self.pins or self.loads) or any("displacement" in item or "rotation" in item for item in self.supports)
+        return bool(self.pins or self.loads) or any(
+            "displacement" in item or "rotation" in item for item in self.supports
+        )
 
     # structures
 
@@ -118,7 +120,11 @@ class _World:
         width = height * self.one_of(1.0, 1.0, 10.0 ** self.random.uniform(-1.0, 1.0))
         section: Tables = {"youngs_modulus": self.stiffness * self.one_of(1.0, 1.0, 3.0)}
         if not self.soft:
-            return section | {"width": width, "height": height, "poissons_ratio": self.one_of(0.3, 0.0, 0.49, -0.3)}
+            return section | {
+                "width": width,
+                "height": height,
+                "poissons_ratio": self.one_of(0.3, 0.0, 0.49, -0.3),
+            }
         area, inertia = width * height, width * height**3 / 12.0
         shear = 10.0 ** self.random.uniform(0.3, 5.0) * inertia / (length * self.place.length) ** 2
         section |= {"area": area, "second_moment": inertia, "shear_area": shear}
@@ -149,8 +155,12 @@ class _World:
         far = self.one_of("free", "pinned", "held")
         self.support(name, (0.0, 0.0), PINNED if far == "pinned" else CLAMPED)
         if far != "free" and self.chance(0.5):
-            motion = self.place.vector(-(10.0 ** self.random.uniform(-4.0, -0.5)), self.one_of(0.0, 1e-6, 1e-3, 0.02))
-            self.support(name, (1.0, 0.0), (PINNED if far == "pinned" else CLAMPED) | {"displacement": motion})
+            motion = self.place.vector(
+                -(10.0 ** self.random.uniform(-4.0, -0.5)), self.one_of(0.0, 1e-6, 1e-3, 0.02)
+            )
+            self.support(
+                name, (1.0, 0.0), (PINNED if far == "pinned" else CLAMPED) | {"displacement": motion}
+            )
             return
         if far != "free":
             # what is free must be a global direction
@@ -168,7 +178,9 @@ class _World:
         for _ in range(self.random.randint(2, 4)):
             size = self.one_of(1.0, 1.0, 0.5)
             x, y = corners[-1]
-            corners.append((round(x + size * math.cos(direction), 6), round(y + size * math.sin(direction), 6)))
+            corners.append(
+                (round(x + size * math.cos(direction), 6), round(y + size * math.sin(direction), 6))
+            )
             direction += self.one_of(0.0, math.pi / 2, -math.pi / 2, self.random.uniform(-1.5, 1.5))
         names = [self.beam(a, b) for a, b in zip(corners, corners[1:], strict=False)]
         self.support(names[0], corners[0], self.one_of(CLAMPED, CLAMPED, PINNED))
@@ -185,7 +197,11 @@ class _World:
     def fork(self) -> None:
         """Three beams that meet in one joint."""
         joint = (0.6, 0.0)
-        tips = [(0.0, 0.0), (1.2, round(self.random.uniform(0.05, 0.6), 3)), (1.0, -round(self.random.uniform(0.05, 0.6), 3))]
+        tips = [
+            (0.0, 0.0),
+            (1.2, round(self.random.uniform(0.05, 0.6), 3)),
+            (1.0, -round(self.random.uniform(0.05, 0.6), 3)),
+        ]
         names = [self.beam(joint, tip) for tip in tips]
         self.support(names[0], tips[0], CLAMPED)
         if self.chance(0.4):
@@ -219,7 +235,9 @@ class _World:
         top = (round(x + self.one_of(0.0, 1e-4, self.random.uniform(-0.6, 0.6)), 6), 1.0)
         tip = (round(x, 6), gap)
         above = self.beam(top, tip)
-        motion = self.place.vector(self.one_of(0.0, self.random.uniform(-0.3, 0.3)), -self.one_of(0.01, 0.1, 0.3))
+        motion = self.place.vector(
+            self.one_of(0.0, self.random.uniform(-0.3, 0.3)), -self.one_of(0.01, 0.1, 0.3)
+        )
         self.support(above, top, self.one_of(CLAMPED, CLAMPED, PINNED) | {"displacement": motion})
         self.touch(f"{above}.{self.end_at(above, tip)}", below, above=True)
 
@@ -227,7 +245,9 @@ class _World:
         """A cantilever bent over a round pin by its tip's load, a pin or a moved clamp."""
         name = self.beam((0.0, 0.0), (1.0, 0.0))
         self.support(name, (0.0, 0.0), CLAMPED)
-        self.pin(name, above=False, x=self.random.uniform(0.1, 0.7), radius=10.0 ** self.random.uniform(-2.0, 0.0))
+        self.pin(
+            name, above=False, x=self.random.uniform(0.1, 0.7), radius=10.0 ** self.random.uniform(-2.0, 0.0)
+        )
         if self.chance(0.7):
             size = -(10.0 ** self.random.uniform(-0.5, 1.6))
             self.loaded(name, (1.0, 0.0), self.scaled(name, 0.0, size), 0.0)
@@ -263,9 +283,17 @@ class _World:
         name = name or self.one_of(*self.corners)
         size = 10.0 ** self.random.uniform(-2.0, 1.2)
         direction = self.one_of(math.pi / 2, -math.pi / 2, math.pi, self.random.uniform(-math.pi, math.pi))
-        force = self.scaled(name, size * math.cos(direction), size * math.sin(direction)) if self.chance(0.8) else [0.0, 0.0]
+        force = (
+            self.scaled(name, size * math.cos(direction), size * math.sin(direction))
+            if self.chance(0.8)
+            else [0.0, 0.0]
+        )
         turning = self.chance(0.3) or not any(force)
-        moment = self.bending(name) * self.place.length * self.one_of(1.0, -1.0) * min(size, 6.0) if turning else 0.0
+        moment = (
+            self.bending(name) * self.place.length * self.one_of(1.0, -1.0) * min(size, 6.0)
+            if turning
+            else 0.0
+        )
         self.loaded(name, self.corners[name][self.random.randrange(2)], force, moment)
 
     def moved(self) -> None:
@@ -279,7 +307,14 @@ class _World:
         if support["kind"] == "clamped" and self.chance(0.5):
             support["rotation"] = self.random.uniform(-1.5, 1.5)
 
-    def pin(self, name: str | None = None, *, above: bool | None = None, x: float | None = None, radius: float | None = None) -> None:
+    def pin(
+        self,
+        name: str | None = None,
+        *,
+        above: bool | None = None,
+        x: float | None = None,
+        radius: float | None = None,
+    ) -> None:
         """Add a pin that starts near a beam and moves into it, or along it and into it."""
         name = name or self.one_of(*self.corners)
         start, end = self.corners[name]
@@ -320,7 +355,9 @@ class _World:
     def touch(self, node: str, name: str, *, above: bool) -> None:
         """Let a beam's end meet a beam."""
         start, end = self.corners[name]
-        self.contacts.append({"node": node, "beam": name, "side": "left" if above == (end[0] > start[0]) else "right"})
+        self.contacts.append(
+            {"node": node, "beam": name, "side": "left" if above == (end[0] > start[0]) else "right"}
+        )
         beam = next(item for item in self.beams if item["name"] == name)
         if "height" in beam and self.chance(0.2):
             self.contacts[-1]["surface"] = "face"
