@@ -3,6 +3,7 @@
 import fcntl
 import os
 import signal
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +21,23 @@ def printable(text: object) -> str:
     'red \\x1b[31m'
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def read_regular(path: str, most: int) -> bytes:
+    """Return the bytes of a regular file; a pipe is not waited for, and nothing is read without end.
+
+    Raises
+    ------
+    OSError, ValueError
+        If it cannot be read, is no regular file, or has more than `most` bytes.
+    """
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise ValueError("is not a regular file")
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise ValueError(f"has more than {most / 1e6:g} MB")
+    return data
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from comparisons.accuracy.quantities import difference
 from comparisons.junit import JUnitCase, junit_text
-from comparisons.models import solve
+from comparisons.models import COARSE, certified, solve
 from comparisons.options import ModelError, Options
 from comparisons.response import Response
 from comparisons.scene import Scene
@@ -93,8 +93,9 @@ def gate(
     ModelError
         If a model cannot state the scene.
     """
-    reference = _reference(scene, against)
-    response = solve(scene, model, options)
+    allowance = max(COARSE, *bounds.values())
+    reference = certified(_reference(scene, against), scene)
+    response = certified(solve(scene, model, options), scene, allowance=allowance)
     complete = response.completed and reference.completed
     return Gate(
         response=response,

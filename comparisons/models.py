@@ -1,6 +1,8 @@
 """The models by name: each solves a scene and states its response."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal
 
 from comparisons.discrete_models import solve_solid, solve_tsm
 from comparisons.exact_models import solve_elastica, solve_rod
@@ -10,6 +12,10 @@ from comparisons.response import Response
 from comparisons.scene import Scene
 from comparisons.verify import verified
 
+Certify = Literal["last", "all", "none"]
+"""Load parameters to certify: the last and those beside events, every one, or none."""
+COARSE = 5e-2
+"""Distance from the exact equilibrium that a coarse mesh may leave: an answer further away is refused."""
 MODELS: dict[str, Callable[[Scene, Options, Watch], Response]] = {
     "tsm": solve_tsm,
     "solid": solve_solid,
@@ -36,3 +42,33 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         return verified(MODELS[model](scene, given, watch), scene)
     except ValueError as error:
         raise ModelError(f"{model}: {error}") from error
+
+
+def certified(
+    response: Response, scene: Scene, which: Certify = "last", *, allowance: float = COARSE
+) -> Response:
+    """Return `response` with its certificate; one that is refused has the verdict for its status and is not completed.
+
+    Parameters
+    ----------
+    response : Response
+        The answer of a model; one that stopped keeps its status.
+    scene : Scene
+        What was asked.
+    which : {"last", "all", "none"}
+        Load parameters to certify.
+    allowance : float
+        Largest distance from the exact equilibrium, relative; a solid is allowed its height over its length besides.
+    """
+    from comparisons.referee import Verdict, certify, default_allowance
+    from comparisons.referee.certify import ALLOWED
+
+    if which == "none" or not len(response.load_parameter):
+        return response
+    every = range(len(response.load_parameter)) if which == "all" else None
+    allowed = allowance + default_allowance(response, scene) - ALLOWED
+    found = certify(response, scene, at=every, allowance=allowed)
+    response = replace(response, certificate=found)
+    if not response.completed or found.verdict in {Verdict.CERTIFIED, Verdict.NOT_JUDGED}:
+        return response
+    return replace(response, status=found.verdict.name, message=found.reason, completed=False)

@@ -2,9 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from comparisons.referee.certificate import Certificate
 
 Array = NDArray[np.float64]
 
@@ -186,6 +190,8 @@ class Response:
         where it is not defined; None for a model that does not state it.
     critical : tuple of CriticalPoint
         Critical points that the model met.
+    certificate : Certificate, optional
+        What the referee says of the answer.
     """
 
     model: str
@@ -208,3 +214,4 @@ class Response:
     deformation: Deformation | None = None
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()
+    certificate: "Certificate | None" = None

@@ -88,6 +88,7 @@ def as_dict(response: Response) -> dict[str, Any]:
             {"kind": point.kind, "load_parameter": point.load_parameter, "mode": point.mode}
             for point in response.critical
         ],
+        "certificate": None if response.certificate is None else response.certificate.as_dict(),
         "newton_iterations": response.newton_iterations,
         "cutbacks": response.cutbacks,
         "unknowns": response.unknowns,
@@ -148,6 +149,7 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
     rows += _event_rows(response.events or (), force, length)
     rows += [
         ("stability", stability(response)),
+        *([("certificate", response.certificate.line())] if response.certificate else []),
         ("unknowns", f"{response.unknowns}"),
         ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
         ("seconds", f"{response.wall_seconds:.3f}"),

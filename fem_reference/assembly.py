@@ -52,8 +52,10 @@ def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
     kept = np.flatnonzero((row >= 0) & (column >= 0))
     keys, slot = np.unique(column[kept] * size + row[kept], return_inverse=True)
     signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
-    indices = (keys % size).astype(np.int32)
-    indptr = np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(np.int32)
+    indices: Ints = (keys % size).astype(np.int32)  # SuperLU takes 32 bits
+    indptr: Ints = np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(
+        np.int32
+    )
     return Pattern(
         scatter=csr_matrix((signs, (slot, kept)), shape=(keys.size, row.size)),
         indices=indices,

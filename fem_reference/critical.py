@@ -18,6 +18,8 @@ LIMIT, BIFURCATION = "limit point", "bifurcation"
 _SEARCH = 60
 _PRECISION = 1e-10
 """Largest change of a located load parameter or amplitude, relative, that ends a search."""
+_REACH = 0.05
+"""Displacement, relative to the length, root mean square, within which a limit point is looked for."""
 _CLOSE = 1e-5
 """Relative distance of a bifurcation's load parameter within which no state is looked for."""
 _FIRST_AMPLITUDE = 1e-2
@@ -100,61 +102,83 @@ def noise(model: Model, settings: Settings) -> float:
     return 10 * settings.tolerance * model.length
 
 
-def limit_point(model: Model, states: tuple[Accepted, ...], settings: Settings) -> Located | None:
-    """Search for a maximum of the load parameter beyond the last state; None if there is none near.
+def limit_point(model: Model, a: Accepted, step: float, settings: Settings) -> Located | None:
+    """Search for a maximum of the load parameter beyond a state, from ``step`` on; None if there is none near.
 
     The path goes on with its displacement along the last rate as parameter, ``c . (u - u_a) = delta``, and the load
     parameter among the unknowns; ``dt/ddelta = 1 / (c . v)`` vanishes at the limit.
     """
-    a = states[-1]
     rate = a.rate(a.at.t, a.at.t + settings.min_step).u
     size = float(np.linalg.norm(rate))
     if not (np.isfinite(size) and size > 0):
         return None
-    c = rate / size
-    delta = size * settings.min_step
-    low, high = (0.0, 1 / size, a.at), None
-    for _ in range(_SEARCH):
-        if high is None:
-            trial, delta = delta, 2 * delta
-            if trial > model.length * np.sqrt(model.nodes):
-                return None
-        else:
-            trial = low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1])
-            width = high[0] - low[0]
-            trial = min(max(trial, low[0] + 0.02 * width), high[0] - 0.02 * width)
-            if width <= 1e-6 * high[0]:
-                break
-        found = _along(model, low[2], a.at.u, c, trial, settings)
+    c, delta = rate / size, size * step
+    low, high = _Turn(delta=0.0, slope=1 / size, at=a.at), None
+    while high is None:
+        if delta > _REACH * model.length * np.sqrt(model.nodes):
+            return None
+        found = _turn(model, low.at, a.at.u, c, delta, settings)
         if found is None:
             return None
-        tangent = linearise(model, found)
-        slope = None if tangent is None else tangent.rate(found.t, found.t + settings.min_step)
-        if tangent is None or slope is None:
+        low, high, delta = (found, None, 2 * delta) if found.slope > 0 else (low, found, delta)
+    for _ in range(_SEARCH):
+        width = high.delta - low.delta
+        chord = low.delta - low.slope * width / (high.slope - low.slope)
+        inner = min(max(chord, low.delta + 0.02 * width), high.delta - 0.02 * width)
+        found = _turn(model, low.at, a.at.u, c, inner, settings)
+        if found is None:
             return None
-        speed = float(np.sum(c * slope.u))
-        if speed == 0:
-            return None
-        if speed > 0:
-            low = (trial, 1 / speed, found)
-        else:
-            high = (trial, 1 / speed, found)
-        if abs(speed) >= size / _PRECISION:
+        low, high = (found, high) if found.slope > 0 else (low, found)
+        if abs(found.slope) <= _PRECISION / size or width <= 1e-6 * high.delta:
             break
-    if high is None:
-        return None
-    best = low if abs(low[1]) <= abs(high[1]) else high
-    near = accept(model, best[2], settings)
+    near = accept(model, min(low, high, key=lambda turn: abs(turn.slope)).at, settings)
     if near is None:
         return None
     _, vector = smallest(model, near.tangent)
     # Where the load has no component along the null vector, the rate has none either.
-    share = abs(float(np.sum(vector * c)))
-    return (
-        Located(point=_point(model, LIMIT, best[2].t, vector), near=near, vector=vector)
-        if share > 0.5
-        else None
-    )
+    limit = abs(float(np.sum(vector * c))) > 0.5
+    return Located(point=_point(model, LIMIT, near.at.t, vector), near=near, vector=vector) if limit else None
+
+
+def release(model: Model, a: Accepted, settings: Settings) -> CriticalPoint | None:
+    """Name the limit at which a contact is about to open and leaves an unstable state; None if none does.
+
+    No eigenvalue passes zero there: the opening contact frees a direction. The mode is that of the free state.
+    """
+    rate = a.rate(a.at.t, a.at.t + settings.min_step)
+    forces = iter(rate.forces)
+    for number, touch in enumerate(a.at.touches):
+        if not touch.closed or touch.force + _STEPS_LEFT * settings.min_step * float(next(forces)) > 0:
+            continue
+        conditions = list(a.at.conditions)
+        conditions[number] = touch.condition.opened(armed=True)
+        free = accept(model, state(model, a.at.u, a.at.t, tuple(conditions)), settings)
+        if free is not None and free.index > max(a.index, 0):
+            return _point(model, LIMIT, a.at.t, smallest(model, free.tangent)[1])
+    return None
+
+
+_STEPS_LEFT = 20
+"""Smallest steps within which a contact has to open if the path ends for that reason."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Turn:
+    """A state on the way round a limit point: its displacement along the rate, ``dt/ddelta`` there, and itself."""
+
+    delta: float
+    slope: float
+    at: State
+
+
+def _turn(
+    model: Model, guess: State, origin: Floats, c: Floats, delta: float, settings: Settings
+) -> _Turn | None:
+    found = _along(model, guess, origin, c, delta, settings)
+    tangent = None if found is None else linearise(model, found)
+    rate = None if tangent is None or found is None else tangent.rate(found.t, found.t + settings.min_step)
+    speed = 0.0 if rate is None else float(np.sum(c * rate.u))
+    return None if found is None or speed == 0 else _Turn(delta=delta, slope=1 / speed, at=found)
 
 
 def _along(

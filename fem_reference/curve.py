@@ -49,11 +49,9 @@ class Curve:
         k, hermite = self._pieces(points)
         weighted = hermite * self.kernel
         first, count = int(k.min()), int(np.ptp(k)) + 2
-        by_station = np.zeros((2, 3, count), dtype=hermite.dtype)
-        for end in range(2):  # of each piece: its value's weight, and its slope's
-            places = (slice(None), k - first + end)
-            np.add.at(by_station[0], places, weighted[:, end])
-            np.add.at(by_station[1], places, weighted[:, 2 + end])
+        ones = np.eye(count)
+        left, right = ones[k - first], ones[k - first + 1]
+        values, slopes = (weighted[:, n] @ left + weighted[:, n + 1] @ right for n in (0, 2))
         reach = self.slopes.shape[1]
         half = reach // 2
         shifted = np.zeros((count, count + reach))
@@ -61,8 +59,8 @@ class Curve:
         # Every row begins one place further to the right than the one before.
         rows = shifted.ravel()[:-count].reshape(count, count + reach - 1)
         padded = np.zeros((3, s.size + 2 * half), dtype=hermite.dtype)
-        padded[:, first : first + count + reach - 1] = by_station[1] @ rows
-        padded[:, half + first : half + first + count] += by_station[0]
+        padded[:, first : first + count + reach - 1] = slopes @ rows
+        padded[:, half + first : half + first + count] += values
         return padded[:, half : half + s.size]
 
     def _pieces(self, zeta: Array) -> tuple[Ints, Array]:

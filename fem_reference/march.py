@@ -7,6 +7,8 @@ has changed. The load parameters asked for are where states are read; what lies 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from fem_reference.active_set import equilibrium
 from fem_reference.arrays import Floats
 from fem_reference.critical import (
@@ -15,6 +17,7 @@ from fem_reference.critical import (
     bifurcation,
     limit_point,
     noise,
+    release,
     stable_branch,
 )
 from fem_reference.line_contact import line_contact, tightest
@@ -27,6 +30,8 @@ from fem_reference.track import KEPT, Accepted, accept, departure, predict
 
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to an end of a step are there."""
+_STEEPER = 1.5
+"""Growth of the rate over a step after which a limit point is looked for."""
 _PATIENCE = 5
 """Attempts given up in a row, after which what stands in the way is looked for."""
 
@@ -95,7 +100,8 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
     """Yield the accepted state at every load parameter; if one cannot be reached, a last step says why."""
     start = accept(model, at_rest(model), settings)
     assert start is not None, "a strip at rest has a stiffness"
-    track, trial = (start,), settings.first_step
+    track: tuple[Accepted, ...] = (start,)
+    trial = settings.first_step
     for target in map(float, load_parameters):
         walk = _Walk(track=track, trial=trial, order=settings.predictor_order)
         status = _reach(model, target, walk, settings)
@@ -134,7 +140,7 @@ def _reach(model: Model, target: float, walk: _Walk, settings: Settings) -> Stat
         found = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
         ended = _judge(model, walk, found, goal, settings)
         if ended is None and walk.failures:
-            ended = _blocked(model, walk, attempt, goal, settings)
+            ended = _blocked(model, walk, attempt, goal, target, settings)
         if ended is not None:
             return ended
     return Status.CONVERGED
@@ -202,25 +208,35 @@ def _divide(
     return Status.BIFURCATION
 
 
-def _blocked(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings) -> Status | None:
+def _blocked(
+    model: Model, walk: _Walk, attempt: Attempt, goal: float, target: float, settings: Settings
+) -> Status | None:
     """Search for what stands in the way of ever shorter steps; return a status if the path ends there."""
     floor = walk.trial < settings.min_step
     line = line_contact(model, walk.track, settings)
-    if line is not None and line[0] <= goal:
+    if line is not None and line[0] <= target:
         walk.ended_at, walk.pair, last = line
         walk.track = (*walk.track, last)
         walk.cause = Status.LINE_CONTACT
         return Status.LINE_CONTACT
-    if not floor and walk.failures % _PATIENCE:
+    if not floor and walk.failures % _PATIENCE and not _steeper(walk.track):
         return None
-    located = limit_point(model, walk.track, settings)
-    if located is not None and walk.last.at.t <= located.point.load_parameter <= goal:
+    located = limit_point(model, walk.last, max(walk.trial, settings.min_step), settings)
+    if located is not None and walk.last.at.t <= located.point.load_parameter <= target:
         walk.critical.append(located.point)
         walk.ended_at, walk.pair = located.point.load_parameter, None
         walk.cause = Status.LIMIT_POINT
         return Status.LIMIT_POINT
-    if not floor:
-        return None
+    return _at_floor(model, walk, attempt, goal, settings) if floor else None
+
+
+def _at_floor(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings) -> Status | None:
+    """Let go of a contact that slips off where that is allowed; return a status if the path ends here."""
+    loosened = release(model, walk.last, settings)
+    if loosened is not None:
+        walk.critical.append(loosened)
+        walk.cause, walk.pair = Status.LIMIT_POINT, None
+        return Status.LIMIT_POINT
     after = _after_slip(model, walk.last.at, goal, attempt, settings)
     found = None
     if after is not None and after.status is Status.CONVERGED:
@@ -234,6 +250,15 @@ def _blocked(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings:
     walk.accept(found, afresh=True)
     walk.trial, walk.order = settings.first_step, settings.predictor_order
     return None
+
+
+def _steeper(track: tuple[Accepted, ...]) -> bool:
+    """Whether the rate has grown over the last step as it does towards a limit point."""
+    if len(track) < 2 or track[-1].closed != track[-2].closed:
+        return False
+    before, after = (one.at.t for one in track[-2:])
+    first, second = (float(np.linalg.norm(one.rate(before, after).u)) for one in track[-2:])
+    return second > _STEEPER * first
 
 
 def _after_slip(

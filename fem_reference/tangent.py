@@ -108,8 +108,8 @@ class Tangent:
         no more than ``weak`` [N] can open or close: -1 if both do not have the same index.
         """
         sure = [touch.force > weak for touch in self.at.closed]
-        found = {self._count(sure), self._count([True] * len(sure))}
-        return found.pop() if len(found) == 1 else -1
+        found = self._count([True] * len(sure))
+        return found if all(sure) or self._count(sure) == found else -1
 
     def _count(self, chosen: list[bool]) -> int:
         """Index with the chosen ones of the closed contacts.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 
@@ -21,6 +22,21 @@ ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes")
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
 
 
+SAID = {
+    "doctor": ("numpy", "scikit-fem"),
+    "scenes": ("double-beam", "ks-tied-tip"),
+    "new strip": ("strip.toml",),
+    "check": ("tsm: yes", "solid: yes", "rod: yes", "drawn: ks.png"),
+    "solve": ("COMPLETED", "force"),
+    "compare": ("exact rod", "summary.json"),
+    "view": ("view.png",),
+    "gate": ("force", "shape", "<= 0.001"),
+    "reproduce": ("claims-fig9.md",),
+    "study": ("thin-beams.csv",),
+}
+"""What a command prints, beside its exit status."""
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -32,9 +48,13 @@ ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes")
 def test_crossval_commands(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     out = run_line(line)
-    assert out
     if "--json -" in line:
         assert json.loads(out)["status"] == "COMPLETED"
+    else:
+        [said] = [words for start, words in SAID.items() if line.startswith(f"crossval {start}")]
+        assert all(word in out for word in said), out
+    for written in re.findall(r" (?:--out|--junit|--vtk) (\S+)", line):
+        assert Path(written).is_file() or any(Path(written).iterdir())
 
 
 @pytest.mark.parametrize("command", ELSEWHERE)

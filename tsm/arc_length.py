@@ -104,7 +104,8 @@ class _Path:
         self.settings = settings
         self.newton = Newton(model, settings)
         self.here = self.newton.solve(initial_state(model))
-        self.weight = np.concatenate([self.newton.per_limit, np.zeros(model.contact_unknowns)]) ** 2
+        per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_limit
+        self.weight = np.concatenate([per_beam, np.zeros(model.contact_unknowns)]) ** 2
         self.tangent = self._tangent(self.here.state, None)
         self.growth = 1.0
         self.failure = Status.CUTBACK_FLOOR

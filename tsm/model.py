@@ -118,6 +118,10 @@ class Model:
         Number of border unknowns: border equations, then the contacts' own unknowns.
     turns : tuple of float
         Load parameters at which the paths of the pins turn.
+    length, extent : float
+        Length of the longest beam, and of the largest structure of joined beams.
+    force_scale, least_force : float
+        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -130,8 +134,13 @@ class Model:
         self.properties = self._properties()
         self.coefficients = self._coefficients()
         self.rods = Rods(self) if len(self.exact) else None
-        self.length = max(*(beam.length for beam in structure.beams), self._extent())
+        self.length = max(beam.length for beam in structure.beams)
         self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
+        extents = self._extents()
+        self.extent = max(extents)
+        self.least_force = max(
+            beam.section.EI / extent**2 for beam, extent in zip(structure.beams, extents, strict=True)
+        )
         self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
@@ -172,10 +181,11 @@ class Model:
         self.exact_dofs = np.concatenate([nodal[:3], own, nodal[3:]])
         self.dof_count = 3 * (len(self.coordinates) + len(self.exact))
 
-    def _extent(self) -> float:
-        """Diagonal of the largest structure of joined beams: how far its ends may go; 0 where none are joined."""
+    def _extents(self) -> list[float]:
+        """Diagonal of the structure of joined beams that each beam belongs to: how far its ends may go; of one alone, its length."""
+        lengths = [beam.beam.length for beam in self.beams.values()]
         if not self.joined:
-            return 0.0
+            return lengths
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -185,7 +195,8 @@ class Model:
         least, most = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
         np.minimum.at(least, of, self.coordinates)
         np.maximum.at(most, of, self.coordinates)
-        return float(np.hypot(*(most - least).T).max())
+        across = np.hypot(*(most - least).T)[of[[beam.nodes[0] for beam in self.beams.values()]]]
+        return [max(own, float(whole)) for own, whole in zip(lengths, across, strict=True)]
 
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}

@@ -88,11 +88,11 @@ class Newton:
         EA, EI, l0 = (
             value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
         )
-        noise = ROUND_OFF * (EA * model.length / l0 + EI / l0**2).max(initial=0.0) / model.force_scale
+        noise = ROUND_OFF * (EA * model.extent / l0 + EI / l0**2).max(initial=0.0) / model.least_force
         self.tolerance = tolerance
         blur = ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length)
         self.noise = float(max(noise, blur if model.contact_unknowns or model.rods else 0.0))
-        force, length = model.force_scale, model.length
+        force, length = model.least_force, model.length
         self.longest = _LONGEST_WHOLE if model.whole else LONGEST
         sharp = 1 / (SHARP * length)
         scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / SHARP])
@@ -100,7 +100,7 @@ class Newton:
             [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns] for pair in model.pairs
         ]
         self.scale = np.concatenate([scale[model.kind], *own])
-        per_limit = np.array([1 / (0.3 * length), 1 / (0.3 * length), 1 / 0.7])
+        per_limit = np.array([1 / (0.3 * model.extent), 1 / (0.3 * model.extent), 1 / 0.7])
         own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
         self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
         self.own_per_limit = np.concatenate([np.empty(0), *own])
@@ -193,7 +193,7 @@ class Newton:
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
         """Whether the last residual is small enough, or the last two are round-off."""
-        noise = max(self.noise, min(system.noise / self.model.force_scale, _CRITICAL))
+        noise = max(self.noise, min(system.noise / self.model.least_force, _CRITICAL))
         return residuals[-1] <= self.tolerance or (len(residuals) > 1 and max(residuals[-2:]) <= noise)
 
     def prescribed(self, state: State, t: float) -> State:

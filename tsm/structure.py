@@ -36,8 +36,6 @@ def _direction(a: Point, b: Point) -> float:
 
 LARGEST = 1e50
 """Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
-STIFFNESS = (1e-100, 1e100)
-"""Range of stiffnesses."""
 MOST = 1_000_000
 """Elements of a structure at most."""
 
@@ -73,11 +71,6 @@ class Section:
         for field in ("EA", "GA", "EI"):
             value = getattr(self, field)
             _check(0 < value < math.inf, "Section", field, value, "must be positive and finite")
-        for field in ("EA", "GA", "EI"):
-            value = getattr(self, field)
-            least, most = STIFFNESS
-            rule = f"must lie between {least:g} and {most:g}"
-            _check(least <= value <= most, "Section", field, value, rule)
 
     @classmethod
     def rectangle(

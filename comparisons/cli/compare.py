@@ -4,7 +4,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.outcome import EPILOG, exit_status, report
+from comparisons.cli.outcome import EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.progress import Watch
 from comparisons.scene import load_scene
@@ -40,4 +40,7 @@ def run(given: "argparse.Namespace") -> int:
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch)
     print(table_text(found.rows, ROD.label))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
-    return exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
+    status = exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
+    for row in found.apart:
+        report(f"crossval: {row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}")
+    return STOPPED if found.apart else status

@@ -51,6 +51,12 @@ def add_to(commands: "Commands") -> None:
         choices=BRANCHES,
         help="at a critical point: stop (the default), turn to the stable branch, or go on along the primary one, unstable",
     )
+    solve.add_argument(
+        "--certify",
+        choices=("last", "all", "none"),
+        default="last",
+        help="load parameters to hold against the exact equilibrium: the last and those beside events (the default), all, none",
+    )
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")
     solve.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -72,16 +78,18 @@ def run(given: "argparse.Namespace") -> int:
         from comparisons.export import check_series
 
         check_series(writable_folder(given.vtk), given.model or "tsm", scene)
-    from comparisons.models import solve
+    from comparisons.models import certified, solve
     from comparisons.statement import as_json, summary
 
     answer = _answer(scene, given)
     if answer is None:
         with watching(given.model, quiet=given.quiet) as watch:
             response = solve(scene, given.model, _options(given), watch)
+        response = certified(response, scene, given.certify)
         stated = as_json(response)
     else:
-        response, scene = answer.response, answer.found.scene
+        scene = answer.found.scene
+        response = certified(answer.response, scene, given.certify)
         stated = as_json(response, accuracy=answer.as_dict())
     if given.json == "-":
         sys.stdout.write(stated)

@@ -6,7 +6,8 @@ Clamp at the origin, undeformed rod along +x; the tip turns freely, so the inter
 
 with lengths in units of the rod's length L, forces in EI/L^2, moments in EI/L. At Gauss points both integrals are matrices; the
 unknowns are m at the points and n, the equations those above and `int_0^1 (r' - e1) = tip - e1` (differences, since a slender rod's
-axial force is its stretch, 1e-7 L, times EA). They make the energy stationary, least in m and largest in n,
+axial force is its stretch, 1e-7 L, times EA). They make the energy stationary, at a saddle point: largest in n for every m, and that
+largest value least in m where the rod is stable (for n held it need not be),
 
     Pi(m, n) = 1/2 int m^2 - int (N + N^2/2 EA + Q^2/2 GA) + n.tip
 

@@ -78,8 +78,8 @@ def _node(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Array:
 
 
 def _foot(exact: Equilibrium, beam: str, node: Array, low: float, high: float) -> float:
-    """Where between two arc positions the axis is nearest: the grid is refined around the best place until round-off."""
-    for _ in range(9):
+    """Where between two arc positions the axis is nearest, to 1e-6 of the way between them, where the distance is level."""
+    for _ in range(8):
         arcs = np.linspace(low, high, 11)
         away = np.hypot(*(exact.shape(beam, arcs).position - node).T)
         k = int(np.argmin(away))

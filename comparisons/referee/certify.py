@@ -1,6 +1,8 @@
 """The certificate of an answer: load parameters judged one by one, and what happens between them."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from math import sqrt
 from time import perf_counter
@@ -39,6 +41,7 @@ def certify(
         Largest distance allowed: `default_allowance` if not given.
     """
     began = perf_counter()
+    response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance
     steps = len(response.load_parameter)
     numbers = (
@@ -82,7 +85,7 @@ def _worst(states: Sequence[Judgement], path: Sequence[str], steps: int) -> tupl
     if path and worst.verdict is not Verdict.NOT_AN_EQUILIBRIUM:
         return Verdict.INADMISSIBLE, path[0]
     if worst.verdict is Verdict.CERTIFIED:
-        return Verdict.CERTIFIED, _good(states)
+        return Verdict.CERTIFIED, _good(states, steps)
     return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
 
 
@@ -115,15 +118,15 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
     return tuple(sorted(numbers))
 
 
-def _good(states: Sequence[Judgement]) -> str:
+def _good(states: Sequence[Judgement], steps: int) -> str:
     name, size = max((item.distance.largest for item in states if item.distance), key=lambda item: item[1])
-    return f"{name} off by {size:.2g}, index 0, admissible, at {len(states)} load parameters"
+    return f"{name} off by {size:.2g}, index 0, admissible, at {len(states)} of {steps} load parameters"
 
 
 def _path(response: Response, scene: Scene) -> Iterator[str]:
     """Yield what is wrong between load parameters; only of an answer that states what the scene has."""
     steps = range(len(response.load_parameter))
-    if any(next(impossible(response, scene, k), "") for k in steps):
+    if not steps or any(next(impossible(response, scene, k), "") for k in steps):
         return
     yield from passages(response, scene)
     yield from changes(response, scene)
@@ -134,11 +137,16 @@ def _path(response: Response, scene: Scene) -> Iterator[str]:
             yield f"{spec.pair} must persist and is open at load parameter {response.load_parameter[np.argmax(dropped)]:.6g}"
 
 
+def _event_times(response: Response) -> list[float]:
+    """Load parameters at which contacts open or close."""
+    return [event.load_parameter for event in response.events or () if event.kind != "pass-through"]
+
+
 def _intervals(
     response: Response, states: Sequence[Judgement], numbers: Sequence[int]
 ) -> Iterator[tuple[Equilibrium, Equilibrium]]:
     """Yield neighbouring equilibria with the same contacts and no event between them."""
-    times = [event.load_parameter for event in response.events or () if event.kind != "pass-through"]
+    times = _event_times(response)
     for (j, a), (k, b) in pairwise(zip(numbers, states, strict=True)):
         one, other = a.exact, b.exact
         if one is None or other is None or k != j + 1 or one.contacts.keys() != other.contacts.keys():
@@ -152,7 +160,8 @@ def _departures(
 ) -> Iterator[str]:
     """Yield why an answer is not on the branch that it began on, from the undeformed state on and between judged neighbours."""
     first = states[0].exact
-    if numbers[0] == 0 and first is not None and not first.contacts:
+    smooth = not any(t <= states[0].load_parameter for t in _event_times(response))
+    if numbers[0] == 0 and smooth and first is not None and not first.contacts:
         rest = at_rest(scene)
         if rest.found is Found.FOUND:
             yield from filter(None, [departs(scene, rest, first.solution)])

@@ -144,7 +144,7 @@ def _end(given: Given, node: str) -> Array:
 
 
 def _on(arcs: Array, line: Array, at: float) -> tuple[Array, float]:
-    """Place on a stated axis, and what its chords may cut off there: a quarter of the chord times the turn."""
+    """Place on a stated axis, and what its chords may cut off there: half the chord times the turn between chords."""
     k = int(np.clip(np.searchsorted(arcs, at) - 1, 0, len(arcs) - 2))
     part = (at - arcs[k]) / (arcs[k + 1] - arcs[k])
     first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)
@@ -153,7 +153,7 @@ def _on(arcs: Array, line: Array, at: float) -> tuple[Array, float]:
         line[k] - line[first] if first < k else way,
         line[last] - line[k + 1] if last > k + 1 else way,
     )
-    cut = 0.25 * float(np.hypot(*way)) * max(_angle(before, way), _angle(way, behind))
+    cut = 0.5 * float(np.hypot(*way)) * max(_angle(before, way), _angle(way, behind))
     return (1.0 - part) * line[k] + part * line[k + 1], cut
 
 

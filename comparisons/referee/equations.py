@@ -69,6 +69,11 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
     )
 
 
+def moved(layout: Layout, mesh: Mesh) -> Mesh:
+    """Return the same elements for the layout of another load parameter, where given rotations are others."""
+    return mesh_of(layout, [np.append(mesh.start[mesh.part == k], 1.0) for k in range(len(layout.parts))])
+
+
 class Properties(NamedTuple):
     """Of every element's part, each (e,), and the numbers of its force unknowns."""
 

@@ -20,6 +20,8 @@ _RESOLVED = 3e-14
 _ITERATIONS, _ROUNDS = 40, 12
 _LARGEST = 0.5
 """Largest change of a rotation in an iteration [rad]."""
+_CONTRAST = 1e10
+"""Largest ratio of the beams' EI/L^2: the forces of the most flexible one are round-off of the others'."""
 _MOST = 400
 """Most elements of a part."""
 
@@ -30,7 +32,7 @@ class Found(Enum):
     FOUND = "the exact equilibrium was found"
     NO_EQUILIBRIUM = "no equilibrium was found near the answer"
     NOT_RESOLVED = "the deflection has layers that are not resolved"
-    NOT_JUDGED = "the arrangement of the contacts has no equilibrium of its own"
+    NOT_JUDGED = "the scene or the arrangement of its contacts is beyond double precision"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -127,6 +129,9 @@ def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
 def _misplaced(layout: Layout, z: Array) -> str:
     if not np.all(np.isfinite(z)):
         return "the answer is not finite"
+    stiffness = [beam.EI / beam.length**2 for beam in layout.scene.beams]
+    if max(stiffness) > _CONTRAST * min(stiffness):
+        return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part in layout.parts:
         if layout.extent(z, part) <= 1e-9:
             beam = layout.scene.beams[part.beam].name
@@ -190,7 +195,7 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         change = _step(system)
         if change is None:
             return _Newton(z, bubbles, system, False, "the equations are singular", iteration, np.inf)
-        inside = -(system.shift + np.einsum("eij,ej->ei", system.lever, _own(system, change)))
+        inside = _inside(system, change)
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
         moved = float(np.abs(change[~turning & ~np.isin(np.arange(mesh.unknowns), forces)]).max(initial=0.0))
         scale = float(np.abs(z[forces]).max()) + 1e-6
@@ -203,6 +208,18 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
             return _Newton(z, bubbles, assemble(layout, mesh, made, z, bubbles), True, "", iteration, size)
         last = size if part == 1.0 else np.inf
     return _Newton(z, bubbles, system, False, reason, iterations, size)
+
+
+def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
+    """Return the first change of Newton's method, zero where the equations are singular."""
+    system = assemble(layout, mesh, properties(layout, mesh), z, bubbles)
+    change = _step(system)
+    return (np.zeros_like(z), np.zeros_like(bubbles)) if change is None else (change, _inside(system, change))
+
+
+def _inside(system: System, change: Array) -> Array:
+    """Change of the bubbles with that of the other unknowns."""
+    return np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, _own(system, change))))
 
 
 def _own(system: System, change: Array) -> Array:

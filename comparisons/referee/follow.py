@@ -4,18 +4,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import AMPLITUDE, DEGREE
-from comparisons.referee.equations import mesh_of
-from comparisons.referee.equilibrium import Found, Solution, correct
+from comparisons.referee.equations import mesh_of, moved
+from comparisons.referee.equilibrium import Found, Solution, correct, newton_step
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.stability import count
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
-_NEAR = 0.02
-"""Largest correction of a prediction, in rotations [rad] and lengths: half a step then ends at the same equilibrium."""
-_SMALLEST = 1e-11
-"""Smallest step of the load parameter, over the distance."""
+_NEAR = 0.2
+"""Largest correction of a prediction along the tangent, over the whole change: half a step then ends at the same equilibrium."""
+_ROUND_OFF = 1e-9
+"""Change, in rotations [rad] and lengths, that is nothing."""
+_LITTLE = 1e-7
+"""Part of the way ahead over which the tangent is taken."""
+_ITERATIONS = 12
+"""Most iterations of Newton's method after a prediction."""
+_SMALLEST = 1e-10
+"""Smallest step of the load parameter, over the way that it has come: an imperfect column turns off within so little of it."""
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the equilibrium that it is to reach."""
 
@@ -30,26 +36,29 @@ def at_rest(scene: Scene) -> Solution:
 def departs(scene: Scene, first: Solution, last: Solution) -> str:
     """Return why the path from `first` does not lead to `last`, which has the same contacts; nothing if it does.
 
-    Prediction along the last step's direction; a step is kept if Newton's correction is small and the index is the first state's.
+    Prediction along the tangent; a step is kept if Newton's correction is small against it and the index is the first state's.
     """
     closed = {
         touch.spec.pair: float(first.z[touch.arc]) * first.layout.length for touch in first.layout.touches
     }
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    now, before, step, index = first, None, (end - start) / 4.0, count(first)[0]
+    now, step, index = first, (end - start) / 4.0, count(first)[0]
+    ahead = _tangent(scene, now, closed, end)
     while now.layout.load_parameter < end:
-        t = min(now.layout.load_parameter + step, end)
+        here = now.layout.load_parameter
+        t = here + step if here + step < end - _ROUND_OFF * (end - start) else end
+        z, bubbles = now.z + (t - here) * ahead[0], now.bubbles + (t - here) * ahead[1]
         layout = lay_out(scene, t, closed)
-        ahead = _ahead(now, before, t)
-        found = correct(layout, now.mesh, *ahead, 6)
-        apart = _apart(found, *ahead)
-        if found.found is Found.FOUND and apart < _NEAR and count(found)[0] == index:
-            step *= 2.0 if apart < _NEAR / 8.0 else 1.0
-            now, before = found, now if len(found.z) == len(now.z) else None
-            continue
+        found = correct(layout, moved(layout, now.mesh), z, bubbles, _ITERATIONS)
+        if found.found is Found.FOUND and count(found)[0] == index:
+            off = _apart(found, z, bubbles) / (_apart(found, now.z, now.bubbles) + _ROUND_OFF)
+            if off < _NEAR:
+                step *= 2.0 if off < _NEAR / 3.0 else 1.0
+                now, ahead = found, _tangent(scene, found, closed, end)
+                continue
         step /= 2.0
-        if step < _SMALLEST * (end - start):
-            return f"no continuous path of index {index} leads on beyond load parameter {now.layout.load_parameter:.6g}"
+        if step < _SMALLEST * max(here - start, _SMALLEST * (end - start)):
+            return f"no continuous path of index {index} leads on beyond load parameter {here:.6g}"
     off = _difference(now, last)
     return (
         ""
@@ -58,13 +67,14 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     )
 
 
-def _ahead(now: Solution, before: Solution | None, t: float) -> tuple[Array, Array]:
-    """Prediction on the straight line through the last two states."""
-    if before is None:
-        return now.z, now.bubbles
-    last, here = before.layout.load_parameter, now.layout.load_parameter
-    part = (t - here) / (here - last)
-    return now.z + part * (now.z - before.z), now.bubbles + part * (now.bubbles - before.bubbles)
+def _tangent(scene: Scene, now: Solution, closed: dict[str, float], end: float) -> tuple[Array, Array]:
+    """Rates of the unknowns by load parameter: what is given moves in a straight line over a small part of the way ahead."""
+    little = _LITTLE * (end - now.layout.load_parameter)
+    if little == 0.0:
+        return np.zeros_like(now.z), np.zeros_like(now.bubbles)
+    layout = lay_out(scene, now.layout.load_parameter + little, closed)
+    change, inside = newton_step(layout, moved(layout, now.mesh), now.z, now.bubbles)
+    return change / little, inside / little
 
 
 def _apart(found: Solution, z: Array, bubbles: Array) -> float:

@@ -28,4 +28,5 @@ def friction(scene: Scene, given: Given, exact: Equilibrium) -> float:
     n = sign * np.array([x, y])
     N, Q = n[0] * math.cos(turn) + n[1] * math.sin(turn), n[1] * math.cos(turn) - n[0] * math.sin(turn)
     H = moment**2 / (2.0 * beam.EI) + N + N**2 / (2.0 * beam.EA) + Q**2 / (2.0 * beam.GA)
-    return float(abs(H) / max(np.hypot(*contact.force) for contact in exact.contacts.values()))
+    largest = max(float(np.hypot(*contact.force)) for contact in exact.contacts.values())
+    return float(abs(H) / largest) if largest > 0.0 else math.nan

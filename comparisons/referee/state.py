@@ -256,6 +256,8 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         part = layout.parts[k]
         first, extent = layout.arc(z, part.first, part), layout.extent(z, part)
         here = ((at >= first) | (k == own[0])) & ((at < first + extent) | (k == own[-1]))
+        if not here.any():
+            continue
         elements = np.flatnonzero(mesh.part == k)
         n = z[part.force : part.force + 2]
         half = mesh.share[elements] * extent / 2.0

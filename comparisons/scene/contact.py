@@ -52,8 +52,6 @@ class PinSpec:
         exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
         if self.displacement is not None and self.points[0] == self.points[1]:
             raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
-        if not all(math.isfinite(value) for point in self.points for value in point):
-            raise FieldError("displacement", self.displacement, "must end at a finite point")
 
     @property
     def points(self) -> tuple[Point, ...]:

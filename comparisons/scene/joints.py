@@ -18,8 +18,10 @@ def check_joints(scene: Scene) -> None:
     _check_apart(scene)
     _check_one_support(scene)
     touched = {name for contact in scene.contacts for name in (contact.beam, contact.node.split(".")[0])}
+    numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
     for structure in structures(scene):
-        _check_held(scene, structure, touched)
+        key = f"beam[{numbers[structure[0].name]}].clamped"
+        _check_held(scene, structure, touched, key)
 
 
 def structures(scene: Scene) -> list[list[BeamSpec]]:
@@ -118,16 +120,16 @@ def _check_one_support(scene: Scene) -> None:
         held[place] = support.node
 
 
-def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str]) -> None:
-    beam = structure[0]
-    supported = any(scene.supports_of(member.name) for member in structure)
-    if not supported:
-        rule = "is free: clamp it, give it a [[support]] or join it to a beam that has one"
-    elif touched.isdisjoint(member.name for member in structure) and not _rigid(scene, structure):
-        rule = "can move without strain: its supports must hold x, y and the rotation"
-    else:
-        return
-    raise FieldError(f"beam[{scene.beams.index(beam)}].clamped", beam.clamped, f'beam "{beam.name}" {rule}')
+def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str], key: str) -> None:
+    beam, names = structure[0], [member.name for member in structure]
+    if not any(map(scene.supports_of, names)):
+        rule = (
+            f'beam "{beam.name}" is free: clamp it, give it a [[support]] or join it to a beam that has one'
+        )
+        raise FieldError(key, beam.clamped, rule)
+    if touched.isdisjoint(names) and not _rigid(scene, structure):
+        rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
+        raise FieldError(key, beam.clamped, rule)
 
 
 def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:

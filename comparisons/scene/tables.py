@@ -1,13 +1,12 @@
 """Input files of TOML tables: read them, check their keys, and say in one line what is wrong."""
 
 import difflib
-import os
 import re
-import stat
 import tomllib
 from collections.abc import Iterable
 from typing import Any
 
+from comparisons.files import read_regular
 from comparisons.scene.rules import MISSING, FieldError
 
 LARGEST_FILE = 16_000_000
@@ -37,16 +36,7 @@ def read_text(path: str, absent: str, kind: type[InputError]) -> str:
         Of the given kind; it says `absent` where there is no such file.
     """
     try:
-        # without waiting for the other end of a pipe
-        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise kind(path, "must be a regular file")
-            data = file.read(LARGEST_FILE + 1)
-        if len(data) > LARGEST_FILE:
-            raise kind(path, f"must have at most {LARGEST_FILE} bytes")
-        return data.decode("utf-8")
-    except InputError:
-        raise
+        return read_regular(path, LARGEST_FILE).decode("utf-8")
     except FileNotFoundError:
         raise kind(path, absent) from None
     except UnicodeDecodeError as error:

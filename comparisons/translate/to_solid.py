@@ -28,14 +28,16 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     ModelError
         If the scene is another one.
     """
-    from fem_reference import Contact, Pin, SolidProblem
+    from fem_reference import Contact, EndLoad, Pin, SolidProblem
 
-    if scene.loads:
-        raise ModelError(f'the solid model has no dead loads, the scene loads "{scene.loads[0].node}"')
-    if not scene.pins:
-        raise ModelError("the solid model has a pin that moves, the scene has none")
+    if not scene.pins and not scene.loads:
+        raise ModelError("the solid model has a pin that moves or a dead load, the scene has none")
+    for load in scene.loads:
+        if load.moment:
+            raise ModelError(f'the solid model has no dead moments, the scene loads "{load.node}"')
     return SolidProblem(
         strips=tuple(_strip(beam, _clamp(scene, beam), mesh) for beam in scene.beams),
+        loads=tuple(EndLoad(strip=load.beam, force=load.force) for load in scene.loads),
         pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
             Contact(

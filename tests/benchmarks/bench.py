@@ -223,7 +223,7 @@ def assembly(gates: list[Gate], times: dict[str, float]) -> None:
         def bilinear(basis: Any = basis, u: Any = u, lam: float = lam, mu: float = mu) -> None:
             forms.tangent_and_residual(basis, u.ravel(), lam, mu, 0.02)
 
-        def factorise(K: Any = K, ordering: str = body.ordering) -> None:
+        def factorise(K: Any = K, ordering: str = "NATURAL" if mesh[1] < 8 else "MMD_AT_PLUS_A") -> None:
             splu(K, permc_spec=ordering)
 
         ours, theirs, factor = seconds(batched, bilinear, factorise, repeats=repeats)

@@ -19,9 +19,9 @@ def budget(request: pytest.FixtureRequest) -> Budget:
 
 
 def test_parts_sum_to_the_difference(budget: Budget) -> None:
-    """Bar 20 %; measured 1.2 % of the arc position at t = .75, where large parts cancel, .6 % elsewhere."""
+    """Bar 20 %; measured 1.4 % of the arc position at t = .75, where large parts cancel, .6 % elsewhere."""
     for quantity in QUANTITIES:
-        assert np.all(np.abs(budget.rest(quantity)) < 0.05), quantity
+        assert np.all(np.abs(budget.rest(quantity)) < 0.015), quantity
 
 
 def test_the_material_law_is_the_largest_part_of_the_force(budget: Budget) -> None:

@@ -4,13 +4,19 @@ import csv
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from comparisons import compare as compared
+from comparisons import models
 from comparisons.cli import main
 from comparisons.compare import PAPER, RUNS, compare
-from comparisons.options import ModelError
-from comparisons.scene import load_scene, read_scene, to_toml
+from comparisons.metrics import errors
+from comparisons.options import ModelError, Options
+from comparisons.response import Response
+from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from comparisons.translate import to_rod
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 FILES = {
@@ -83,3 +89,37 @@ def test_without_the_reference_nothing_is_computed(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="have one support"):
         compare(replace(KS, beams=(both,)), tmp_path / "out", print)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("other", [False, True])
+def test_models_on_different_branches_end_with_status_3(
+    other: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beams bent to the other side under the same force."""
+    scene = tmp_path / "short.toml"
+    scene.write_text(to_toml(replace(KS, load_parameters=2)))
+
+    def answer(scene: Scene, model: str, *more: Any) -> Response:
+        response = models.solve(scene, model, *more)
+        if model != "tsm" or not other:
+            return response
+        support = response.supports["cantilever"]
+        return replace(response, supports={"cantilever": replace(support, moment=-support.moment)})
+
+    monkeypatch.setattr(compared, "RUNS", (compared.MIXED, compared.ROD))
+    monkeypatch.setattr(compared, "solve", answer)
+    monkeypatch.setattr(compared, "_write_picture", lambda *_: [])
+    status = main(["compare", str(scene), "--out", str(tmp_path / "out"), "--quiet"])
+    line = "crossval: TSM mixed, 20 elements: OTHER_BRANCH: ends in another equilibrium than the exact rod\n"
+    assert (status, line in capsys.readouterr().err) == ((3, True) if other else (0, False))
+
+
+@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face", "ks-tied-tip"])
+def test_discretisation_alone_is_no_other_branch(name: str) -> None:
+    """The coarsest beams are far from the limit: a twentieth of it."""
+    scene = replace(load_scene(name), load_parameters=20)
+    rod = to_rod(scene)
+    pair = None if rod.contact is None else rod.contact.pair
+    coarse = models.solve(scene, "tsm", Options(element="timoshenko", elements=10))
+    found = errors(coarse, models.solve(scene, "rod"), pair=pair, beam=rod.beam.name, length=rod.beam.length)
+    assert max(found.contact_force, found.clamp_moment, found.tip) < compared.APART / 20

@@ -192,6 +192,40 @@ def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> No
     assert end == (2, "crossval: output: No space left on device\n")
 
 
+@pytest.mark.parametrize(
+    ("closed", "end"),
+    [
+        (">&-", (2, "", "crossval: output: standard output is closed\n")),
+        ("2>&-", (0, "ks", "")),
+        (">&- 2>&-", (2, "", "")),
+    ],
+)
+def test_closed_streams(closed: str, end: tuple[int, str, str], tmp_path: Path) -> None:
+    """Nothing is computed for nobody; and no file gets the number of the closed stream."""
+    found = subprocess.run(
+        [
+            "/bin/sh",
+            "-c",
+            f'exec "$@" {closed}',
+            "sh",
+            sys.executable,
+            "-c",
+            COMMAND,
+            *SOLVE,
+            "--json",
+            "a.json",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env=HERE,
+        check=False,
+        timeout=300,
+    )
+    assert (found.returncode, found.stdout[:2], found.stderr) == end
+    assert (tmp_path / "a.json").exists() is (end[0] == 0)
+
+
 @pytest.mark.parametrize("options", [["--json", "/proc/a.json"], ["--vtk", "/proc/vtk"]])
 def test_no_permission_to_write(options: list[str]) -> None:
     """Not even the superuser writes there."""

@@ -86,8 +86,15 @@ def test_solid_refuses_joints_and_loads() -> None:
     lower = replace(KS.beams[0], name="lower", start=(1.0, 0.0), end=(2.0, 0.0), clamped=("end",))
     with pytest.raises(ModelError, match="no joints"):
         to_solid(replace(KS, beams=(*KS.beams, lower)))
-    with pytest.raises(ModelError, match="no dead loads"):
+    with pytest.raises(ModelError, match=r'no dead moments, the scene loads "cantilever\.end"'):
         to_solid(replace(KS, loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)))
+
+
+def test_solid_takes_dead_forces_on_free_ends() -> None:
+    load = LoadSpec(beam="cantilever", end="end", force=(1.0, -2.0))
+    for scene in (replace(KS, loads=(load,)), replace(KS, pins=(), contacts=(), loads=(load,))):
+        (found,) = to_solid(scene).loads
+        assert (found.strip, found.force) == ("cantilever", (1.0, -2.0))
 
 
 def test_unknown_element_is_named() -> None:

@@ -173,7 +173,7 @@ def short(points, quads, lines):
         ),
         (lambda p, q, lines: (p * [1, 3, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
         (
-            lambda p, q, lines: (p + [0, 0.006, 0], q, lines),
+            lambda p, q, lines: (p + np.array([0, 0.006, 0]), q, lines),
             r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004',
         ),
         (lambda p, q, lines: (p * [1, 0.5, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),

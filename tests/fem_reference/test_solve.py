@@ -276,3 +276,22 @@ def test_full_clamp_is_stiffer(problem):
         for clamp in ("full", "rod")
     )
     assert 1e-4 < full / rod - 1 < 3e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["axis", "round pin", "tip load"])
+def test_the_last_answer_does_not_depend_on_the_number_of_load_parameters(problem, strip, scene):
+    """With 1, 2, 5, 8, 12, 40 and 200 of them the same force and arc position at t = 1, within 1e-6."""
+    made = {
+        "axis": lambda: problem(mesh=(20, 1)),
+        "round pin": lambda: problem(mesh=(20, 1), radius=0.05, contact={"surface": "face"}),
+        "tip load": lambda: fr.SolidProblem(
+            strips=(strip(mesh=(20, 1)),), loads=(fr.EndLoad(strip=STRIP, force=(-1.5e-3, 2e-5)),)
+        ),
+    }[scene]()
+    found = []
+    for n in (1, 2, 5, 8, 12, 40, 200):
+        result = fr.solve(made, loads(n))
+        contacts = [(c.force[-1], c.arc_position[-1]) for c in result.contacts.values()]
+        found.append(np.concatenate([result.tips[STRIP][-1], *contacts]))
+    np.testing.assert_allclose(found, np.broadcast_to(found[0], np.shape(found)), rtol=1e-6, atol=1e-7)

@@ -17,6 +17,7 @@ LARGEST = 100_000
 
 numbers = st.one_of(
     st.sampled_from([0.0, -0.0, -1.0, 1e-320, 5e-324, 1e-160, 1e160, 1.7e308, -1.7e308, 1.0, 0.5, 1e-9, 1e9]),
+    st.sampled_from([1e155, -1e308, 1e308, 1e50, 1.1e50, -1e49, 1e-50, 0.9e-50, 1e-100, 1e100, 1e25, 1e-25]),
     st.sampled_from([math.nan, math.inf, -math.inf]),
     st.floats(allow_nan=True, allow_infinity=True),
     st.sampled_from([0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)]),
@@ -81,6 +82,11 @@ KEYS = [
     "units",
     "youngs_modulus",
 ]
+EXTREME_KEYS = {
+    *("start", "end", "path", "displacement", "force", "moment", "rotation", "radius"),
+    *("youngs_modulus", "shear_modulus", "width", "height", "area", "second_moment", "shear_area"),
+}
+"""Keys of numbers whose size is tried out."""
 
 
 def quoted(key: str) -> str:
@@ -166,6 +172,44 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
 
 
 @st.composite
+def displaced(draw: st.DrawFn) -> str:
+    """A valid scene with a coordinate, a modulus or a force moved to where floating-point numbers end."""
+    scene = copy.deepcopy(draw(valid_scenes))
+    table = draw(st.sampled_from(_tables(scene)))
+    numeric = [key for key in table if key in EXTREME_KEYS and isinstance(table[key], list | float | int)]
+    if numeric:
+        key = draw(st.sampled_from(numeric))
+        size = draw(st.sampled_from([-1, 1])) * 10.0 ** draw(st.integers(-323, 308))
+        if isinstance(table[key], list):
+            point = table[key][0] if isinstance(table[key][0], list) else table[key]
+            point[draw(st.integers(0, len(point) - 1))] = size
+        else:
+            table[key] = size
+    return toml_text(scene)
+
+
+@st.composite
+def deepened(draw: st.DrawFn) -> str:
+    """A valid scene with a key, a header or a list far deeper than any parser recurses."""
+    text = toml_text(draw(valid_scenes))
+    depth = draw(st.sampled_from([40, 60, 500, 20_000]))
+    part = draw(st.sampled_from(["a.", '"".', "'b' . ", "a-b ."]))
+    deep = draw(
+        st.sampled_from(
+            [
+                f"{part * depth}a = 1",
+                f"[{part * depth}a]",
+                f"x = {'[' * depth}{']' * depth}",
+                f"x = {'{a = ' * depth}1{'}' * depth}",
+            ]
+        )
+    )
+    lines = text.splitlines()
+    lines.insert(draw(st.integers(0, len(lines))), deep)
+    return "\n".join(lines) + "\n"
+
+
+@st.composite
 def garbled(draw: st.DrawFn) -> bytes:
     """The bytes of a valid scene after deletions, repetitions and insertions anywhere."""
     data = toml_text(draw(valid_scenes)).encode()
@@ -181,6 +225,8 @@ broken_files = st.one_of(
     mutated().map(str.encode),
     mutated().map(str.encode),
     mutated().map(str.encode),
+    displaced().map(str.encode),
+    deepened().map(str.encode),
     garbled(),
     st.binary(max_size=200),
 )

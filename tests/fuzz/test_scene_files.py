@@ -143,25 +143,31 @@ def test_many_answers_are_the_rods(tmp_path: Path) -> None:
     assert compared(200, tmp_path) > 200
 
 
-def check_stack(scene: Tables, folder: Path) -> int:
-    """Compare exact elements with mixed ones, whose error refinement tells, in contact between beams; return 1 if all complete."""
+def check_stack(scene: Tables, folder: Path) -> bool:
+    """Compare exact elements with mixed ones in contact between beams; return whether all complete and something is pressed.
+
+    The fine ones are off by less than what the refinement changes, but for half the square of the strain, as under a pin.
+    """
     file = folder / "scene.toml"
     found = answers(scene, file, *BEAMS)
     if not found or any(data["status"] != "COMPLETED" for data in found):
-        return 0
+        return False
     beams = load_scene(str(file)).beams
-    weakest = min(beam.EI / beam.length**2 for beam in beams)
+    least = 1e-3 * min(beam.EI / beam.length**2 for beam in beams)
     exact, coarse, fine = (
         np.array([pair["force"] for pair in data["contacts"].values()], dtype=float) for data in found
     )
-    scale = max(np.abs(exact).max(initial=0.0), 1e-3 * weakest)
+    largest = float(np.abs(exact).max(initial=0.0))
+    strain = largest / min(min(beam.GA, beam.EA) for beam in beams)
     refined = np.abs(fine - coarse).max(initial=0.0)
-    assert np.abs(fine - exact).max(initial=0.0) <= 1e-2 * scale + 2 * refined
-    return 1
+    allowed = (EXACT + strain**2 / 2) * max(largest, least) + refined
+    assert np.abs(fine - exact).max(initial=0.0) <= allowed
+    return largest > least
 
 
 @pytest.mark.slow
 def test_beams_in_contact_agree(tmp_path: Path) -> None:
+    """Most of what is drawn presses nothing, and does not count."""
     total = 0
 
     @settings(DRAWN, max_examples=60)
@@ -172,4 +178,4 @@ def test_beams_in_contact_agree(tmp_path: Path) -> None:
         total += check_stack(scene, tmp_path)
 
     run()
-    assert total > 20
+    assert total > 5

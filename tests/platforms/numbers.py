@@ -1,5 +1,6 @@
 """Essential numbers of the main scenes against those stored: ``python -m tests.platforms.numbers [--write]``.
 
+They are this program's own, stored at some version: a difference shows that a platform or a change moved them, agreement does not show that they are right.
 NumPy, SciPy and scikit-fem suffice.
 """
 

@@ -79,7 +79,7 @@ def offsets():
 @pytest.mark.slow
 @pytest.mark.parametrize("section", SECTIONS)
 def test_no_critical_area(section):
-    """Positions around every node, ten depths each, 10,000 in all: the same tolerance everywhere, no cut-back."""
+    """Places around every node, ten depths each: the same tolerance everywhere, no cut-back."""
     length = SECTIONS[section][1]
     elements, count = 11, 0
     for node in range(1, elements):

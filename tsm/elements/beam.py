@@ -9,7 +9,8 @@ difference h (constant curvature), ``theta_i = m + h, theta_j = m - h``, the ene
 
 The paper's element has these three coefficients only. The others carry the Reissner rod's strain measures
 ``(1 + u') cos theta + w' sin theta - 1`` and ``w' cos theta - (1 + u') sin theta`` to fourth order in rotation and
-strain: ``em, eh`` are the length taken up by bending, ``integral (w'^2 - gamma^2)/2`` ("bow"); ``cm, ch`` the normal force's
+shear strain, e counted as of second order: ``em, eh`` are the length taken up by bending, ``integral (w'^2 - gamma^2)/2`` ("bow"), and em
+besides ``12 EI Phi/(l0 EA (1 + Phi)^2)``; ``cm, ch`` the normal force's
 share in shear; the rest what a finite shear strain gamma adds. Without them the element converges with second
 order only, or, with the bow alone, to a limit that is off by gamma^2.
 

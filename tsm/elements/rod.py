@@ -11,7 +11,7 @@ divided by the length h, which may be zero, or negative.
 The equations inside are eliminated. Which data of the ends are held meanwhile is a choice: with the start's angle and moment the
 inner problem is an initial value problem, regular under compression but exponentially ill-conditioned under strong tension; with
 both angles a boundary value problem, regular under tension but singular at ``-N h^2/EI = pi^2``. Half way between, with
-``m_i h/EI + (phi_j - phi_i)`` held, its determinant is ``(1 + sinc k)/2``, ``k^2 = -N h^2/EI``: regular at every axial force.
+``m_i h/EI + (phi_j - phi_i)`` held, its determinant is ``(1 + sinc k)/2``, ``k^2 = -N (1 + g N) h^2/EI`` (straight rod, Q = 0): regular at every axial force.
 """
 
 from __future__ import annotations

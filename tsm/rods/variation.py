@@ -29,6 +29,7 @@ from tsm.state import State
 _LONGEST = 7.0
 """Largest ``- f_phi h^2/EI`` of a segment that is not divided; its first mode lies at ``pi^2``."""
 _PIECE = math.pi / 2
+_MOST = 300
 """Root of the same in the pieces of a divided segment."""
 _SHORT = 1e-4
 """Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by a length near zero or negative."""
@@ -96,6 +97,21 @@ class _Pieces(NamedTuple):
     def divided(self) -> bool:
         """Whether any segment is."""
         return len(self.short) > len(self.counts)
+
+
+def modes_at_least(balance: RodBalance) -> int:
+    """Modes of the segments between held angles, by Sturm's comparison with the least of the falling coefficient; 0 where few pieces do.
+
+    A segment pressed so hard that it takes more than `_MOST` pieces has this many negative eigenvalues at least, less those that the
+    arrival of its end takes away.
+    """
+    at, of = balance.entry.at, balance.entry.of
+    length, bend = at.length[:, 0], at.flexibility.bend[:, 0]
+    falling = (of.gq * of.q - of.N * of.turn) * (length * length * bend)[:, None]
+    most = np.sqrt(np.maximum(falling.max(axis=1), 0.0)) / _PIECE
+    if not most.sum() > _MOST:
+        return 0
+    return int((np.sqrt(np.maximum(falling.min(axis=1), 0.0)) / math.pi).sum())
 
 
 def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:

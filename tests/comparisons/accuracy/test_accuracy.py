@@ -131,12 +131,10 @@ def test_what_a_scene_requires():
     assert solid.model == "solid"
     assert "stocky, h/L = 0.2" in solid.decisions[0]
     assert solid.theory is None
-    joint = replace(
-        stocky, pins=(), contacts=(), loads=(LoadSpec(beam=beam.name, end="end", force=(0.0, 1e-5)),)
-    )
+    joint = replace(stocky, pins=(), contacts=(), loads=(LoadSpec(beam=beam.name, end="end", moment=1e-5),))
     loaded = solve_to(joint, 1e-2)
     assert loaded.model == "tsm"
-    assert "but the solid model has no dead loads" in loaded.decisions[0]
+    assert "but the solid model has no dead moments" in loaded.decisions[0]
 
 
 def test_stress_is_the_solids():

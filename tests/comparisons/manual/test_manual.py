@@ -250,7 +250,7 @@ def test_the_whole_manual_passes(tmp_path: Path):
     manual = write_manual(tmp_path, lambda _: None)
     wrong = [failure(case, run) for case in manual.cases for run in case.runs if not run.passed]
     assert wrong == []
-    assert len(manual.cases) == len(PROBLEMS) == len({case.name for case in manual.cases}) >= 20
+    assert len(manual.cases) == len(PROBLEMS) == len({case.name for case in manual.cases}) == 28
     assert all(run.reason and run.tolerance <= 0.3 for case in manual.cases for run in case.runs)
     assert {run.model for case in manual.cases for run in case.runs} >= {
         "tsm exact",

@@ -47,7 +47,7 @@ KS = Scene(
 )
 
 
-@pytest.mark.parametrize("t", [0.02, 0.25, 0.5, 0.75, 1.0])
+@pytest.mark.parametrize("t", [0.25, 0.75, 1.0])
 def test_elastica_under_a_pin_to_1e_12(t: float) -> None:
     x, y = KS.pin("pin").position(t)
     truth = elastica_under_pin(x, y)
@@ -65,7 +65,7 @@ def test_elastica_under_a_pin_to_1e_12(t: float) -> None:
     assert exact.index == 0
 
 
-@pytest.mark.parametrize("load", [1.0, 2.0, 5.0, 10.0, 100.0])
+@pytest.mark.parametrize("load", [1.0, 10.0, 100.0])
 def test_elastica_under_a_dead_load_to_1e_12(load: float) -> None:
     scene = Scene(
         name="dead", load_parameters=1, beams=(unit_beam(),), loads=(LoadSpec(beam="beam", end="end", force=(0.0, load)),)
@@ -89,7 +89,7 @@ def test_roll_up_by_a_moment_to_1e_12() -> None:
     assert exact.strain_energy == pytest.approx(moment**2 / 2.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
+@pytest.mark.parametrize("name", ["ks-face", pytest.param("ks-cantilever", marks=pytest.mark.slow)])
 def test_rod_under_a_pin_to_1e_11(name: str) -> None:
     scene = replace(load_scene(name), load_parameters=10)
     beams = solve(scene, "tsm")
@@ -125,14 +125,15 @@ def test_tied_tip_to_1e_11() -> None:
         assert exact.reactions["cantilever.start"][2] == pytest.approx(truth.clamp_moment[k + 1], rel=1e-11)
 
 
+@pytest.mark.slow
 def test_coupled_rods_to_1e_11() -> None:
-    scene = replace(load_scene("double-beam"), load_parameters=20)
+    scene = replace(load_scene("double-beam"), load_parameters=10)
     beams, beam = solve(scene, "tsm"), scene.beams[0]
     depth = 0.76 * beams.load_parameter
     rod = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": 1.0}
     both = np.flatnonzero((depth > 0.16) & (depth < 0.53))
     truth = coupled_rods(depth[both], pin_x=0.8, spacing=0.2, **rod)
-    assert len(both) > 5
+    assert len(both) > 3
     for row, k in enumerate(both):
         exact = found(scene, given_by(beams, scene, int(k)))
         # positive there from x to y, depth downwards
@@ -148,7 +149,7 @@ def test_coupled_rods_to_1e_11() -> None:
         )
 
 
-@pytest.mark.parametrize("deflection", [0.05, 0.15, 0.3, 0.5])
+@pytest.mark.parametrize("deflection", [0.15, 0.3, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
     """Williams' toggle: its load is a maximum near .235, a minimum near .39, unstable between."""
     span, rise, EA, EI = 12.94328, 0.386, 1.885e6, 9274.0
@@ -156,7 +157,7 @@ def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
     chain = Chain(
         joints=((0.0, 0.0), apex, (2.0 * span, 0.0)), loaded=1, clamped=True, EA=EA, GA=1e3 * EA, EI=EI
     )
-    load = load_path(chain, np.linspace(0.0, deflection, 21)[1:])[-1]
+    load = load_path(chain, np.linspace(0.0, deflection, 11)[1:])[-1]
     section = {
         "youngs_modulus": 1.0,
         "shear_modulus": 1.0,

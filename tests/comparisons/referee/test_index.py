@@ -13,7 +13,7 @@ from comparisons.exact.elastica import fold_angle
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.referee import Equilibrium, Found, Given, equilibrium, given_by
-from comparisons.referee.equations import assemble, mesh_of, properties
+from comparisons.referee.equations import assemble, moved, properties
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 
 GA, EA = 50.0, 400.0
@@ -117,8 +117,16 @@ def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, Given]:
     return scene, given
 
 
-@pytest.mark.parametrize("offset", [0.0, 1e-6])
-@pytest.mark.parametrize(("beyond", "index"), [(-0.02, 0), (-0.005, 0), (0.005, 1), (0.02, 1)])
+@pytest.mark.parametrize("offset", [0.0, pytest.param(1e-6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("beyond", "index"),
+    [
+        pytest.param(-0.02, 0, marks=pytest.mark.slow),
+        (-0.005, 0),
+        (0.005, 1),
+        pytest.param(0.02, 1, marks=pytest.mark.slow),
+    ],
+)
 def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(beyond: float, index: int, offset: float) -> None:
     exact = equilibrium(*elastica(fold_angle() + beyond, offset))
     assert exact.found is Found.FOUND
@@ -163,8 +171,7 @@ def test_ten_contacts_in_three_tenths_of_a_second() -> None:
         assert abs(here.drag) < 1e-10 * here.push
 
 
-@pytest.mark.parametrize("force", [1e-9, 1e9])
-@pytest.mark.parametrize("length", [1e-6, 1e6])
+@pytest.mark.parametrize(("length", "force"), [(1e-6, 1e9), (1e6, 1e-9)])
 def test_units_change_nothing(length: float, force: float) -> None:
     scene = replace(load_scene("ks-face"), load_parameters=2)
     plain = equilibrium(scene, given := given_by(solve(scene, "rod"), scene, -1))
@@ -196,7 +203,7 @@ def test_units_change_nothing(length: float, force: float) -> None:
     assert found.index == plain.index
 
 
-@pytest.mark.parametrize("name", ["ks-face", "double-beam"])
+@pytest.mark.parametrize("name", ["ks-face", pytest.param("double-beam", marks=pytest.mark.slow)])
 def test_finer_elements_change_nothing(name: str) -> None:
     """The found unknowns solve the equations on halved elements as well, to round-off."""
     scene = replace(load_scene(name), load_parameters=3)
@@ -212,16 +219,14 @@ def test_finer_elements_change_nothing(name: str) -> None:
     np.testing.assert_allclose(again.z[:n], old.z[:n], rtol=0.0, atol=1e-13 * np.abs(old.z[:n]).max())
 
 
-@pytest.mark.parametrize("name", ["ks-face", "double-beam"])
+@pytest.mark.parametrize("name", ["ks-face", pytest.param("double-beam", marks=pytest.mark.slow)])
 def test_the_hessian_is_that_of_the_gradient(name: str) -> None:
     """By central differences, away from equilibrium, the condensed bubbles following."""
     scene = replace(load_scene(name), load_parameters=3)
     old = equilibrium(scene, given_by(solve(scene, "tsm"), scene, 1)).solution
     random = np.random.default_rng(5)
     made = properties(old.layout, old.mesh)
-    mesh = mesh_of(
-        old.layout, [np.append(old.mesh.start[old.mesh.part == k], 1.0) for k in range(len(old.layout.parts))]
-    )
+    mesh = moved(old.layout, old.mesh)
     z = old.z + 0.01 * random.standard_normal(len(old.z))
 
     def relaxed(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

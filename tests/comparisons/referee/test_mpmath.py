@@ -154,8 +154,7 @@ def moved_tip() -> Scene:
     "make",
     [
         strong_shear,
-        moved_tip,
-        *(pytest.param(make, marks=pytest.mark.slow) for make in (under_a_face, two_pins)),
+        *(pytest.param(make, marks=pytest.mark.slow) for make in (moved_tip, under_a_face, two_pins)),
     ],
 )
 def test_thirty_digits(make: Callable[[], Scene]) -> None:

@@ -140,6 +140,38 @@ def test_errata_table_is_true(formulation):
         assert verdict == judged(value, printed), entry
 
 
+def test_contact_stiffness_near_an_end():
+    """Timoshenko's ``3 EI/(b (b^2 + 3 Psi))`` while b and sqrt(Psi) are small: G A_e/b far below ``sqrt(3 Psi)``, 3 EI/b^3 beyond."""
+    K, _ = in_symbols(chord_contact.timoshenko, Psi)
+    s = sp.Symbol("s", positive=True)
+    near = sp.limit((K[2, 2] * s**3).subs({b: s * b, Psi: s * s * Psi}, simultaneous=True), s, 0)
+    law = 3 * EI / (b * (b**2 + 3 * Psi))
+    assert sp.simplify(near - law) == 0
+    assert sp.limit(law * b, b, 0) == EI / Psi
+    assert sp.limit(law * b**3, b, sp.oo) == 3 * EI
+
+
+@pytest.mark.parametrize(("formulation", "at_i", "at_j"), [("(5)-(6)", -2, -2), ("(7)-(8)", -1, -3)])
+def test_growth_of_round_off_in_the_force_equation_alone(formulation, at_i, at_j):
+    """Deformations of the element's own basic system, each off by its last bit: powers of the distance before ends i and j."""
+    K, flexibility = derived(formulation), derived(formulation).inv()
+    forces = sp.Matrix([1, sp.Rational(-7, 10), sp.Rational(3, 10)])
+    contact = 2 if formulation == "(5)-(6)" else 1
+
+    def grown(near, far):
+        values = {near: sp.Float("1e-4", 60), far: 1 - sp.Float("1e-4", 60), EI: 1}
+        sizes = []
+        for part in (1, sp.Rational(1, 10)):
+            at = {**values, near: part * values[near], far: 1 - part * values[near]}
+            v = flexibility.subs(at) * forces
+            row = K.subs(at).row(contact)
+            sizes.append(sum(abs(row[k] * v[k]) for k in range(3)))
+        return float(sp.log(sizes[1] / sizes[0], 10))
+
+    assert grown(a, b) == pytest.approx(-at_i, abs=0.05)
+    assert grown(b, a) == pytest.approx(-at_j, abs=0.05)
+
+
 def test_verdicts_can_be_told_apart():
     right = EI / a
     assert judged(right, EI / a) == "same"

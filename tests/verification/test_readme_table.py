@@ -1,0 +1,60 @@
+"""The README's table of errors is what the models leave, to the digits stated."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
+from comparisons.metrics import errors
+from comparisons.models import solve
+from comparisons.scene import load_scene
+
+README = Path(__file__).parents[2] / "README.md"
+COLUMNS = ("contact_force", "arc_position", "clamp_moment", "tip")
+ROWS = {
+    "TSM, element of the paper (`timoshenko`), 10 elements": PAPER[0],
+    "20 elements": PAPER[1],
+    "50 elements": PAPER[2],
+    "TSM, contact force as unknown (`mixed`), 10 elements": RUNS[3],
+    "20 elements, mixed": MIXED,
+    "TSM, the rod's own equations (`exact`), **1 element**": RUNS[5],
+    "solid, 50 x 2 biquadratic, St. Venant-Kirchhoff": SOLID,
+    "elastica, closed form (no stretch, no shear)": ELASTICA,
+}
+"""By the first cell; the second "20 elements" is that of `mixed`."""
+
+
+def stated() -> dict[str, list[float]]:
+    """Return unknowns and the four errors of every row."""
+    table = README.read_text().split("| model | unknowns |")[1].split("\n\n")[0]
+    found: dict[str, list[float]] = {}
+    for line in table.splitlines()[2:]:
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        found[f"{name}, mixed" if name in found else name] = [float(cell) for cell in cells[:5]]
+    return found
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_the_table_of_errors(name: str) -> None:
+    """Within half a unit of the last digit stated; what the exact elements leave is round-off, and bounded only."""
+    numbers, scene, run = stated(), load_scene("ks-cantilever"), ROWS[name]
+    assert numbers.keys() == ROWS.keys()
+    response = solve(scene, run.model, run.options)
+    found = errors(
+        response, solve(scene, ROD.model), pair=scene.contacts[0].pair, beam=scene.beams[0].name, length=1.0
+    )
+    unknowns, *limits = numbers[name]
+    assert response.unknowns == unknowns
+    for column, limit in zip(COLUMNS, limits, strict=True):
+        value = getattr(found, column)
+        if run.options.element == "exact":
+            assert value <= 1.5 * limit, column
+        else:
+            assert value == pytest.approx(limit, rel=0.5 / digits(limit)), column
+
+
+def digits(limit: float) -> float:
+    """Return the mantissa of a number in units of its last stated digit: 13 for 1.3e-2, 9 for 9e-7."""
+    mantissa = f"{limit:.1e}".split("e")[0]
+    return float(re.sub(r"\.0$", "", mantissa).replace(".", ""))
