@@ -29,6 +29,18 @@ ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": math.inf}
 """Largest distance from the exact equilibrium in forces and places, where it is less than the certificate's own."""
 NOTHING = 1e-3
 """Force below which nothing happens, over EI/L^2: Newton's methods end at 1e-10."""
+BETWEEN = 2e-2
+"""Largest difference between `exact` and `mixed` at the last load parameter: twice what each may be off."""
+NO_NEXT_STEP = (
+    "CUTBACK_FLOOR",
+    "STEP_LIMIT",
+    "SINGULAR_TANGENT",
+    "ITERATION_LIMIT",
+    "NOT_FINITE",
+    "INACCURATE",
+)
+"""Statuses of a step that was not found: which of them depends on the step's length."""
+GAVE_UP = "no next step"
 SAME = 1e-6
 """Largest difference between two answers of one element at the same load parameter."""
 
@@ -47,7 +59,8 @@ class Row:
 
     @property
     def completed(self) -> bool:
-        return self.response is not None and self.response.completed
+        """Whether the model says that it went through."""
+        return self.ended == "COMPLETED"
 
     def line(self) -> str:
         return f"{self.model}, {self.number} load parameters: {self.ended} {self.certificate}"
@@ -91,30 +104,26 @@ def judged(scene: Scene, models: Sequence[str] = ("exact", "mixed"), numbers: Se
         if model != "solid":
             others = [number for number in numbers if number != scene.load_parameters]
             rows += [run(replace(scene, load_parameters=number), model, every=False) for number in others]
-    return Judged(scene=scene, rows=tuple(rows), findings=tuple(_findings(scene, rows)))
+    return Judged(scene=scene, rows=tuple(rows), findings=tuple(findings(scene, rows)))
 
 
 def run(scene: Scene, model: str, *, every: bool = True) -> Row:
     """Solve and certify: every load parameter, or the last one and those beside events."""
     name, options = MODELS[model]
-    number = scene.load_parameters
+    row = Row(model=model, number=scene.load_parameters, ended="refused")
     try:
         with time_limit(LIMIT):
             response = solve(scene, name, options)
-    except ModelError as error:
-        return Row(model=model, number=number, ended="refused", certificate=str(error))
-    except Hang:
-        return Row(model=model, number=number, ended="HANG")
-    except Exception:  # noqa: BLE001 - whatever it is, it is found
-        return Row(model=model, number=number, ended="RAISED", certificate=traceback.format_exc())
-    row = Row(model=model, number=number, ended=response.status, response=response)
-    if not response.completed:
-        return replace(row, certificate=response.message)
-    try:
+        row = replace(row, ended=response.status, certificate=response.message, response=response)
+        if not response.completed:
+            return row
         with time_limit(LIMIT):
-            found = certify(response, scene, at=range(number) if every else None)
+            found = certify(response, scene, at=range(row.number) if every else None)
+    except ModelError as error:
+        return replace(row, certificate=str(error))
     except Hang:
-        return replace(row, ended="HANG", certificate="certificate", response=None)
+        what = "solution" if row.response is None else "certificate"
+        return replace(row, ended="HANG", certificate=what, response=None)
     except Exception:  # noqa: BLE001 - whatever it is, it is found
         return replace(row, ended="RAISED", certificate=traceback.format_exc(), response=None)
     off = max((_off(scene, item) for item in found.judged), default=math.nan)
@@ -149,43 +158,49 @@ def least_force(scene: Scene) -> float:
     return max(bent, 1e3 * np.finfo(float).eps * max(beam.EA for beam in scene.beams))
 
 
-def _findings(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
+def findings(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
+    """Yield what is wrong with the solutions of a scene."""
     for row in rows:
         if row.ended in ("HANG", "RAISED"):
             yield Finding(kind=f"{row.ended} {row.model}", text=row.line())
         elif row.completed and not row.certified:
             yield Finding(kind=f"{row.certificate.partition(':')[0]} {row.model}", text=row.line())
-    good = [row for row in rows if row.completed]
     for model in dict.fromkeys(row.model for row in rows):
-        own = [row for row in rows if row.model == model]
-        first = own[0]
-        for other in own[1:]:
-            if first.ended != other.ended:
-                yield Finding(kind=f"DEPENDS {model}", text=f"{first.line()} | {other.line()}")
-            elif first.completed:
-                off = apart(scene, first, other)
-                if not off <= SAME:
-                    yield Finding(
-                        kind=f"DEPENDS {model}", text=f"{off:.2g} apart: {first.line()} | {other.line()}"
-                    )
-    certified = {row.model: row for row in reversed(good) if row.certified}
-    names = [name for name in ("exact", "mixed") if name in certified]
-    if len(names) == 2:
-        off = apart(scene, *(certified[name] for name in names))
-        if not off <= 2.0 * ALLOWED["mixed"]:
-            yield Finding(
-                kind="BRANCHES",
-                text=f"{off:.2g} apart: " + " | ".join(certified[name].line() for name in names),
-            )
+        first, *others = (row for row in rows if row.model == model)
+        yield from (found for other in others for found in _depends(scene, first, other))
+    certified = {row.model: row for row in reversed(rows) if row.completed and row.certified}
+    if certified.keys() >= {"exact", "mixed"}:
+        both = certified["exact"], certified["mixed"]
+        off = apart(scene, *both)
+        if not off <= BETWEEN:
+            yield Finding(kind="BRANCHES", text=f"{off:.2g} apart: " + " | ".join(row.line() for row in both))
+
+
+def _depends(scene: Scene, first: Row, other: Row) -> Iterator[Finding]:
+    """Yield how an answer depends on the number of load parameters."""
+    lines = f"{first.line()} | {other.line()}"
+    if kind(first.ended) != kind(other.ended):
+        yield Finding(kind=f"DEPENDS {first.model}", text=lines)
+    elif first.completed:
+        off = apart(scene, first, other)
+        if not off <= SAME:
+            yield Finding(kind=f"DEPENDS {first.model}", text=f"{off:.2g} apart: {lines}")
+
+
+def kind(ended: str) -> str:
+    """Return how a solution ended; the ways to find no next step are one."""
+    return GAVE_UP if ended in NO_NEXT_STEP else ended
 
 
 def apart(scene: Scene, one: Row, other: Row) -> float:
     """Return the largest difference of two answers at the last load parameter: tips over the length, forces over the largest."""
     a, b = one.response, other.response
-    assert a is not None and b is not None, "both are completed"
-    found = [0.0]
-    for beam in scene.beams:
-        found.append(float(np.hypot(*(a.tips[beam.name][-1] - b.tips[beam.name][-1]))) / beam.length)
+    assert a is not None, "it is completed"
+    assert b is not None, "it is completed"
+    found = [
+        float(np.hypot(*(a.tips[beam.name][-1] - b.tips[beam.name][-1]))) / beam.length
+        for beam in scene.beams
+    ]
     forces = [np.hypot(*item.force[-1]) for answer in (a, b) for item in answer.supports.values()]
     forces += [item.force[-1] for answer in (a, b) for item in answer.contacts.values()]
     size = max(NOTHING * least_force(scene), *map(float, forces))
