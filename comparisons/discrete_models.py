@@ -69,13 +69,14 @@ def _beam_deformation(scene: Scene, options: Options, result: Any, response: Res
     for item in scene.contacts:
         touching[item.beam].append(response.contacts[item.pair])
     for b, beam in enumerate(scene.beams):
-        stiffness = np.array([beam.EA, np.inf if stiff else beam.GA])
+        stiffness = beam.EA if stiff else min(beam.EA, beam.GA)
         for k in steps:
             turn[b, k] = np.abs(np.diff(result.shape(beam.name, k)[:, 2])).max()
-            strain[b, k] = np.abs(result.section_forces(beam.name, k)[..., :2] / stiffness).max()
+            forces = result.section_forces(beam.name, k)
+            strain[b, k] = np.hypot(forces[..., 0], forces[..., 1]).max() / stiffness
         for contact in touching[beam.name]:
             turn[b] = np.maximum(turn[b], contact.force * _arms(result, beam.name, contact) / beam.EI)
-            strain[b] = np.maximum(strain[b], contact.force / stiffness.min())
+            strain[b] = np.maximum(strain[b], contact.force / stiffness)
     return Deformation(
         turn=turn.max(axis=0), strain=strain.max(axis=0), bearable=2.0 if element == "mixed" else 1.0
     )

@@ -19,8 +19,8 @@ CLOSED = 1e-9
 """Largest gap of a closed contact, relative to the length: round-off of 2000 elements is below."""
 PENETRATION = 1e-2
 """Largest penetration of a penalty model, relative to the length."""
-STRAIN = 0.6
-"""Strain beyond which no element is believed that takes strains for small: the forces of `mixed` are off by .3 of its third power."""
+STRAIN = 0.1
+"""Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
 MOTION = 1e-10
 """Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
 SAMPLES = 101

@@ -13,7 +13,7 @@ hence force and symmetric tangent on both strips:
     d2g/du2 = -s (k W^T t t^T W - rho (W^T t n^T W' + W'^T n t^T W) - d W'^T n n^T W') / h.
 
 The second holds at ``d = 0`` too: nothing is divided by the gap. Eliminating lam as well leaves the tangent
-``eps (W^T W - c c^T / (r' . r' + (r - x_c) . r''))`` of the penalty alone, for R = 0, ``c = W^T r' + W'^T (r - x_c)``; keeping lam spares
+``eps (W^T W - c c^T / (r' . r' + (r - x_c) . r''))`` of the penalty alone, ``c = W^T r' + W'^T (r - x_c)``; keeping lam spares
 Newton's method the force ``eps g`` of an iterate that is not yet in place, and the round-off of a stiff eps. An
 augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term, lam_0 being the force found before.
 """

@@ -79,25 +79,38 @@ def _negatives_sparse(symmetric: Symmetric) -> int | None:
     inside = scale @ (lower + dia_array((band[1:], -np.arange(1, len(band))), shape=(count, count)).T) @ scale
     beside = coo_array(right * units[:, None])
     whole = block_array([[inside, beside], [beside.T, coo_array(corner)]] if len(corner) else [[inside]])
+    fit = _equilibrating(np.asarray(abs(whole).max(axis=0).todense()).ravel())
+    whole = (
+        dia_array((fit[None], [0]), shape=whole.shape)
+        @ whole
+        @ dia_array((fit[None], [0]), shape=whole.shape)
+    )
     options = {"SymmetricMode": True, "Equil": False}
     try:
         lu = splu(whole.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     except RuntimeError:
         return None
     pivots = lu.U.diagonal()
-    smallest = _EPS * np.abs(whole.diagonal()).max()
-    if (lu.perm_r != lu.perm_c).any() or not (np.abs(pivots) > smallest).all():
+    if (lu.perm_r != lu.perm_c).any() or not (np.abs(pivots) > _EPS).all():
         return None
     return int(np.count_nonzero(pivots < 0))
 
 
+def _equilibrating(largest: Array) -> Array:
+    """Factors of rows and columns that bring their largest entries near one; the number of negative eigenvalues stays (Sylvester)."""
+    with np.errstate(all="ignore"):
+        factor = 1 / np.sqrt(largest)
+    return np.where(np.isfinite(factor), factor, 1.0)
+
+
 def _negatives_dense(matrix: Array) -> int | None:
     """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
-    factors, exchanges, _ = dsytrf(matrix, lower=1)
+    lower = np.abs(np.tril(matrix))
+    scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
+    factors, exchanges, _ = dsytrf(matrix * scale * scale[:, None], lower=1)
     single = exchanges > 0
     pivots = factors.diagonal()[single]
-    smallest = _EPS * np.abs(matrix.diagonal()).max(initial=0.0)
-    if not np.isfinite(factors).all() or (np.abs(pivots) <= smallest).any():
+    if not np.isfinite(factors).all() or (np.abs(pivots) <= _EPS).any():
         return None
     # the pivots of two rows are indefinite
     return int(np.count_nonzero(pivots < 0)) + int(np.count_nonzero(~single)) // 2

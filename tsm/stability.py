@@ -19,7 +19,7 @@ import numpy as np
 from tsm.elements.properties import Array
 from tsm.inertia import Symmetric, negatives
 from tsm.rods.layout import OWN
-from tsm.rods.variation import Bordered, variation
+from tsm.rods.variation import Bordered, modes_at_least, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
@@ -67,10 +67,13 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Returns
     -------
     int
-        -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        Of an exact element with more than some hundred modes a lower bound; -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
         force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
     """
-    symmetric = _symmetric(assembler, state, system)
+    if system.rods is not None and (hidden := modes_at_least(system.rods)):
+        return hidden
+    with np.errstate(all="ignore"):
+        symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
         return UNDEFINED
     found = negatives(symmetric)

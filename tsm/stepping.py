@@ -66,6 +66,8 @@ _STRAIGHT = 0.02
 """A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
+_PUSHING = 1e-8
+"""Force of a contact, over ``EI/L^2``, that pushes; one that carries none may have no index."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
@@ -253,7 +255,8 @@ class Stepper:
         if missed > FOLLOWED:
             return self._refuse(fitting)
         old, new = self.index, tangent.index
-        if 0 <= new != old and (new > old or self.tangent.index == old):
+        changed = 0 <= new != old and (new > old or self.tangent.index == old)
+        if changed or (new < 0 and self._pushed(reached)):
             if missed > _STRAIGHT:
                 return self._refuse(1 / 2)
             bracket = Bracket((before.load_parameter, old), (reached.state.load_parameter, new))
@@ -319,6 +322,15 @@ class Stepper:
         self._accept(rest)
         self.step = 1.0
         return Status.CONVERGED
+
+    def _pushed(self, equilibrium: Equilibrium) -> bool:
+        """Whether all closed contacts push and have an energy, so that an index that is not defined shows a singular tangent."""
+        touches, least = equilibrium.state.touches, _PUSHING * self.model.force_scale
+        return not self._chord_contact() and all(
+            normal_force(self.model, equilibrium, k) > least
+            for k, touch in enumerate(touches)
+            if touch is not None
+        )
 
     def _refuse(self, part: float) -> Status:
         """Try a part of the step."""

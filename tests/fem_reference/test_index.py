@@ -3,9 +3,13 @@
 from collections import Counter
 
 import numpy as np
+import pytest
 from scipy.linalg import null_space
+from scipy.sparse import csc_matrix
 
 import fem_reference as fr
+from fem_reference import factor
+from fem_reference.factor import band_of, count_negatives, factorise
 from fem_reference.model import build
 from fem_reference.state import Condition, state
 from fem_reference.tangent import linearise
