@@ -97,6 +97,8 @@ def judged(scene: Scene, models: Sequence[str] = ("exact", "mixed"), numbers: Se
     """Solve `scene` with its own and with other `numbers` of load parameters, and judge the answers."""
     rows: list[Row] = []
     for model in models:
+        if model == "solid" and not _is_one_structure_for_both(scene):
+            continue
         own = run(scene, model)
         rows.append(own)
         if own.ended == "refused":
@@ -105,6 +107,16 @@ def judged(scene: Scene, models: Sequence[str] = ("exact", "mixed"), numbers: Se
             others = [number for number in numbers if number != scene.load_parameters]
             rows += [run(replace(scene, load_parameters=number), model, every=False) for number in others]
     return Judged(scene=scene, rows=tuple(rows), findings=tuple(findings(scene, rows)))
+
+
+def _is_one_structure_for_both(scene: Scene) -> bool:
+    """Whether the solid is the same structure: it has no shear area of its own.
+
+    Struts under dead loads are left out: near the buckling load a part of (h/L)^2, which a rod leaves out, decides the deflection.
+    """
+    return bool(scene.pins) and all(
+        beam.height is not None and beam.shear_area is None for beam in scene.beams
+    )
 
 
 def run(scene: Scene, model: str, *, every: bool = True) -> Row:
