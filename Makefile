@@ -35,6 +35,7 @@ bench: setup
 fuzz: setup
 	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000
 	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
+	$(THREADS) $(BIN)/python -m tests.fuzz.run_world 5000
 
 platforms: setup
 	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox

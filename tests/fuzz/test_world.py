@@ -1,0 +1,142 @@
+"""Scenes over everything that the format can state: completed answers are certified, the same by every element and number of load parameters."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from tests.fuzz.world import drawn
+from tests.fuzz.world_judge import Row, findings, judged
+
+BEAMS = ("exact", "mixed")
+
+
+CHEAP = (7, 8, 10, 17, 20, 31, 32, 46, 57, 71)
+"""Scenes that are solved in a second or less."""
+
+
+def check(seeds: Sequence[int], models: tuple[str, ...], numbers: tuple[int, ...]) -> None:
+    """Judge drawn scenes, none of them wrong and not too many stopped."""
+    found = [judged(drawn(seed), models, numbers).bare() for seed in seeds]
+    wrong = [item.report() for item in found if item.findings]
+    assert not wrong, f"{len(wrong)} of {len(seeds)} scenes\n" + "\n\n".join(wrong)
+    for model in BEAMS:
+        own = [row for item in found for row in item.rows if row.model == model]
+        assert sum(row.completed for row in own) >= 0.3 * len(own)
+
+
+def test_answers_to_drawn_scenes_are_certified() -> None:
+    check(CHEAP, BEAMS, ())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 200, 25))
+def test_answers_to_many_drawn_scenes_are_certified(first: int) -> None:
+    check(range(first, first + 25), BEAMS, ())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("first", "numbers"), [(200, (1, 12)), (220, (1, 12)), (240, (2, 40)), (250, (5, 8))]
+)
+def test_answers_do_not_depend_on_the_number_of_load_parameters(first: int, numbers: tuple[int, ...]) -> None:
+    check(range(first, first + (20 if 12 in numbers else 10)), BEAMS, numbers)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(260, 300, 20))
+def test_answers_of_the_solid_to_drawn_scenes_are_certified(first: int) -> None:
+    check(range(first, first + 20), (*BEAMS, "solid"), ())
+
+
+def test_the_seed_alone_decides_what_is_drawn() -> None:
+    scenes = [drawn(seed) for seed in range(60)]
+    assert scenes == [drawn(seed) for seed in range(60)]
+    assert len(set(scenes)) == 60
+    assert all(read_scene(to_toml(scene), "copy") == scene for scene in scenes)
+
+
+def test_drawn_scenes_have_everything_that_a_scene_can_state() -> None:
+    scenes = [drawn(seed) for seed in range(400)]
+    kinds = Counter(kind for scene in scenes for kind in _kinds(scene))
+    rare = {kind: kinds[kind] for kind in KINDS if kinds[kind] < 8}
+    assert not rare
+    assert set(kinds) == KINDS
+
+
+KINDS = {
+    "several beams", "rigid joint", "clamp", "pinned", "roller", "rotation held", "moved support", "turned support", "force",
+    "moment", "point pin", "round pin", "straight path", "bent path", "several pins on a beam", "beam end on a beam", "axis",
+    "face", "left", "right", "kept contact", "slender", "thick", "soft in shear", "stiff in shear", "N, m", "N, mm", "own nodes",
+    "one load parameter", "strut",
+}  # fmt: skip
+
+
+def _kinds(scene: Scene) -> set[str]:
+    """What a scene has."""
+    slender = [
+        np.sqrt(12.0 * beam.cross_section[1] / beam.cross_section[0]) / beam.length for beam in scene.beams
+    ]
+    soft = [beam.GA * beam.length**2 / beam.EI for beam in scene.beams]
+    ends = [end for beam in scene.beams for end in (beam.start, beam.end)]
+    touched = Counter(contact.beam for contact in scene.contacts if "." not in contact.node)
+    held = [support.held for support in scene.all_supports]
+    axial = [
+        abs(np.dot(load.force, scene.beam(load.beam).direction)) > 0.99 * np.hypot(*load.force) > 0.0 for load in scene.loads
+    ]  # fmt: skip
+    found = {
+        "several beams": len(scene.beams) > 1,
+        "rigid joint": len(set(ends)) < len(ends),
+        "clamp": ("x", "y", "rotation") in held,
+        "pinned": ("x", "y") in held,
+        "roller": ("x",) in held or ("y",) in held,
+        "rotation held": any("rotation" in item and len(item) < 3 for item in held),
+        "moved support": any(support.displacement is not None for support in scene.supports),
+        "turned support": any(support.rotation is not None for support in scene.supports),
+        "force": any(any(load.force) for load in scene.loads),
+        "moment": any(load.moment for load in scene.loads),
+        "point pin": any(pin.radius is None for pin in scene.pins),
+        "round pin": any(pin.radius is not None for pin in scene.pins),
+        "straight path": any(pin.path is None for pin in scene.pins),
+        "bent path": any(pin.path is not None for pin in scene.pins),
+        "several pins on a beam": max(touched.values(), default=0) > 1,
+        "beam end on a beam": any("." in contact.node for contact in scene.contacts),
+        "kept contact": any(contact.keep for contact in scene.contacts),
+        "slender": min(slender) < 0.003,
+        "thick": max(slender) > 0.05,
+        "soft in shear": min(soft) < 100.0,
+        "stiff in shear": max(soft) > 1e5,
+        "own nodes": any(beam.nodes for beam in scene.beams),
+        "one load parameter": scene.load_parameters == 1,
+        "strut": any(axial),
+        scene.units: True,
+    }
+    stated = {contact.surface for contact in scene.contacts} | {contact.side for contact in scene.contacts}
+    return {kind for kind, there in found.items() if there} | stated
+
+
+def test_the_judge_tells_wrong_answers() -> None:
+    """A forged force, an answer that depends on the load parameters, and one of another branch are found."""
+    scene = load_scene("ks-cantilever")
+    answer = solve(scene, "tsm", Options(element="exact"))
+    ((pair, contact),) = answer.contacts.items()
+    row = Row(model="exact", number=50, ended="COMPLETED", response=answer, certified=True)
+    forged = replace(answer, contacts={pair: replace(contact, force=1.1 * contact.force)})
+    other = replace(row, number=7, response=forged)
+    assert _kinds_found(scene, row, row) == []
+    assert _kinds_found(scene, row, other) == ["DEPENDS exact"]
+    assert _kinds_found(scene, row, replace(row, number=7, ended="LIMIT_POINT")) == ["DEPENDS exact"]
+    assert _kinds_found(scene, row, replace(other, model="mixed")) == ["BRANCHES"]
+    assert _kinds_found(scene, replace(row, certified=False, certificate="UNSTABLE: index 1")) == [
+        "UNSTABLE exact"
+    ]
+    assert _kinds_found(scene, replace(row, ended="HANG", response=None)) == ["HANG exact"]
+
+
+def _kinds_found(scene: Scene, *rows: Row) -> list[str]:
+    return [item.kind for item in findings(scene, rows)]
