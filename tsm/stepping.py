@@ -66,6 +66,8 @@ _STRAIGHT = 0.02
 """A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
+_GROWING, _ROOM = 1.4, 0.6
+"""Growth of the speed that shows a limit point ahead, and the part of the way there of the next step, a little less than tangents explain."""
 _PUSHING = 1e-8
 """Force of a contact, over ``EI/L^2``, that pushes; one that carries none may have no index."""
 _NEAR = 1e-9
@@ -172,9 +174,10 @@ class Stepper:
                     return
                 attempts += 1
                 left = target - t
-                step = self.step
+                step = min(self.step, self._room())
                 goal = target if left <= step * (1 + 1e-6) else t + step
-                status = self._attempt(goal)
+                here = step < self.settings.smallest_step
+                status = self._refuse(1 / 2) if here else self._attempt(goal)
                 if status is Status.CONVERGED:
                     reached = self.accepted.state.load_parameter
                     yield self._record(reached == target and target in asked, status)
@@ -277,6 +280,13 @@ class Stepper:
         if primary:
             return Status.CONVERGED
         return self._turn(at) if self.settings.branch == "stable" else Status.BIFURCATION
+
+    def _room(self) -> float:
+        """Part of the way to a limit point ahead, if the last two speeds of the path show one, that a step can follow."""
+        (t0, v0), (t1, v1) = ((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent))
+        if len(self.history) < 2 or t0 >= t1 or not v1 > _GROWING * v0:
+            return float("inf")
+        return _ROOM * (limit_load((t0, v0), (t1, v1)) - t1) or float("inf")
 
     def _meet_limit_point(self) -> Status:
         """End the path beside a limit point, or let the structure fall to the stable branch."""

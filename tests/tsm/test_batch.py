@@ -92,7 +92,9 @@ def double(rng: np.random.Generator, elements: int = 6) -> tsm.Structure:
 
 def assert_same(one: tsm.Result, other: tsm.Result, within: float) -> None:
     """Same outcome, events and quantities, these in parts of the largest force, the length and their product."""
-    assert (other.status, other.message, other.cutbacks) == (one.status, one.message, one.cutbacks)
+    assert (other.status, other.message) == (one.status, one.message)
+    if one.status is tsm.Status.COMPLETED:  # on the way to a limit point step lengths follow the batch's history
+        assert other.cutbacks == one.cutbacks
     assert np.array_equal(other.load_parameter, one.load_parameter)
     assert [(e.kind, e.pair, e.element) for e in other.events] == [
         (e.kind, e.pair, e.element) for e in one.events
