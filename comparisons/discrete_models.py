@@ -164,6 +164,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
     import fem_reference
 
     problem = to_solid(scene, mesh=options.mesh)
+    settings = fem_reference.Settings(branch=options.branch or "stop")
 
     def told(step: Any) -> None:
         touching = tuple(
@@ -172,7 +173,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         watch(Reached(step.load_parameter, step.iterations, touching))
 
     try:
-        result = fem_reference.solve(problem, np.array(scene.times), watch=told)
+        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=told)
     except fem_reference.SolveError as error:
         result = error.result
 
@@ -248,7 +249,7 @@ def _response(
         grid=grid,
         index=result.index,
         critical=tuple(
-            CriticalPoint(kind=point.kind.value, load_parameter=point.load_parameter, mode=point.mode)
+            CriticalPoint(kind=str(point.kind), load_parameter=point.load_parameter, mode=point.mode)
             for point in result.critical
         ),
     )

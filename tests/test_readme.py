@@ -28,6 +28,7 @@ SAID = {
     "new strip": ("strip.toml",),
     "check": ("tsm: yes", "solid: yes", "rod: yes", "drawn: ks.png"),
     "solve": ("COMPLETED", "force"),
+    "certify": ("CERTIFIED",),
     "compare": ("exact rod", "summary.json"),
     "view": ("view.png",),
     "gate": ("force", "shape", "<= 0.001"),

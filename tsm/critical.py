@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +32,7 @@ _SHIFT = 1e-6
 """Part of a mode by which the axis is moved to see its shape."""
 
 
-class CriticalKind(Enum):
+class CriticalKind(StrEnum):
     """Kind of a critical point."""
 
     LIMIT_POINT = "limit point"

@@ -56,7 +56,8 @@ class Case:
     def label(self) -> str:
         """Short text for people: ``tsm mixed 10``, ``solid Q2 50x2``."""
         parts = {"tsm": self._beams, "solid": self._solid}.get(self.model, str)()
-        return f"{self.model} {parts}".rstrip()
+        branch = "" if self.options.branch is None else f" {self.options.branch}"
+        return f"{self.model} {parts}".rstrip() + branch
 
     def _beams(self) -> str:
         element = self.options.element or "mixed"

@@ -7,7 +7,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from comparisons.options import OPTIONS, Options
+from comparisons.options import BRANCHES, OPTIONS, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, Rule, RuleError
@@ -170,6 +170,7 @@ OPTION_RULES: dict[str, Rule] = {
     "element": _element,
     "tolerance": rules.fraction,
     "mesh": rules.mesh_text,
+    "branch": rules.choice(*BRANCHES),
 }
 """What the options of a case must obey."""
 assert OPTION_RULES.keys() == {item.name for item in fields(Options)}

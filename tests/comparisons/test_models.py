@@ -1,13 +1,16 @@
 """Every model on the same scene, in every position of the plane."""
 
+import json
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from comparisons.models import MODELS, solve
 from comparisons.options import OPTIONS, ModelError, Options
-from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from comparisons.statement import as_json
 
 KS = load_scene("ks-cantilever")
 SHORT = replace(KS, load_parameters=8)
@@ -210,3 +213,25 @@ def test_round_pin_is_the_same_for_every_model(model: str) -> None:
         exact, rel={"solid": 8e-3, "tsm": 1e-4}.get(model, 1e-9)
     )
     assert np.abs(response.contacts[PAIR].gap).max() < 1e-10
+
+
+@pytest.mark.parametrize(("model", "options"), [("tsm", {"element": "exact"}), ("solid", {"mesh": (20, 1)})])
+def test_every_model_states_critical_points_and_takes_a_branch(model: str, options: dict[str, Any]) -> None:
+    """A straight column at 1.3 times its Euler load: the solid within .5 % of the rod."""
+    beam = replace(KS.beams[0], material="biot-linear")
+    first = np.pi**2 / 4 * beam.EI / beam.length**2
+    load = LoadSpec(beam=beam.name, end="end", force=(-1.3 * first, 0.0))
+    scene = replace(KS, beams=(beam,), pins=(), contacts=(), loads=(load,), load_parameters=4)
+    stopped = solve(scene, model, Options(**options))
+    assert stopped.status == "BIFURCATION"
+    (point,) = stopped.critical
+    assert point.kind == "bifurcation"
+    assert json.loads(as_json(stopped))["critical"][0]["kind"] == "bifurcation"
+    assert 1.3 * point.load_parameter == pytest.approx(1.0, rel=5e-3)
+    unstable = solve(scene, model, Options(**options, branch="primary"))
+    assert (unstable.status, unstable.completed) == ("UNSTABLE", False)
+    assert unstable.index is not None
+    assert unstable.index.tolist() == [0, 0, 0, 1]
+    bent = solve(scene, model, Options(**options, branch="stable"))
+    assert bent.completed, bent.message
+    assert abs(bent.tips[beam.name][-1, 1]) > 0.5

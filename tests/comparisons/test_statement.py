@@ -33,7 +33,7 @@ def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
     data = json.loads(as_json(beams))
     assert list(data) == [
         "status", "model", "scene", "load_parameter", "contacts", "supports", "tips", "axes", "events",
-        "index", "critical", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
+        "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
     assert list(data["contacts"][PAIR]) == ["force", "vector", "arc_position", "gap", "slip_off"]
     assert list(data["supports"][BEAM]) == ["moment", "force"]

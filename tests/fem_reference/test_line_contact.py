@@ -24,6 +24,7 @@ def drum(strip, load, radius=0.5, height=0.005, mesh=(40, 1)):
     )
 
 
+@pytest.mark.slow
 def test_strip_bent_round_a_drum_ends_as_line_contact(strip):
     result = fr.solve(drum(strip, 12.0), np.arange(1, 5) / 4, throw=False)
     assert result.status is fr.Status.LINE_CONTACT

@@ -116,6 +116,7 @@ def test_coarse_and_fine_meshes_have_the_same_answer(problem, surface, radius):
     assert spread(histories(problem, meshes, surface, radius)) <= 5e-4
 
 
+@pytest.mark.slow
 def test_a_sharp_contact_scatters_more(problem):
     """What the average over three heights is for."""
     meshes = [(nx, 2) for nx in (40, 47, 54, 60)]

@@ -124,9 +124,8 @@ def fold_of_the_elastica():
     return -found.fun
 
 
-@pytest.mark.parametrize(
-    "n", [1, pytest.param(4, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [1, 4, 20])
 def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point(problem, n):
     """Polar angle 99.57 degrees; within 3e-4 of the path for h/L = .02."""
     first, last = np.array([0.3, 0.0]), np.array([-0.15, 0.3])

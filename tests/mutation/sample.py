@@ -27,17 +27,18 @@ MODULES = (
     "tsm/rods/*.py",
     "tsm/contact.py",
     "tsm/contact_set.py",
+    "tsm/critical.py",
     "tsm/crossing.py",
     "tsm/events.py",
     "tsm/fall.py",
-    "tsm/guard.py",
     "tsm/newton.py",
+    "tsm/path.py",
     "tsm/predictor.py",
     "tsm/stepping.py",
     "comparisons/exact/*.py",
 )
 _EVENTS = ["tests/tsm/test_contact_events.py", "tests/tsm/test_statuses.py"]
-_BEAMS = ["tests/tsm/test_double_beam.py", "tests/tsm/test_guard.py", "tests/tsm/test_solve.py"]
+_BEAMS = ["tests/tsm/test_double_beam.py", "tests/tsm/test_path.py", "tests/tsm/test_solve.py"]
 _ELEMENTS = ["tests/tsm/test_elements.py"]
 _PAPER = ["tests/tsm/elements/test_paper_matrices.py"]
 _RODS = ["tests/tsm/test_rod_element.py"]

@@ -198,7 +198,9 @@ def test_a_study_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixtur
         assert err.startswith(told)
     assert [item.name for item in file.parent.iterdir()] == ["mine.sqlite"]
     assert main(["results", str(file)]) == 0
-    assert len(capsys.readouterr().out.splitlines()) == 4
+    *table, blank, of = capsys.readouterr().out.splitlines()
+    assert (len(table), blank) == (4, "")
+    assert of.startswith("version ")
 
 
 def test_a_cluster_without_its_extra(
