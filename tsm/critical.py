@@ -168,9 +168,8 @@ def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
     1.0
     """
     (t0, v0), (t1, v1) = before, last
-    if not np.isfinite(v1) or not v1 > v0 > 0:
-        return t1
-    return t1 + (t1 - t0) * v0**2 / (v1**2 - v0**2)
+    ratio = v0 / v1 if np.isfinite(v1) and v1 > v0 > 0 else 0.0
+    return t1 + (t1 - t0) * ratio**2 / (1 - ratio**2) if ratio < 1 else t1
 
 
 def critical_point(

@@ -68,8 +68,6 @@ _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
 _GROWING, _ROOM = 1.4, 0.6
 """Growth of the speed that shows a limit point ahead, and the part of the way there of the next step, a little less than tangents explain."""
-_PUSHING = 1e-8
-"""Force of a contact, over ``EI/L^2``, that pushes; one that carries none may have no index."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
@@ -259,7 +257,7 @@ class Stepper:
             return self._refuse(fitting)
         old, new = self.index, tangent.index
         changed = 0 <= new != old and (new > old or self.tangent.index == old)
-        if changed or (new < 0 and self._pushed(reached)):
+        if changed:
             if missed > _STRAIGHT:
                 return self._refuse(1 / 2)
             bracket = Bracket((before.load_parameter, old), (reached.state.load_parameter, new))
@@ -332,15 +330,6 @@ class Stepper:
         self._accept(rest)
         self.step = 1.0
         return Status.CONVERGED
-
-    def _pushed(self, equilibrium: Equilibrium) -> bool:
-        """Whether all closed contacts push and have an energy, so that an index that is not defined shows a singular tangent."""
-        touches, least = equilibrium.state.touches, _PUSHING * self.model.force_scale
-        return not self._chord_contact() and all(
-            normal_force(self.model, equilibrium, k) > least
-            for k, touch in enumerate(touches)
-            if touch is not None
-        )
 
     def _refuse(self, part: float) -> Status:
         """Try a part of the step."""

@@ -340,7 +340,9 @@ class Assembler:
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
         lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
-        if border and (info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()):
+        if border and (
+            info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
+        ):
             return self._solve_whole(tangent, given)
         if info != 0:
             return None

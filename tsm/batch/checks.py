@@ -10,10 +10,10 @@ from tsm.batch.geometry import project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF
 from tsm.newton import SHARP
-from tsm.path import LONGEST_STEP
+from tsm.path import FOLLOWED, LONGEST_STEP
 
-CLOSE = 0.1
-"""Part of a step that its extrapolation may miss."""
+SHORT = 0.1
+"""Step, in largest Newton steps, that needs no history to be extrapolated from."""
 
 
 def norm(equations: Equations, front: Front, system: System) -> Array:
@@ -41,14 +41,14 @@ def largest_step(equations: Equations, step: Array, length: Array) -> Array:
 def follows(equations: Equations, front: Front, which: Array) -> Array:
     """Whether equilibria lie near their prediction, on the side of the determinant that the path is on.
 
-    The stepper asks both tangents of a step. Here the extrapolation has to explain it, more closely; what it does not is left to the stepper.
+    The stepper asks both tangents of a step. Here its extrapolation has to explain it; what it does not is left to the stepper.
     """
     free, history = equations.model.free[:, None], front.history
     last = history.q[newest(history, which), free, which]
     length = front.numbers.length[which]
     moved = largest_step(equations, front.at.q[free, which] - front.predicted[free, which], length)
     taken = largest_step(equations, front.at.q[free, which] - last, length)
-    near = (moved <= CLOSE * taken) & (taken <= LONGEST_STEP)
+    near = ((moved <= FOLLOWED * taken) | (taken <= SHORT)) & (taken <= LONGEST_STEP)
     begun = np.where(front.orientation == 0, front.first, front.orientation)[which]
     kept: Array = near & (begun == front.last[which])
     return kept
