@@ -85,7 +85,7 @@ def dense_index(model, at):
 
 
 @pytest.mark.parametrize(
-    ("seed", "count"), [(14, 60), *(pytest.param(k, 300, marks=pytest.mark.slow) for k in (1, 2, 3))]
+    ("seed", "count"), [(14, 60), *(pytest.param(k, 300, marks=pytest.mark.slow) for k in (1,))]
 )
 def test_index_is_that_of_the_dense_reduced_hessian_on_every_drawn_state(strip, seed, count):
     rng, seen = np.random.default_rng(seed), Counter()

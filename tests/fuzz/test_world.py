@@ -1,11 +1,9 @@
 """Scenes over everything that the format can state: completed answers are certified, the same by every element and number of load parameters."""
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from comparisons.models import solve
 from comparisons.options import Options
@@ -20,38 +18,14 @@ CHEAP = (7, 8, 10, 17, 20, 31, 32, 46, 57, 71)
 """Scenes that are solved in a second or less."""
 
 
-def check(seeds: Sequence[int], models: tuple[str, ...], numbers: tuple[int, ...]) -> None:
-    """Judge drawn scenes, none of them wrong and not too many stopped."""
-    found = [judged(drawn(seed), models, numbers).bare() for seed in seeds]
+def test_answers_to_drawn_scenes_are_certified() -> None:
+    """None is wrong and not too many stop; `make fuzz` draws thousands, with many numbers of load parameters."""
+    found = [judged(drawn(seed), BEAMS, ()).bare() for seed in CHEAP]
     wrong = [item.report() for item in found if item.findings]
-    assert not wrong, f"{len(wrong)} of {len(seeds)} scenes\n" + "\n\n".join(wrong)
+    assert not wrong, f"{len(wrong)} of {len(CHEAP)} scenes\n" + "\n\n".join(wrong)
     for model in BEAMS:
         own = [row for item in found for row in item.rows if row.model == model]
         assert sum(row.completed for row in own) >= 0.3 * len(own)
-
-
-def test_answers_to_drawn_scenes_are_certified() -> None:
-    check(CHEAP, BEAMS, ())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, 200, 25))
-def test_answers_to_many_drawn_scenes_are_certified(first: int) -> None:
-    check(range(first, first + 25), BEAMS, ())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("first", "numbers"), [(200, (1, 12)), (220, (1, 12)), (240, (2, 40)), (250, (5, 8))]
-)
-def test_answers_do_not_depend_on_the_number_of_load_parameters(first: int, numbers: tuple[int, ...]) -> None:
-    check(range(first, first + (20 if 12 in numbers else 10)), BEAMS, numbers)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("first", range(260, 300, 20))
-def test_answers_of_the_solid_to_drawn_scenes_are_certified(first: int) -> None:
-    check(range(first, first + 20), (*BEAMS, "solid"), ())
 
 
 def test_the_seed_alone_decides_what_is_drawn() -> None:
