@@ -481,7 +481,7 @@ def test_section_forces_along_the_axis_balance_the_pin():
         pins=(tsm.Pin(name="p", path=tuple(map(tuple, path))),),
         contacts=(tsm.ContactPair(node="p", beam="b"),),
     )
-    result = tsm.solve(problem, np.array([0.5, 1.0]))
+    result = tsm.solve(problem, np.array([0.5, 1.0]), tsm.Settings(tolerance=1e-14))
     assert result.status is tsm.Status.COMPLETED
     contact, lines = result.contacts["p->b"], result.stations("b", -1)
     assert lines.arc[0, 0] == 0.0
