@@ -75,6 +75,11 @@ class PathTangent:
             return math.inf
         return self.newton.size(rates[: self.newton.model.equations])
 
+    def release(self) -> None:
+        """Let go of the assembled tangent, which every accepted configuration would hold otherwise; its speed stays known."""
+        self.speed()
+        self.system.__dict__.pop("tangent", None)
+
     def predicted(self, state: State, t: float) -> State:
         """State at a load parameter along the tangent from a state, which has the tangent's displacements."""
         length = t - state.load_parameter

@@ -539,6 +539,7 @@ class Stepper:
         self.history = [*earlier[1 - self.memory :], state]
         self.margins = self._measure(self.accepted)
         self.earlier, self.tangent = self.tangent, tangent or PathTangent(self.newton, self.accepted)
+        self.earlier.release()
         self.index = self.tangent.index if self.tangent.index >= 0 else self.index
 
     def _note_passes(self, equilibrium: Equilibrium) -> None:
