@@ -56,38 +56,19 @@ def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Respo
         integration_error=result.integration_error,
         deformation=None
         if options.element == "exact"
-        else _beam_deformation(scene, options, result, response),
+        else _beam_deformation(options.element or "mixed", result),
     )
 
 
-def _beam_deformation(scene: Scene, options: Options, result: Any, response: Response) -> Deformation:
-    """Bend and strain of the most deformed element; Euler-Bernoulli elements do not shear."""
-    element, steps = options.element or "mixed", range(len(result.load_parameter))
-    stiff = element.startswith("euler-bernoulli")
-    turn, strain = np.zeros((2, len(scene.beams), len(steps)))
-    touching: dict[str, list[ContactHistory]] = {beam.name: [] for beam in scene.beams}
-    for item in scene.contacts:
-        touching[item.beam].append(response.contacts[item.pair])
-    for b, beam in enumerate(scene.beams):
-        stiffness = beam.EA if stiff else min(beam.EA, beam.GA)
-        for k in steps:
-            turn[b, k] = np.abs(np.diff(result.shape(beam.name, k)[:, 2])).max()
-            forces = result.section_forces(beam.name, k)
-            strain[b, k] = np.hypot(forces[..., 0], forces[..., 1]).max() / stiffness
-        for contact in touching[beam.name]:
-            turn[b] = np.maximum(turn[b], contact.force * _arms(result, beam.name, contact) / beam.EI)
-            strain[b] = np.maximum(strain[b], contact.force / stiffness)
+def _beam_deformation(element: str, result: Any) -> Deformation:
+    """Bend and strain of the most deformed element on the way."""
+    found = result.deformation
     return Deformation(
-        turn=turn.max(axis=0), strain=strain.max(axis=0), bearable=2.0 if element == "mixed" else 1.0
+        load_parameter=found.load_parameter,
+        turn=found.turn,
+        strain=found.strain,
+        bearable=2.0 if element == "mixed" else 1.0,
     )
-
-
-def _arms(result: Any, beam: str, contact: ContactHistory) -> Array:
-    """Distance (s,) of a contact from the nearer end of its element times the element's length, zero where it is open."""
-    arcs, at = np.array(result.model.beams[beam].arcs), np.nan_to_num(contact.arc_position)
-    element = np.clip(np.searchsorted(arcs, at, side="right") - 1, 0, len(arcs) - 2)
-    start, end = arcs[element], arcs[element + 1]
-    return np.asarray(np.minimum(np.abs(at - start), np.abs(end - at)) * (end - start))
 
 
 def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
@@ -201,7 +182,9 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         for contact in problem.contacts
     }
     turn = 2 * np.max([_half_turns(response, beam.name) for beam in scene.beams], axis=0)
-    deformation = Deformation(turn=turn, strain=np.zeros_like(turn), bearable=1.0)
+    deformation = Deformation(
+        load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
+    )
     return replace(response, contacts=contacts, deformation=deformation)
 
 

@@ -116,15 +116,18 @@ class Deformation:
 
     Attributes
     ----------
-    turn : ndarray, shape (s,)
+    load_parameter : ndarray, shape (n,)
+        Where: of beams at every accepted step, also between the load parameters that were asked for.
+    turn : ndarray, shape (n,)
         Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
         the distances a and b of the contact from its ends [rad].
-    strain : ndarray, shape (s,)
-        Stretch and shear by the section forces, ``|N|/EA`` and ``|V|/GA``, of elements that take them for small; else zero.
+    strain : ndarray, shape (n,)
+        Section force or contact force over the smaller of EA and GA, of elements that take strains for small; else zero.
     bearable : float
         Turn [rad] up to which the element is an approximation: where the first term that it neglects leaves a fifth of the force.
     """
 
+    load_parameter: Array
     turn: Array
     strain: Array
     bearable: float

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.balance import balance_failures
-from comparisons.response import Array, ContactHistory, Response
+from comparisons.response import Array, ContactHistory, Deformation, Response
 from comparisons.scene import ContactSpec, Scene
 
 CHECK_FAILED = "CHECK_FAILED"
@@ -83,11 +83,11 @@ def unresolved(response: Response, scene: Scene) -> Iterator[str]:
         bent = deformation.turn > deformation.bearable
         if bent.any():
             most = deformation.turn.max()
-            limit = f"{deformation.bearable:g} {_first(bent, response)}"
+            limit = f"{deformation.bearable:g} {_first(bent, deformation)}"
             yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
         strained = deformation.strain > STRAIN
         if strained.any():
-            yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, response)}"
+            yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, deformation)}"
     length = max(beam.length for beam in scene.beams)
     for pin in scene.pins:
         way = float(np.hypot(*np.diff(pin.points, axis=0).T).sum())
@@ -111,8 +111,8 @@ def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
         yield f"tip of {beam}", tip
 
 
-def _first(failed: NDArray[np.bool_], response: Response) -> str:
-    return f"at load parameter {response.load_parameter[np.argmax(failed)]:.6g}"
+def _first(failed: NDArray[np.bool_], at: Response | Deformation) -> str:
+    return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
 
 
 def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> Iterator[str]:

@@ -13,6 +13,7 @@ from tsm import present
 from tsm.axis import axis_line, is_exact
 from tsm.contact import arc_position, project
 from tsm.critical import CriticalPoint
+from tsm.deformation import Deformation, deformation
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.model import Model
@@ -89,6 +90,8 @@ class Result:
         where a contact has no energy.
     critical : tuple of CriticalPoint
         Critical points of the path, with their modes.
+    deformation : Deformation
+        The most deformed element at every accepted step, also between the prescribed load parameters.
     unknowns : int
         Number of unknowns.
     wall_seconds : float
@@ -106,6 +109,7 @@ class Result:
     events: tuple[Event, ...]
     index: Array
     critical: tuple[CriticalPoint, ...]
+    deformation: Deformation
     unknowns: int
     wall_seconds: float
     model: Model
@@ -247,6 +251,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         events=tuple(event for step in steps for event in step.events),
         index=np.array([step.index for step in requested], dtype=np.int64),
         critical=tuple(point for step in steps for point in step.critical),
+        deformation=deformation(model, [step.equilibrium for step in steps]),
         unknowns=model.unknowns,
         wall_seconds=seconds,
         model=model,

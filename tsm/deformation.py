@@ -1,0 +1,58 @@
+"""How much elements bend and strain on the way: what their shape functions and strain measures have to bear."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tsm.elements import EXACT
+from tsm.elements.properties import Array, Properties
+from tsm.events import normal_force
+from tsm.model import Model
+from tsm.newton import Equilibrium
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Deformation:
+    """The most deformed element of closed form at every accepted step, whether its load parameter was asked for or not.
+
+    Attributes
+    ----------
+    load_parameter : ndarray, shape (n,)
+        Of the steps.
+    turn : ndarray, shape (n,)
+        Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
+        the distances a and b of the contact from its ends [rad].
+    strain : ndarray, shape (n,)
+        Section force, or contact force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
+    """
+
+    load_parameter: Array
+    turn: Array
+    strain: Array
+
+
+def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation:
+    """Return turn and strain at every equilibrium; zero in exact elements, which bear any."""
+    p = Properties(*(column[model.closed] for column in model.properties))
+    with np.errstate(divide="ignore"):
+        stiffness = np.minimum(p.EA, 12 * p.EI / (p.Phi * p.l0**2))
+    start, end = model.element_nodes[model.closed].T
+    turn, strain = np.zeros((2, len(equilibria)))
+    for n, equilibrium in enumerate(equilibria):
+        rotation, force = equilibrium.state.q[2::3], equilibrium.system.closed_force
+        turn[n] = np.abs(rotation[end] - rotation[start]).max(initial=0.0)
+        at_ends = np.maximum(np.hypot(force[0], force[1]), np.hypot(force[3], force[4]))
+        strain[n] = (at_ends / stiffness).max(initial=0.0)
+        for k, touch in enumerate(equilibrium.state.touches):
+            if touch is None or model.pairs[k].element_type is EXACT:
+                continue
+            e, pressed = int(model.place[touch.element]), normal_force(model, equilibrium, k)
+            arm = p.l0[e] * min(max(touch.xi, 0.0), max(1.0 - touch.xi, 0.0))
+            turn[n] = max(turn[n], pressed * arm * p.l0[e] / p.EI[e])
+            strain[n] = max(strain[n], pressed / stiffness[e])
+    return Deformation(
+        load_parameter=np.array([one.state.load_parameter for one in equilibria]), turn=turn, strain=strain
+    )
