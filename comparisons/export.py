@@ -1,5 +1,6 @@
 """VTU files through meshio, and the PVD file of a series."""
 
+from dataclasses import replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -29,6 +30,15 @@ def write_vtu(path: Path, grid: Grid) -> None:
 
 def _three(vectors: Array) -> Array:
     return np.pad(vectors, ((0, 0), (0, 1)))
+
+
+def body_grid(response: Response, k: int) -> Grid:
+    """Return the body with its own fields and, at every point, the index: 0 where the equilibrium is stable, -1 where it is not told."""
+    grid = response.grid(k)
+    if response.index is None:
+        return grid
+    index = np.full(len(grid.points), int(response.index[k]))
+    return replace(grid, point_data={**grid.point_data, "index": index})
 
 
 def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
@@ -105,7 +115,7 @@ def _write_grids(folder: Path, response: Response, scene: Scene) -> list[tuple[f
     """Write every grid; return load parameter, part and name of every file."""
     entries: list[tuple[float, int, str]] = []
     for k, t in enumerate(response.load_parameter):
-        grids = [response.grid(k), *([pin_grid(response, scene, k)] if scene.pins else [])]
+        grids = [body_grid(response, k), *([pin_grid(response, scene, k)] if scene.pins else [])]
         for part, (name, grid) in enumerate(zip(_parts(response.model), grids, strict=False)):
             file = f"{name}-{k + 1:04d}.vtu"
             write_vtu(folder / file, grid)

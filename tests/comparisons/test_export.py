@@ -68,6 +68,15 @@ def test_fields_of_each_model(response: Response) -> None:
     assert set(response.grid(0).point_data) == expected[response.model]
 
 
+def test_files_state_the_index(response: Response, tmp_path: Path) -> None:
+    unstable = replace(response, index=np.array([0, 0, 2]))
+    write_series(tmp_path, unstable, SCENE)
+    found = [pyvista.read(tmp_path / f"{response.model}-000{k}.vtu").point_data["index"] for k in (1, 2, 3)]
+    assert [set(values.tolist()) for values in found] == [{0}, {0}, {2}]
+    write_series(tmp_path, replace(response, index=None), SCENE)
+    assert "index" not in pyvista.read(tmp_path / f"{response.model}-0001.vtu").point_data
+
+
 def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
     solid = solve(SCENE, "solid", Options(mesh=(12, 2)))
     write_vtu(tmp_path / "solid.vtu", solid.grid(0))
