@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 _RESOLVED = 3e-14
 """Largest of an element's last two terms of the rotation [rad]."""
-_ITERATIONS, _ROUNDS = 40, 12
+_ITERATIONS, _ROUNDS, _HOLDING = 40, 12, 6
 _LARGEST = 0.5
 """Largest change of a rotation in an iteration [rad]."""
 _CONTRAST = 1e10
@@ -27,6 +27,7 @@ _SETTLED = 1e-10
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Correction of a force, over EA, that is round-off: forces follow from stretches."""
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
+_NONE = np.zeros(0, dtype=np.int64)
 _MOST = 400
 """Most elements of a part."""
 
@@ -96,7 +97,11 @@ def solve(scene: Scene, given: Given) -> Solution:
             tail=np.inf,
         )
     mesh = mesh_of(layout, _first_grids(layout, z))
-    return correct(layout, mesh, *_fitted(layout, mesh, z, turns), _ITERATIONS)
+    start = _fitted(layout, mesh, z, turns)
+    found = correct(layout, mesh, *start, _ITERATIONS)
+    if found.found is not Found.NO_EQUILIBRIUM or not layout.touches:
+        return found
+    return correct(layout, mesh, *_with_contacts_held(layout, mesh, *start), _ITERATIONS)
 
 
 def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
@@ -129,6 +134,25 @@ def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
         correction=newton.correction,
         tail=float(tails.max()),
     )
+
+
+def _with_contacts_held(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
+    """Settle the deflection with the contacts at the arc positions of the answer.
+
+    These are known better than its rotations. Where a contact is next to an end, the first correction of rough rotations would move
+    it beyond.
+    """
+    made, held = properties(layout, mesh), np.array([touch.arc for touch in layout.touches], dtype=np.int64)
+    for _ in range(_HOLDING):
+        system = assemble(layout, mesh, made, z, bubbles)
+        change = _step(system, held)
+        if change is None:
+            break
+        inside = _inside(system, change)
+        turn = max(float(np.abs(change[layout.unknowns :]).max(initial=0.0)), float(np.abs(inside).max()))
+        part = min(1.0, _LARGEST / max(turn, 1e-300))
+        z, bubbles = z + part * change, bubbles + part * inside
+    return z, bubbles
 
 
 def _misplaced(layout: Layout, z: Array) -> str:
@@ -237,16 +261,16 @@ def _own(system: System, change: Array) -> Array:
     return np.column_stack([local[:, :4], local[:, 4] + local[:, 5]])
 
 
-def _step(system: System) -> Array | None:
-    """Newton's change; rows and columns are scaled, since EI, EA and forces are far apart."""
-    largest = np.abs(system.hessian).max(axis=1, initial=0.0)
-    if not np.all(np.isfinite(system.hessian)) or np.any(largest == 0.0):
+def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:
+    """Newton's change, zero of what is held; rows and columns are scaled, since EI, EA and forces are far apart."""
+    hessian, gradient = system.hessian.copy(), system.gradient.copy()
+    hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
+    hessian[held, held] = 1.0
+    if not np.all(np.isfinite(hessian)) or np.any(np.abs(hessian).max(axis=1, initial=0.0) == 0.0):
         return None
-    scale = scales(system.hessian)
+    scale = scales(hessian)
     try:
-        return np.asarray(
-            -scale * np.linalg.solve(scale[:, None] * system.hessian * scale, scale * system.gradient)
-        )
+        return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient))
     except np.linalg.LinAlgError:
         return None
 

@@ -12,7 +12,7 @@ from comparisons.referee.equations import mesh_of
 from comparisons.referee.equilibrium import Found, correct
 from comparisons.referee.layout import lay_out
 from comparisons.response import Response
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 
 
 def judged(scene: Scene, element: str, allowance: float | None = None) -> tuple[Response, Certificate]:
@@ -197,3 +197,12 @@ STIFF = Scene(
 def test_newtons_corrections_may_end_at_round_off_of_EA() -> None:
     _, found = judged(STIFF, "exact", 1e-6)
     assert found.certified, found.line()
+
+
+def test_a_contact_next_to_an_end_stays_on_the_beam() -> None:
+    """At .985 the pin is a thousandth of the length from the tip, and slips off at .9897."""
+    scene = replace(load_scene("cantilever-critical-area"), load_parameters=200)
+    found = certify(solve(scene, "tsm", Options(element="mixed")), scene, at=[196])
+    assert found.certified, found.line()
+    assert found.judged[0].distance is not None
+    assert found.judged[0].distance.arc_position < 1e-5
