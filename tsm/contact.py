@@ -25,6 +25,8 @@ from tsm.state import State, Touch
 
 _SAMPLES = 33
 """Points of an exact element among which the nearest is looked for."""
+_AT_NODE = 1e-9
+"""Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""
 
 
 class Projection(NamedTuple):
@@ -54,14 +56,14 @@ def arc_position(target: BeamModel, element: int, xi: float) -> float:
     return (1.0 - xi) * target.arcs[k] + xi * target.arcs[k + 1]
 
 
-def slide(target: BeamModel, element: int, xi: float) -> tuple[int, float]:
-    """Hand a position that left its element over to the neighbour."""
+def slide(target: BeamModel, element: int, xi: float, past: float = 0.0) -> tuple[int, float]:
+    """Hand a position that left its element by more than a part of its length over to the neighbour."""
     if not math.isfinite(xi):
         return element, xi
     k, l0 = element - target.first, target.lengths
-    while xi > 1.0 and k < len(l0) - 1:
+    while xi > 1.0 + past and k < len(l0) - 1:
         xi, k = (xi - 1.0) * (l0[k] / l0[k + 1]), k + 1
-    while xi < 0.0 and k > 0:
+    while xi < -past and k > 0:
         xi, k = 1.0 + xi * (l0[k] / l0[k - 1]), k - 1
     return target.first + k, xi
 
@@ -73,7 +75,7 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -
         if touch is None:
             owned.append(None)
             continue
-        element, xi = slide(pair.target, touch.element, touch.xi)
+        element, xi = slide(pair.target, touch.element, touch.xi, 0.0 if pair.cuts else _AT_NODE)
         owned.append(touch if element == touch.element else replace(touch, element=element, xi=xi))
     if model.rods is None:
         return replace(state, touches=tuple(owned))
