@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.balance import balance_failures
-from comparisons.response import Array, ContactHistory, Deformation, Response
+from comparisons.referee.passing import passages
+from comparisons.response import Array, Deformation, Response
 from comparisons.scene import ContactSpec, Scene
 
 CHECK_FAILED = "CHECK_FAILED"
@@ -23,8 +23,6 @@ STRAIN = 0.1
 """Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
 MOTION = 1e-10
 """Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
-SAMPLES = 101
-"""Places on the way of a pin from load parameter to load parameter at which it is looked for."""
 
 
 def verified(response: Response, scene: Scene) -> Response:
@@ -72,6 +70,7 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
             return
     for contact in scene.contacts:
         yield from _contact_failures(response, scene, contact)
+    yield from passages(response, scene)
     yield from balance_failures(response, scene)
     yield from unresolved(response, scene)
 
@@ -131,101 +130,3 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
     dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(closed)
     if spec.keep and dropped.any():
         yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
-    through = _passed_through(response, scene, spec, contact)
-    if through is not None:
-        yield f"{spec.pair} is open and its node goes through the beam up to load parameter {through:.6g}"
-
-
-def _passed_through(
-    response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory
-) -> float | None:
-    """Load parameter up to which the pin of an open pair went through the deflected axis, not around an end; None if it did not.
-
-    Its way is followed from load parameter to load parameter, the axis taken to move straight. From a closed contact it is followed
-    only where it ends behind the axis, and not at all over a slip-off.
-    """
-    if "." in spec.node:
-        return None
-    closed = contact.force > 0.0
-    start = scene.pin(spec.node).position(0.0)
-    where = _whereabouts(_moment(response, scene, spec.beam, -1)[1], np.array(start), scene, spec)
-    for k, t in enumerate(map(float, response.load_parameter)):
-        if t >= contact.slip_off:
-            return None
-        if closed[k]:
-            where = "before"
-            continue
-        now = _moment(response, scene, spec.beam, k)
-        last, where = where, _whereabouts(now[1], np.array(scene.pin(spec.node).position(t)), scene, spec)
-        if k > 0 and closed[k - 1] and where != "behind":
-            continue
-        if _goes_through(_moment(response, scene, spec.beam, k - 1), now, last, scene, spec):
-            return t
-    return None
-
-
-def _goes_through(
-    before: tuple[float, Array], after: tuple[float, Array], where: str, scene: Scene, spec: ContactSpec
-) -> bool:
-    """Whether a pin, which is first `where`, goes through the axis on the way between two moments and does not come back.
-
-    One that comes back may have been in contact meanwhile.
-    """
-    (t, line), (t_after, line_after) = before, after
-    parts = np.linspace(0.0, 1.0, SAMPLES)
-    pin, touched = scene.pin(spec.node), np.concatenate([line, line_after])
-    nodes = np.array([pin.position(float((1.0 - u) * t + u * t_after)) for u in parts])
-    apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-    if apart.max() > scene.offset(spec):
-        return False
-    through = False
-    for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
-        moved = (1.0 - u) * line + u * line_after
-        last, where = where, _whereabouts(moved, node, scene, spec)
-        if last == "before" and where != "before":
-            through = where == "behind" or _cuts(moved, start, node, scene, spec)
-        through = through and where != "before"
-    return through
-
-
-def _moment(response: Response, scene: Scene, beam: str, k: int) -> tuple[float, Array]:
-    """Load parameter k and the axis of a beam there; of -1 the undeformed one."""
-    arc, line = response.axis_line(beam, max(k, 0))
-    if k >= 0:
-        return float(response.load_parameter[k]), line
-    spec = scene.beam(beam)
-    return 0.0, np.array(spec.start) + np.outer(arc, spec.direction)
-
-
-def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
-    """Whether the way from start to end leads from the stated side through the line that a touching node is on."""
-    near = 1e-6 * scene.beam(spec.beam).length
-    side = 1.0 if spec.side == "left" else -1.0
-    pieces, way = np.diff(line, axis=0), end - start
-    lengths = np.hypot(*pieces.T)
-    before, after = (
-        side * _cross(pieces, node - line[:-1]) / lengths - scene.offset(spec) for node in (start, end)
-    )
-    left = side * scene.offset(spec) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
-    first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
-    return bool(((before > near) & (after < -near) & (first != last)).any())
-
-
-def _cross(a: Array, b: Array) -> Array:
-    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return product
-
-
-def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
-    """Where a node is: "beyond" an end of the axis, "before" it, on the stated side, or "behind" it."""
-    near = 1e-6 * scene.beam(spec.beam).length
-    nearest = int(np.argmin(np.hypot(*(line - node).T)))
-    first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)
-    tangent, away = line[last] - line[first], node - line[nearest]
-    tangent /= np.hypot(*tangent)
-    along = float(tangent @ away)
-    if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
-        return "beyond"
-    distance = tangent[0] * away[1] - tangent[1] * away[0]
-    gap = (distance if spec.side == "left" else -distance) - scene.offset(spec)
-    return "behind" if gap < -near else "before"

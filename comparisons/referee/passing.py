@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 SAMPLES = 101
 """Places on the way of a node from load parameter to load parameter at which it is looked for."""
+_AROUND = 0.2
+"""Part of a node's way to a place beyond an end within which it may as well have come around: axes do not move straight."""
 
 
 def passages(response: Response, scene: Scene) -> Iterator[str]:
@@ -88,14 +90,24 @@ def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, w
     apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
     if apart.max() > scene.offset(spec):
         return False
+    leaves = _whereabouts(line_after, nodes[-1], scene, spec) == "beyond"
     through = False
     for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
         moved = (1.0 - u) * line + u * line_after
         before, where = where, _whereabouts(moved, node, scene, spec)
         if before == "before" and where != "before":
             through = where == "behind" or _cuts(moved, start, node, scene, spec)
+            through = through and not (leaves and _near_an_end(line, line_after, moved, nodes, node))
         through = through and where != "before"
     return through
+
+
+def _near_an_end(line: Array, line_after: Array, moved: Array, nodes: Array, node: Array) -> bool:
+    """Whether a node crosses the axis so near to an end that it may have gone around it."""
+    ends = moved[[0, -1]]
+    near = np.hypot(*(node - ends).T)
+    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
+    return bool((near <= _AROUND * way).any())
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
