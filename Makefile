@@ -30,7 +30,7 @@ docs: setup
 	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d docs/doctrees documentation docs/html
 
 bench: setup
-	$(THREADS) $(BIN)/python tests/benchmarks/bench.py --out bench.json
+	$(THREADS) $(BIN)/python -m tests.benchmarks.bench --out bench.json
 
 fuzz: setup
 	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000

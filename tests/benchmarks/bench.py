@@ -14,16 +14,25 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
+import fem_reference
 import tsm
 from comparisons.files import write_text
-from comparisons.scene import load_scene
+from comparisons.models import solve
+from comparisons.options import Options
+from comparisons.referee import certify, equilibrium, given_by
+from comparisons.scene import load_scene, read_scene
 from comparisons.sweep import measure
 from comparisons.trade.points import cheapest
 from comparisons.trade.sweep import measure_trade
 from comparisons.translate import to_solid, to_structure
+from fem_reference.tangent import linearise
+from tests.comparisons.many_beams import MANY
+from tests.comparisons.referee.test_index import CROWD
+from tsm import path
 from tsm.model import Model
 from tsm.system import Assembler
 
@@ -147,6 +156,53 @@ def linear_cost(gates: list[Gate], times: dict[str, float]) -> None:
             False,
         )
     )
+
+
+def index_and_certificate(gates: list[Gate], times: dict[str, float]) -> None:
+    """What stability costs of a solution, and what a certificate does."""
+    scene = load_scene("ks-cantilever")
+    load_parameters = np.array(scene.times)
+    solid = to_solid(scene, mesh=(50, 2))
+    for label, structure, bar in (
+        ("mixed 10", to_structure(scene, elements=10), 0.2),
+        ("exact", to_structure(scene, element="exact"), 0.2),
+    ):
+
+        def counted(structure: tsm.Structure = structure) -> None:
+            tsm.solve(structure, load_parameters)
+
+        def uncounted(structure: tsm.Structure = structure) -> None:
+            with patch.object(path, "index", lambda *_: 0):
+                tsm.solve(structure, load_parameters)
+
+        whole, rest = seconds(counted, uncounted, of=min)
+        gates.append(Gate(f"index of {label}, part of its solution", (whole - rest) / whole, bar, False))
+    steps = fem_reference.solve(solid, load_parameters[:10])
+    tangent = linearise(steps.model, steps.states[-1])
+    (signs,) = seconds(lambda: tangent.index(1e-12), repeats=15, of=min)
+    gates.append(
+        Gate(
+            "index of the solid, part of its solution",
+            signs * steps.substeps / steps.wall_seconds,
+            0.05,
+            False,
+        )
+    )
+    response, crowd = solve(scene, "tsm"), solve(CROWD, "tsm", Options(element="exact"))
+    times["certificate of ks-cantilever"], times["certificate of ten contacts"] = seconds(
+        lambda: certify(response, scene), lambda: equilibrium(CROWD, given_by(crowd, CROWD, -1))
+    )
+    gates.append(
+        Gate("seconds of a certificate with ten contacts", times["certificate of ten contacts"], 0.3, False)
+    )
+
+
+def many_beams(gates: list[Gate], times: dict[str, float]) -> None:
+    """3,000 beams, in chains, rows and frames."""
+    for kind, text in MANY.items():
+        scene = read_scene(text(3000), "many.toml")
+        (spent,) = seconds(lambda scene=scene: solve(scene, "tsm"), repeats=1)
+        gates.append(Gate(f"seconds for 3,000 beams, {kind}", spent, 20, False))
 
 
 def exact_element(gates: list[Gate], times: dict[str, float]) -> None:
@@ -363,6 +419,8 @@ def main() -> None:
         equal_error,
         scenes_and_elements,
         linear_cost,
+        index_and_certificate,
+        many_beams,
         exact_element,
         batches,
         assembly,

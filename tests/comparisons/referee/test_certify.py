@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from time import process_time
 
 import numpy as np
 import pytest
@@ -366,13 +365,6 @@ def test_strong_shear() -> None:
     assert found.judged[0].exact.ends["b.end"][1] == pytest.approx(-1.046, abs=5e-4)
     forged = replace(response, tips={"b": response.tips["b"] - [0.0, 0.02]})
     assert certify(forged, scene, at=[-1]).verdict is Verdict.NOT_AN_EQUILIBRIUM
-
-
-def test_a_certificate_takes_less_than_a_tenth_of_a_second() -> None:
-    certify(answer(KS), KS)
-    began = process_time()
-    certify(answer(KS), KS)
-    assert process_time() - began < 0.1
 
 
 def test_the_allowance_is_the_callers() -> None:
