@@ -172,7 +172,7 @@ def test_beams_in_contact_agree(tmp_path: Path) -> None:
     """Most of what is drawn presses nothing, and does not count."""
     total = 0
 
-    @settings(DRAWN, max_examples=30)
+    @settings(DRAWN, max_examples=60)
     @seed(1)
     @given(stacks())
     def run(scene: Tables) -> None:
