@@ -79,12 +79,13 @@ def unresolved(response: Response, scene: Scene) -> Iterator[str]:
     """Yield one sentence for everything that is too large for the elements of a `response`, or too small for its numbers."""
     deformation = response.deformation
     if deformation is not None:
-        bent = deformation.turn > deformation.bearable
+        claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
+        bent = claimed & (deformation.turn > deformation.bearable)
         if bent.any():
-            most = deformation.turn.max()
+            most = deformation.turn[claimed].max()
             limit = f"{deformation.bearable:g} {_first(bent, deformation)}"
             yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
-        strained = deformation.strain > STRAIN
+        strained = claimed & (deformation.strain > STRAIN)
         if strained.any():
             yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, deformation)}"
     length = max(beam.length for beam in scene.beams)
