@@ -16,12 +16,12 @@ from tsm.newton import Equilibrium
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deformation:
-    """The most deformed element of closed form at every accepted step, whether its load parameter was asked for or not.
+    """The most deformed element at every accepted step, between the prescribed load parameters too. Exact elements count as not deformed.
 
     Attributes
     ----------
     load_parameter : ndarray, shape (n,)
-        Of the steps.
+        Load parameter of every accepted step.
     turn : ndarray, shape (n,)
         Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
         the distances a and b of the contact from its ends [rad].
