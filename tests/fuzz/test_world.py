@@ -4,12 +4,13 @@ from collections import Counter
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
 from tests.fuzz.world import drawn
-from tests.fuzz.world_judge import Row, findings, judged
+from tests.fuzz.world_judge import Row, findings, judged, penetration
 
 BEAMS = ("exact", "mixed")
 
@@ -110,6 +111,21 @@ def test_the_judge_tells_wrong_answers() -> None:
         "UNSTABLE exact"
     ]
     assert _kinds_found(scene, replace(row, ended="HANG", response=None)) == ["HANG exact"]
+
+
+def test_the_judge_tells_a_beam_inside_a_round_pin() -> None:
+    scene = load_scene("ks-face")
+    answer = solve(scene, "tsm", Options(element="exact"))
+    row = Row(model="exact", number=50, ended="COMPLETED", response=answer, certified=True)
+    assert _kinds_found(scene, row) == []
+
+    def lowered(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
+        arc, place = answer.axis_line(beam, k)
+        return arc, place - [0.0, 1e-4 * scene.beams[0].length]
+
+    forged = replace(answer, axis_line=lowered)
+    assert penetration(scene, forged) == pytest.approx(1e-4, rel=0.2)
+    assert _kinds_found(scene, replace(row, response=forged)) == ["INSIDE exact"]
 
 
 def _kinds_found(scene: Scene, *rows: Row) -> list[str]:

@@ -95,7 +95,7 @@ def test_mixed_elements_find_the_first_critical_load_with_their_order(ends: str)
     assert abs(off[1]) < 1e-6
 
 
-@pytest.mark.parametrize("degrees", [20.0, 60.0, 120.0])
+@pytest.mark.parametrize("degrees", [20.0, 60.0, 120.0, 160.0])
 def test_the_stable_branch_is_the_elastica(degrees: float) -> None:
     """P/P_1 = (2 K(p)/pi)^2 with p = sin(tip angle/2), for both elements, in the slender limit."""
     section = tsm.Section(EA=1e10, GA=1e10, EI=1.0)
