@@ -79,7 +79,7 @@ class ContactEvent:
     force : float
         Contact force before the event.
     released : float
-        Strain energy set free by the jump after a slip-off.
+        Strain energy, less the work of the loads, set free by the jump that follows a slip-off.
     """
 
     kind: str

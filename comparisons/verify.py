@@ -1,5 +1,6 @@
 """Checks of a response that need nothing but the response and the scene."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -19,6 +20,10 @@ CLOSED = 1e-9
 """Largest gap of a closed contact, relative to the length: round-off of 2000 elements is below."""
 PENETRATION = 1e-2
 """Largest penetration of a penalty model, relative to the length."""
+INSIDE = 1e-3
+"""Largest depth of a round pin or thick end in a beam away from its contact, relative to the length: the stated axis is that good."""
+KINK = 0.2
+"""Largest kink of an axis at a contact that a round pin in it is put down to [rad]."""
 STRAIN = 0.1
 """Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
 MOTION = 1e-10
@@ -58,8 +63,8 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
     """Yield one sentence for every check that a completed `response` breaks.
 
     All load parameters of the scene are reached, everything is finite, contact forces push, closed contacts are closed,
-    open nodes are on their side unless they slipped off, contacts that must persist do, and the forces and moments of
-    supports, pins and loads on the whole structure are in balance.
+    open nodes are on their side unless they slipped off, contacts that must persist do, round pins are outside the beam along the whole
+    axis, and the forces and moments of supports, pins and loads on the whole structure are in balance.
     """
     if not np.array_equal(response.load_parameter, scene.times):
         yield f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
@@ -131,3 +136,41 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
     dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(closed)
     if spec.keep and dropped.any():
         yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
+    depth = penetration(response, scene, spec, KINK) + np.minimum(np.nan_to_num(contact.gap), 0.0)
+    inside = depth > INSIDE * length
+    if inside.any():
+        yield (
+            f"{spec.node} is {depth[inside][0] / length:.2g} L inside the beam beside its contact {_first(inside, response)}: "
+            "it touches at more than one place"
+        )
+
+
+def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
+    """Return the largest depth of the stated axis inside a round pin or thick end, at every load parameter; negative or zero if none.
+
+    Places where the distance from the node is least, on the stated side, count. The axis of a shearing beam has a kink of F/GA at a
+    contact, so that a round pin is inside it by half of that angle times the distance from the contact; this much is allowed, up to half
+    of `kink`.
+    """
+    offset, beam, contact = scene.offset(spec), scene.beam(spec.beam), response.contacts[spec.pair]
+    depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
+    if offset == 0.0:
+        return depth
+    for k, t in enumerate(response.load_parameter):
+        owner, dot, _ = spec.node.partition(".")
+        node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
+        arc, place = response.axis_line(spec.beam, k)
+        away, along = node - place, np.gradient(place, arc, axis=0)
+        distance = np.hypot(*away.T)
+        if contact.force[k] > 0.0:
+            half_kink = 0.5 * min(contact.force[k] / beam.GA, kink)
+            distance += half_kink * np.abs(arc - contact.arc_position[k])
+        ahead = np.einsum("mi,mi->m", along, away)
+        least = np.r_[
+            ahead[0] > 0.0,
+            (distance[1:-1] <= distance[:-2]) & (distance[1:-1] <= distance[2:]),
+            ahead[-1] < 0.0,
+        ]
+        facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
+        depth[k] = np.max(offset - distance[least & facing], initial=0.0)
+    return depth

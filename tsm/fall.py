@@ -51,8 +51,21 @@ class Fall:
     close: Callable[[State, Margin], State]
     iterations: int = 0
 
-    def rest(self, state: State) -> Equilibrium | None:
-        """Equilibrium that the structure comes to rest in when it moves against a dwindling drag; None if nothing holds it."""
+    def rest(self, state: State, energy: float) -> Equilibrium | None:
+        """Find where the structure comes to rest when it moves against a dwindling drag.
+
+        Parameters
+        ----------
+        state : State
+            From where it falls, without what held it: its forces are in no equilibrium any more.
+        energy : float
+            Potential of that configuration while it was held.
+
+        Returns
+        -------
+        Equilibrium or None
+            None if nothing holds it.
+        """
         pace, over = _FIRST_PACE, _before(self.newton.model, state)
         resistance = _resistance(self.newton.model)
         for _ in range(_TRIALS):
@@ -60,13 +73,17 @@ class Fall:
             drag = None if at_rest else Drag(resistance / pace, state.q)
             equilibrium = self.newton.solve(state, drag=drag)
             self.iterations += equilibrium.iterations
-            down = equilibrium.status is Status.CONVERGED and self._descends(state, equilibrium, drag)
+            moved = equilibrium.state.q - state.q
+            taken = 0.0 if drag is None else float(drag.per_way @ moved**2) / 2
+            down = equilibrium.status is Status.CONVERGED and descends(
+                self.newton, energy - taken, equilibrium.state
+            )
             margins = self.measure(equilibrium) if down else []
             landed = met(margins)
             if down and not landed:
                 if at_rest:
                     return equilibrium
-                state, pace = equilibrium.state, 10 * pace
+                state, pace, energy = equilibrium.state, 10 * pace, self.newton.potential(equilibrium.state)
                 over = {m.pair for m in margins if m.kind is EventKind.TOUCH and m.value < 1.0}
             elif landed and self.newton.apart(state, equilibrium.state) < _LAST_PART:
                 for margin in landed:
@@ -75,14 +92,11 @@ class Fall:
                 pace /= 4
         return None
 
-    def _descends(self, state: State, equilibrium: Equilibrium, drag: Drag | None) -> bool:
-        """Whether the energy falls by what the drag takes: too long a step against little drag ends on another equilibrium."""
-        newton, after = self.newton, equilibrium.state
-        before, now = (newton.potential(one) for one in (state, after))
-        moved = after.q - state.q
-        taken = 0.0 if drag is None else float(drag.per_way @ moved**2) / 2
-        scale = newton.model.force_scale * newton.model.length
-        return now + taken <= before + _LEVEL * (scale + abs(before))
+
+def descends(newton: Newton, energy: float, after: State) -> bool:
+    """Whether an equilibrium has no more potential than `energy`; too long a step against little drag ends on another equilibrium."""
+    scale = newton.model.force_scale * newton.model.length
+    return newton.potential(after) <= energy + _LEVEL * (scale + abs(energy))
 
 
 def _before(model: Model, state: State) -> set[int]:

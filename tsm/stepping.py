@@ -39,7 +39,7 @@ from tsm.events import (
     normal_force,
     passed,
 )
-from tsm.fall import Fall, met
+from tsm.fall import Fall, descends, met
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, LONGEST_STEP, PathTangent
@@ -318,7 +318,7 @@ class Stepper:
         for way in (1.0, -1.0):
             start = self.newton.update(held, way * push, at.system)
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
-            rest = fall.rest(start)
+            rest = fall.rest(start, self.newton.potential(start))
             self.iterations += fall.iterations
             if rest is not None and PathTangent(self.newton, rest).index <= 0:
                 found.append((self.newton.potential(rest.state), rest))
@@ -465,11 +465,13 @@ class Stepper:
 
     def _resume(self, at: Equilibrium, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
+        energy = began = self.newton.potential(at.state)
         while True:
-            equilibrium = self._settled(state, jump=jump)
+            equilibrium = self._settled(state, energy if jump else None)
             if equilibrium is None:
                 return Status.FALLING if jump else self.failure
             state = equilibrium.state
+            energy = self.newton.potential(state)
             pulling = [
                 (normal_force(self.model, equilibrium, k), k)
                 for k, touch in enumerate(state.touches)
@@ -488,8 +490,7 @@ class Stepper:
                 return Status.LOST_CONTACT
             state = changed(self.model, state, k, None, armed=True)
         if jump:
-            energy = self.newton.assembler.energy
-            self._note_release(energy(at.state) - energy(state))
+            self._note_release(began - energy)
         self.history = []
         held = self.index
         self._accept(equilibrium)
@@ -497,15 +498,16 @@ class Stepper:
             return self._meet_limit_point()
         return Status.CONVERGED
 
-    def _settled(self, state: State, *, jump: bool) -> Equilibrium | None:
-        """Equilibrium with other contacts: near the state, or, after a jump, where the structure falls to."""
+    def _settled(self, state: State, energy: float | None) -> Equilibrium | None:
+        """Equilibrium with other contacts: near the state, or, where a jump frees `energy`, to which the structure falls."""
         equilibrium = self.newton.solve(state)
         self.iterations += equilibrium.iterations
         found = equilibrium.status is Status.CONVERGED
         near = found and self.newton.apart(state, equilibrium.state) <= FAR
-        if jump and not (near and not met(self._measure(equilibrium))):
+        down = near and (energy is None or descends(self.newton, energy, equilibrium.state))
+        if energy is not None and not (down and not met(self._measure(equilibrium))):
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
-            rest = fall.rest(state)
+            rest = fall.rest(state, energy)
             self.iterations += fall.iterations
             return rest
         self.failure = equilibrium.status

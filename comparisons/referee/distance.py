@@ -19,6 +19,10 @@ LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
 of the largest force."""
 
 
+_SHARPEST = 1.4
+"""Turn of the axis from a chord to the next that its length still bounds the corner by [rad]."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Distance:
     """Largest differences between an answer and the exact equilibrium; infinite for what the answer states of something else.
@@ -158,7 +162,7 @@ def _end(given: Given, node: str) -> Array:
 
 
 def _on(arcs: Array, line: Array, at: float) -> tuple[Array, float]:
-    """Place on a stated axis, and what its chords may cut off there: half the chord times the turn between chords."""
+    """Place on a stated axis, and what its chords may cut off there: the corner, if the axis turns at once within the chord."""
     k = int(np.clip(np.searchsorted(arcs, at) - 1, 0, len(arcs) - 2))
     part = (at - arcs[k]) / (arcs[k + 1] - arcs[k])
     first, last = max(k - 1, 0), min(k + 2, len(arcs) - 1)
@@ -167,7 +171,8 @@ def _on(arcs: Array, line: Array, at: float) -> tuple[Array, float]:
         line[k] - line[first] if first < k else way,
         line[last] - line[k + 1] if last > k + 1 else way,
     )
-    cut = 0.5 * float(np.hypot(*way)) * max(_angle(before, way), _angle(way, behind))
+    turn = min(max(_angle(before, way), _angle(way, behind)), _SHARPEST)
+    cut = 0.5 * float(np.hypot(*way)) * math.tan(turn)
     return (1.0 - part) * line[k] + part * line[k + 1], cut
 
 

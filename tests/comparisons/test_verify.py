@@ -131,6 +131,20 @@ def above(path: tuple[tuple[float, float], ...]) -> dict[str, object]:
     }
 
 
+@pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
+def test_a_beam_lies_outside_a_round_pin_along_all_of_its_axis(model: str) -> None:
+    scene = replace(load_scene("ks-face"), load_parameters=5)
+    response = solve(scene, model)
+    assert list(failures(response, scene)) == []
+
+    def lowered(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
+        arc, place = response.axis_line(beam, k)
+        return arc, place - [0.0, (3e-3 if k == 2 else 0.0) * scene.beams[0].length]
+
+    found = list(failures(replace(response, axis_line=lowered), scene))
+    assert any("inside the beam" in reason and "at load parameter 0.6" in reason for reason in found)
+
+
 def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
     stopped = replace(good, completed=False, status="CUTBACK_FLOOR", load_parameter=good.load_parameter[:2])
     assert verified(stopped, SCENE) is stopped

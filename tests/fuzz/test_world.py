@@ -9,8 +9,9 @@ import pytest
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from comparisons.verify import penetration
 from tests.fuzz.world import drawn
-from tests.fuzz.world_judge import Row, findings, judged, penetration
+from tests.fuzz.world_judge import Row, findings, judged
 
 BEAMS = ("exact", "mixed")
 
@@ -27,6 +28,26 @@ def test_answers_to_drawn_scenes_are_certified() -> None:
     for model in BEAMS:
         own = [row for item in found for row in item.rows if row.model == model]
         assert sum(row.completed for row in own) >= 0.3 * len(own)
+
+
+MENDED = {
+    231: "a round pin touches at a second place",
+    315: "a kink within a chord of the stated axis",
+    471: "elements bend too much between load parameters",
+    490: "a fall ends on an equilibrium of more energy",
+    500: "a fall from a beam's start",
+    530: "a round pin in a beam with F/GA near 3",
+}
+"""Scenes that were answered wrongly, refused wrongly or given up, and why."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", MENDED)
+def test_drawn_scenes_that_once_failed(seed: int) -> None:
+    found = judged(drawn(seed), BEAMS, (1, 12))
+    assert not found.findings, found.report()
+    falls = [row.ended for row in found.rows if seed in (490, 500)]
+    assert set(falls) <= {"COMPLETED"}
 
 
 def test_the_seed_alone_decides_what_is_drawn() -> None:
@@ -121,10 +142,10 @@ def test_the_judge_tells_a_beam_inside_a_round_pin() -> None:
 
     def lowered(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
         arc, place = answer.axis_line(beam, k)
-        return arc, place - [0.0, 1e-4 * scene.beams[0].length]
+        return arc, place - [0.0, 2e-4 * scene.beams[0].length]
 
     forged = replace(answer, axis_line=lowered)
-    assert penetration(scene, forged) == pytest.approx(1e-4, rel=0.2)
+    assert penetration(forged, scene, scene.contacts[0]).max() == pytest.approx(2e-4, rel=0.2)
     assert _kinds_found(scene, replace(row, response=forged)) == ["INSIDE exact"]
 
 

@@ -83,6 +83,33 @@ def test_slip_off_frees_the_beam():
     assert np.isnan(result.contacts["p->b"].gap[4:]).all()
 
 
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_a_beam_that_a_pin_slips_off_is_straight_again_from_whichever_end_it_is_stated(element):
+    section = tsm.Section(EA=3e6, GA=1e6, EI=1.0)
+    clamp, tip = (0.0, 0.0), (1.0, 0.0)
+    for start, end, side in ((clamp, tip, "right"), (tip, clamp, "left")):
+        beam = tsm.Beam(
+            name="b",
+            start=start,
+            end=end,
+            section=section,
+            elements=1 if element == "exact" else 20,
+            element=element,
+        )
+        result = tsm.solve(
+            tsm.Structure(
+                beams=(beam,),
+                supports=(tsm.Support(beam="b", end="start" if start == clamp else "end"),),
+                pins=(tsm.Pin(name="p", path=((0.3, 0.0), (0.3, 0.3), (0.7, 0.8))),),
+                contacts=(tsm.ContactPair(node="p", beam="b", side=side),),
+            ),
+            TENTHS,
+        )
+        assert kinds(result)[-1] is tsm.EventKind.SLIP_OFF
+        assert result.events[-1].released > 0.1
+        np.testing.assert_allclose(result.axis_line("b", -1)[1][[0, -1]], [start, end], atol=1e-9)
+
+
 def test_slip_off_of_a_stiff_beam_is_the_elasticas():
     """Displacement at which a pin slips off an elastica of length 1, from x = .8, .9, .95, .99."""
     stiff = tsm.Section(EA=1e6, GA=1e6, EI=1.0)
