@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements import mixed_contact
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
 from tsm.rods.assembly import CutElement, RodBalance, RodTangent
@@ -149,7 +148,9 @@ class Border:
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
         """Let two contacts on one element feel each other's dent."""
         (one, a), (two, b) = first, second
-        gradient, block = mixed_contact.crossing(p, (a.xi, b.xi), a.force, b.force)
+        coupling = one.law.coupling
+        assert coupling is not None, "both have unknowns"
+        gradient, block = coupling.crossing(p, (a.xi, b.xi), a.force, b.force)
         rows = (one.slots, two.slots)
         parts = (slice(0, 3), slice(3, 6))
         for own, part in zip(rows, parts, strict=True):

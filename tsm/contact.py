@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements.curve import Curve
-from tsm.elements.mixed_contact import cross_compliance
 from tsm.elements.properties import Array
 from tsm.model import BeamModel, Model, PairModel
 from tsm.rods.accuracy import deflected
@@ -124,9 +123,10 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
         element, xi = slide(pair.target, element, xi - step)
         if abs(step) < 1e-14:
             break
-    for other, touch in zip(model.pairs, state.touches, strict=True):
-        if touch is not None and touch.element == element and other.slot >= 0:
-            dent = cross_compliance(model.element[element], xi, touch.xi)[0]
+    coupling = pair.law.coupling
+    for touch in state.touches:
+        if coupling and touch is not None and touch.element == element:
+            dent = coupling.dent(model.element[element], xi, touch.xi)
             px, py = px + dent * touch.force[0], py + dent * touch.force[1]
     height = (py * tx - px * ty) / math.hypot(tx, ty)
     beyond = _beyond(pair.target, arc_position(pair.target, element, xi))

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, EXACT, ClosedForm, ElementType
+from tsm.elements import ELEMENTS, EXACT, ClosedForm, ContactLaw, ElementType
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.rods.assembly import Rods
@@ -60,7 +60,7 @@ class PairModel:
     target : BeamModel
         The touched beam.
     element_type : ElementType
-        Its element type, which brings the contact response.
+        Its element type.
     side : float
         +1 where the node comes from the right, -1 from the left.
     pin : Pin or None
@@ -83,6 +83,12 @@ class PairModel:
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
         return self.element_type is EXACT
+
+    @property
+    def law(self) -> ContactLaw:
+        """Contact law of a touched element in closed form."""
+        assert isinstance(self.element_type, ClosedForm), "an exact element is cut instead"
+        return self.element_type.contact
 
     @property
     def reach(self) -> float:
@@ -340,7 +346,7 @@ class Model:
             for name in ("EA", "GA", "EI")
         )
         kinds = [ELEMENTS[beam.beam.element] for beam in self.beams.values()]
-        sheared = np.repeat([not isinstance(kind, ClosedForm) or kind.sheared for kind in kinds], repeats)
+        sheared = np.repeat([kind.sheared for kind in kinds], repeats)
         Phi = np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
         return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=Phi)
 

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.linalg.lapack import dgbsv, dgesv
 
 from tsm.border import Border, Bordered, Units
-from tsm.elements import ClosedForm, beam, mixed_contact
+from tsm.elements import beam
 from tsm.elements.properties import Array
 from tsm.model import Model, PairModel
 from tsm.rods.assembly import RodBalance
@@ -275,17 +275,13 @@ class Assembler:
         for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
             if touch is None or pair.cuts:
                 continue
-            if pair.slot < 0:
-                gradient, block = self._contact(pair, touch, state)
-                F = gradient[6:8]
-                total += float(F @ F) ** 2 / (2 * float(F @ block[6:8, 6:8] @ F) or 1.0)
-                continue
             p, x, lever = self._place(pair, touch, state)
-            total += mixed_contact.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+            coupling = pair.law.coupling
+            total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
             for other in state.touches[:k]:
-                if other is not None and other.element == touch.element:
-                    C = mixed_contact.cross_compliance(p, touch.xi, other.xi)[0]
-                    total += C * (touch.force[0] * other.force[0] + touch.force[1] * other.force[1])
+                if coupling and other is not None and other.element == touch.element:
+                    dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
+                    total += coupling.dent(p, touch.xi, other.xi) * dot
         return total
 
     def _place(
@@ -300,8 +296,7 @@ class Assembler:
 
     def _contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
         p, x, lever = self._place(pair, touch, state)
-        assert isinstance(pair.element_type, ClosedForm), "an exact element is cut instead"
-        return pair.element_type.contact(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+        return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
 
     def _cross(self, values: Array, border: Border) -> None:
         """Couple beam ends that touch chord elements, whose equations lie in the border."""

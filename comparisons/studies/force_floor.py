@@ -104,6 +104,7 @@ def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np
     """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
     angle = rng.uniform(0, 2 * np.pi)
     p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
+    p = p if kind is None else kind.constants(p)
     element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
     x = _random_displacements(p, rng).astype(_Extended)
     if kind is None:
@@ -167,7 +168,7 @@ def _carried(element: _Element, x: Array, xi: Any) -> _State:
 def _contact(element: _Element, state: _State) -> tuple[Array, Array]:
     assert element.kind is not None
     lever = element.start + state.x[:2] - state.node
-    return element.kind.contact(element.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
+    return element.kind.contact.response(element.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
 
 
 def _forces(element: _Element, state: _State) -> Array:

@@ -1,6 +1,6 @@
 """Residual and tangent of many structures: `Assembler` with the structure as last axis.
 
-The element forces and tangents come in the reduced variables of `beam` and `mixed_contact`, contacts are added to those of
+The element forces and tangents come in the reduced variables of `beam` and of the contact law, contacts are added to those of
 their element, and one sparse product spreads them over the equations.
 """
 
@@ -12,9 +12,10 @@ import numpy as np
 
 from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.batch.numbers import Numbers
-from tsm.elements import beam, mixed_contact
+from tsm.elements import Coupling, beam
+from tsm.elements.contact_law import UPPER
 from tsm.elements.properties import Array, Properties
-from tsm.model import Model
+from tsm.model import Model, PairModel
 
 OWN = 3
 """Unknowns of a contact: force (x, y) and arc position."""
@@ -72,9 +73,9 @@ class System(NamedTuple):
 
 
 def _over(a: int, b: int, columns: Array) -> Array:
-    """Coefficients of the 28 entries of `mixed_contact.UPPER` in entry a, b of ``columns^T H columns``."""
-    row = np.zeros(len(mixed_contact.UPPER))
-    for n, (i, j) in enumerate(mixed_contact.UPPER):
+    """Coefficients of the 28 entries of `UPPER` in entry a, b of ``columns^T H columns``."""
+    row = np.zeros(len(UPPER))
+    for n, (i, j) in enumerate(UPPER):
         row[n] = columns[i, a] * columns[j, b] + (i != j) * columns[j, a] * columns[i, b]
     return row
 
@@ -91,6 +92,12 @@ _TANGENT = -np.array(
     + [_over(6 + c, 6 + d, _MOVED) for c in range(OWN) for d in range(OWN)]
 )
 _FORCE = -np.concatenate([_BENT.T, np.eye(7)[4:]])
+
+
+def coupling_of(pair: PairModel) -> Coupling:
+    """Contact law of a pair for many contacts at a time."""
+    assert pair.law.coupling is not None, "batches are of contacts with unknowns"
+    return pair.law.coupling
 
 
 class Equations:
@@ -149,7 +156,7 @@ class Equations:
         p = properties_of(numbers, e, which)
         x = at.q[self.model.dofs[:, e], which]
         offset = numbers.offset[k, which]
-        gradient, hessian = mixed_contact.jet(
+        gradient, hessian = coupling_of(self.model.pairs[k]).jet(
             p,
             x,
             at.xi[k, which],
@@ -211,7 +218,8 @@ class Equations:
                 continue
             p = properties_of(numbers, at.element[one, which], which)
             xi = (at.xi[one, which], at.xi[two, which])
-            gradient, block = mixed_contact.crossing(p, xi, at.force[one][:, which], at.force[two][:, which])
+            coupling = coupling_of(self.model.pairs[one])
+            gradient, block = coupling.crossing(p, xi, at.force[one][:, which], at.force[two][:, which])
             rows = np.r_[self.model.pairs[one].slots, self.model.pairs[two].slots]
             own[rows[:, None], which] += gradient
             corner[rows[:, None, None], rows[:, None], which] += block

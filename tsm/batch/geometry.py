@@ -6,10 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.batch.equations import Equations, Points, properties_of
+from tsm.batch.equations import Equations, Points, coupling_of, properties_of
 from tsm.batch.numbers import Numbers
 from tsm.elements.curve import Curve
-from tsm.elements.mixed_contact import cross_compliance
 from tsm.elements.properties import Array, Properties
 from tsm.model import BeamModel
 
@@ -97,12 +96,13 @@ def project(equations: Equations, numbers: Numbers, at: Points, k: int, which: A
         element, xi = slide(l0, pair.target, element, xi - step, which)
         if not (np.abs(step) >= _EXACT).any():
             break
+    coupling = coupling_of(pair)
     for other in range(len(model.pairs)):
         there = at.closed[other, which] & (at.element[other, which] == element)
         if there.any():
             own = Properties(*(column[there] for column in properties_of(numbers, element, which)))
             xis = np.stack([xi[there], at.xi[other, which[there]]])
-            dent = cross_compliance(own, xis.min(axis=0), xis.max(axis=0))[0]
+            dent = coupling.dent(own, xis.min(axis=0), xis.max(axis=0))
             fx, fy = at.force[other][:, which[there]]
             px[there] += dent * fx
             py[there] += dent * fy

@@ -132,7 +132,7 @@ def _properties(model: Model, coordinates: Array, l0: Array, table: Array) -> Pr
     counts = [place.beam.elements for place in model.beams.values()]
     EA, GA, EI = (np.repeat(table[:, column], counts, axis=0) for column in (5, 6, 7))
     kinds = [ELEMENTS[place.beam.element] for place in model.beams.values()]
-    sheared = np.repeat([not isinstance(kind, ClosedForm) or kind.sheared for kind in kinds], counts)
+    sheared = np.repeat([kind.sheared for kind in kinds], counts)
     d = coordinates[model.element_nodes[:, 1]] - coordinates[model.element_nodes[:, 0]]
     Phi = np.where(sheared[:, None], 12 * EI / (GA * l0**2), 0.0)
     return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)

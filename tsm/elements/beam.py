@@ -78,11 +78,6 @@ def linear_coefficients(p: Properties) -> Coefficients:
     return _coefficients(p, np.array([none, none]), np.array([none, none]), none, none)
 
 
-def unsheared_coefficients(p: Properties) -> Coefficients:
-    """Coefficients of the Euler-Bernoulli beam, `linear_coefficients` at ``Phi = 0`` whatever the section's shear."""
-    return linear_coefficients(p._replace(Phi=np.zeros_like(p.Phi)))
-
-
 def bowed_coefficients(p: Properties) -> Coefficients:
     """Coefficients with the strain measures of the Reissner rod to fourth order.
 

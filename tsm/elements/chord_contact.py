@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from tsm.elements.contact_law import ContactLaw
 from tsm.elements.properties import Array, Properties, chord_rotation, unwind
 
 Stiffness = Callable[[Properties, Any], tuple[Array, Array]]
@@ -98,6 +99,28 @@ def response(
     tangent = p.EA / p.l0 * np.outer(stretch, stretch) + B.T @ K @ B + geometric
     tangent += np.outer(slope @ B, p.l0 * slide)
     return force @ _REDUCE, _REDUCE.T @ tangent @ _REDUCE
+
+
+def law(element_force: ElementForce) -> ContactLaw:
+    """Contact law of an element force equation: the force is normal to the chord and follows from the displacements."""
+
+    def respond(
+        p: Properties, x: Any, lever: Any, _xi: Any, _force: Any, side: float, offset: float
+    ) -> tuple[Array, Array]:
+        try:
+            with np.errstate(all="ignore"):
+                return response(element_force, p, x, lever, side, offset)
+        except ArithmeticError:
+            # plain numbers raise where arrays overflow or divide by zero
+            return np.full(8, np.nan), np.full((8, 8), np.nan)
+
+    def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
+        """Energy of the spring between node and element, ``(F.F)^2/(2 F.K F)``."""
+        gradient, tangent = respond(p, x, lever, xi, force, side, offset)
+        F = gradient[6:8]
+        return float(F @ F) ** 2 / (2 * float(F @ tangent[6:8, 6:8] @ F) or 1.0)
+
+    return ContactLaw(response=respond, energy=energy)
 
 
 def simply_supported(stiffness: Stiffness) -> ElementForce:

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from tsm.elements.contact_law import UPPER, ContactLaw, Coupling
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 
@@ -31,8 +32,6 @@ from tsm.elements.properties import Array, Properties
 _REDUCE = np.zeros((7, 11))
 _REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
 _REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
-UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
-"""The 28 entries of the upper triangle over those seven."""
 # the same spread over the eleven
 _SPREAD = np.array(
     [
@@ -280,3 +279,12 @@ def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any, Any]:
         scale * (bend * dz * dz - 2 * slope),
         scale * 6 * dz * (dz * dz - bend),
     )
+
+
+def dent(p: Properties, xi: Any, eta: Any) -> Any:
+    """Deflection at xi by a unit force at eta, both ends clamped."""
+    return cross_compliance(p, xi, eta)[0]
+
+
+LAW = ContactLaw(response=response, energy=energy, coupling=Coupling(jet=jet, dent=dent, crossing=crossing))
+"""The contact whose force and place are unknowns."""

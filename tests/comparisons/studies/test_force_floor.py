@@ -102,7 +102,9 @@ def test_the_turned_frame_is_another_element_than_the_simple_one():
     def forces(size):
         x, node = size * np.array([0, 0, 1.0, 0, 0, -0.7]), np.array([0.3, 0.2 * size])
         chord = [
-            CLOSED_FORM[f"euler-bernoulli-{form}"].contact(p, x, -node, 0.3, np.zeros(2), 1.0, 0.0)[0]
+            CLOSED_FORM[f"euler-bernoulli-{form}"].contact.response(p, x, -node, 0.3, np.zeros(2), 1.0, 0.0)[
+                0
+            ]
             for form in ("simple", "cantilever")
         ]
         return *chord, turned_frame.contact(p, x, -node)[0]
