@@ -54,20 +54,7 @@ def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Respo
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
-        deformation=None
-        if options.element == "exact"
-        else _beam_deformation(options.element or "mixed", result),
-    )
-
-
-def _beam_deformation(element: str, result: Any) -> Deformation:
-    """Bend and strain of the most deformed element on the way."""
-    found = result.deformation
-    return Deformation(
-        load_parameter=found.load_parameter,
-        turn=found.turn,
-        strain=found.strain,
-        bearable=2.0 if element == "mixed" else 1.0,
+        deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsm.elements import EXACT
+from tsm.elements import ELEMENTS, ClosedForm
 from tsm.elements.properties import Array, Properties
 from tsm.events import normal_force
 from tsm.model import Model
@@ -16,7 +16,7 @@ from tsm.newton import Equilibrium
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deformation:
-    """The most deformed element at every accepted step, between the prescribed load parameters too. Exact elements count as not deformed.
+    """The most deformed element in closed form at every accepted step, between the prescribed load parameters too.
 
     Attributes
     ----------
@@ -27,15 +27,22 @@ class Deformation:
         the distances a and b of the contact from its ends [rad].
     strain : ndarray, shape (n,)
         Section force, or contact force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
+    bearable : float
+        Least turn up to which the elements are an approximation [rad].
     """
 
     load_parameter: Array
     turn: Array
     strain: Array
+    bearable: float
 
 
-def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation:
-    """Return turn and strain at every equilibrium; zero in exact elements, which bear any."""
+def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation | None:
+    """Return turn and strain at every equilibrium; None where all elements are exact, which bear any."""
+    kinds = {ELEMENTS[beam.beam.element] for beam in model.beams.values()}
+    bearable = [kind.bearable_turn for kind in kinds if isinstance(kind, ClosedForm)]
+    if not bearable:
+        return None
     p = Properties(*(column[model.closed] for column in model.properties))
     with np.errstate(divide="ignore"):
         stiffness = np.minimum(p.EA, 12 * p.EI / (p.Phi * p.l0**2))
@@ -47,12 +54,15 @@ def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation:
         at_ends = np.maximum(np.hypot(force[0], force[1]), np.hypot(force[3], force[4]))
         strain[n] = (at_ends / stiffness).max(initial=0.0)
         for k, touch in enumerate(equilibrium.state.touches):
-            if touch is None or model.pairs[k].element_type is EXACT:
+            if touch is None or model.pairs[k].cuts:
                 continue
             e, pressed = int(model.place[touch.element]), normal_force(model, equilibrium, k)
             arm = p.l0[e] * min(max(touch.xi, 0.0), max(1.0 - touch.xi, 0.0))
             turn[n] = max(turn[n], pressed * arm * p.l0[e] / p.EI[e])
             strain[n] = max(strain[n], pressed / stiffness[e])
     return Deformation(
-        load_parameter=np.array([one.state.load_parameter for one in equilibria]), turn=turn, strain=strain
+        load_parameter=np.array([one.state.load_parameter for one in equilibria]),
+        turn=turn,
+        strain=strain,
+        bearable=min(bearable),
     )

@@ -90,8 +90,8 @@ class Result:
         where a contact has no energy.
     critical : tuple of CriticalPoint
         Critical points of the path, with their modes.
-    deformation : Deformation
-        The most deformed element at every accepted step, also between the prescribed load parameters.
+    deformation : Deformation or None
+        The most deformed element at every accepted step, also between the prescribed load parameters; None if all are exact.
     unknowns : int
         Number of unknowns.
     wall_seconds : float
@@ -109,7 +109,7 @@ class Result:
     events: tuple[Event, ...]
     index: Array
     critical: tuple[CriticalPoint, ...]
-    deformation: Deformation
+    deformation: Deformation | None
     unknowns: int
     wall_seconds: float
     model: Model

@@ -25,8 +25,6 @@ LEAST_GROWTH, MOST_GROWTH = 1.1, 4.0
 """Elements of the next mesh over those of the last."""
 LEAST = 0.05
 """Least density of elements, over the largest: what carries nothing still takes an element."""
-SHEAR = {"mixed": (0.3, 3)}
-"""Error that no number of elements removes: factor and power of the shear strain; else its square. Measured on KS, gamma 1e-3 to 3e-2."""
 
 
 def exact_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
@@ -82,13 +80,15 @@ def graded_to(scene: Scene, accuracy: float, quantity: str, element: str) -> Dis
     Where it is too large, the next mesh has as many elements as the order promises, with the density
     ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))``, the largest over the load parameters: equal shares of the error of the order p.
     """
-    order = 4 if element == "mixed" else 2
+    from tsm.elements import CLOSED_FORM
+
+    order = CLOSED_FORM[element].order
     short, said = pilot(scene), []
     mesh = _with(scene, {beam.name: _equal(FIRST) for beam in scene.beams})
     for _ in range(ROUNDS):
         coarse, fine = (_solve(short, one, element) for one in (mesh, _halved(mesh)))
         apart = difference(coarse, fine, scene, quantity)
-        stuck = _shear_limit(fine, scene, element)
+        stuck = _shear_limit(fine, scene, CLOSED_FORM[element].shear_floor)
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
         total = _count(mesh)
         said.append(f"{element}, {total} elements: estimate {estimate:.1e} of {quantity}")
@@ -115,9 +115,9 @@ def _solve(scene: Scene, mesh: Scene, element: str) -> Response:
     return solve(replace(mesh, load_parameters=scene.load_parameters), "tsm", Options(element=element))
 
 
-def _shear_limit(response: Response, scene: Scene, element: str) -> float:
-    """Return what a closed-form element leaves however small it is."""
-    factor, power = SHEAR.get(element, (1.0, 2))
+def _shear_limit(response: Response, scene: Scene, floor: tuple[float, int]) -> float:
+    """Return what an element leaves however small it is: factor and power of the largest shear strain under a contact."""
+    factor, power = floor
     strains = [
         float(np.abs(response.contacts[contact.pair].force).max(initial=0.0)) / scene.beam(contact.beam).GA
         for contact in scene.contacts
