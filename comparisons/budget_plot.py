@@ -7,8 +7,8 @@ import numpy as np
 
 from comparisons import palette
 from comparisons.budget import PARTS, QUANTITIES, STEPS, TIMES, Budget, budget_rows
+from comparisons.output import write_numbers
 from comparisons.plot import figure, save
-from comparisons.studies.output import write_numbers
 
 COLOURS = (
     palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,

@@ -14,15 +14,17 @@ from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.metrics import errors
 from comparisons.models import certified, solve
 from comparisons.options import ModelError, Options
+from comparisons.output import plain
 from comparisons.plot import nearest_steps, plot_shapes
 from comparisons.progress import Watch, unwatched
 from comparisons.render import render_panels
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
-from comparisons.statement import as_dict, plain, versions
+from comparisons.statement import as_dict
 from comparisons.stress import beam_panel, solid_panel
 from comparisons.table import Row, table_csv
 from comparisons.translate import to_rod
+from comparisons.version import versions
 
 Report = Callable[[str], None]
 Watching = Callable[[str], AbstractContextManager[Watch]]

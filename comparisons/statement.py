@@ -1,50 +1,21 @@
 """A response as JSON and as a few readable lines."""
 
 import json
-import math
-import os
-import platform
-import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
-from importlib import metadata
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from comparisons.output import plain
 from comparisons.response import ContactEvent, Response, SupportHistory
+from comparisons.version import versions
 
 CRITICAL = ("limit-point", "bifurcation")
 """Events that belong to the path and to no contact."""
 AXIS_POINTS = 41
 """Points of every beam's axis in a JSON file."""
-DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of Python and of the distributions behind the numbers."""
-    found = {name: metadata.version(name) for name in DISTRIBUTIONS}
-    return {"python": ".".join(map(str, sys.version_info[:3])), **found}
-
-
-def machine() -> dict[str, str]:
-    """Return what the wall times belong to: system, processor and the number of its cores."""
-    return {
-        "system": platform.platform(),
-        "processor": _processor() or platform.processor() or platform.machine(),
-        "cores": str(os.cpu_count() or "unknown"),
-    }
-
-
-def _processor() -> str:
-    """Name of the processor, where Linux states it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return ""
-    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
 
 
 def as_json(response: Response, **more: Any) -> str:
@@ -114,17 +85,6 @@ def _axis(response: Response, beam: str) -> dict[str, Any]:
 def _support(support: SupportHistory) -> dict[str, Any]:
     own = {"moment": support.moment, "force": support.force}
     return own if support.other_end is None else {**own, "other_end": _support(support.other_end)}
-
-
-def plain(value: Any) -> Any:
-    """Return `value` in JSON's own types."""
-    if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
-    if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [plain(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()) -> str:

@@ -1,12 +1,16 @@
-"""The version that a result belongs to: of the release, and of the sources as they are."""
+"""What a result belongs to: release and sources, the libraries behind it, and the machine."""
 
 import hashlib
+import os
+import platform
+import sys
 from functools import cache
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
 PACKAGES = ("tsm", "fem_reference", "comparisons")
+DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 
 @cache
@@ -20,3 +24,27 @@ def version() -> str:
                 found.update(f"{package}/{path.relative_to(folder).as_posix()}\0".encode())
                 found.update(path.read_bytes().replace(b"\r\n", b"\n") + b"\0")
     return f"{metadata.version('tsm-crossval')}+{found.hexdigest()[:8]}"
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the distributions behind the numbers."""
+    found = {name: metadata.version(name) for name in DISTRIBUTIONS}
+    return {"python": ".".join(map(str, sys.version_info[:3])), **found}
+
+
+def machine() -> dict[str, str]:
+    """Return what the wall times belong to: system, processor and the number of its cores."""
+    return {
+        "system": platform.platform(),
+        "processor": _processor() or platform.processor() or platform.machine(),
+        "cores": str(os.cpu_count() or "unknown"),
+    }
+
+
+def _processor() -> str:
+    """Name of the processor, where Linux states it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return ""
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")

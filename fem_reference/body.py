@@ -14,8 +14,9 @@ from fem_reference.assembly import (
     internal_force,
     pattern,
 )
+from fem_reference.discretise import discretise
 from fem_reference.material import Law, elastic_law
-from fem_reference.mesh import Discretisation, discretise
+from fem_reference.mesh import Discretisation
 from fem_reference.strip import Strip
 
 

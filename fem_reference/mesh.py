@@ -64,12 +64,8 @@ class Discretisation:
     basis: Any
 
 
-def discretise(strip: Strip) -> Discretisation:
-    """Mesh a strip: equal rows over the height and elements along it in a geometric series, or the user's own mesh."""
-    if strip.mesh_file is not None:
-        from fem_reference.mesh_file import read_mesh
-
-        return read_mesh(strip)
+def structured_mesh(strip: Strip) -> Discretisation:
+    """Mesh a strip by equal rows over the height and elements along it in a geometric series."""
     from skfem import MeshQuad
 
     nx, ny = strip.mesh

@@ -126,4 +126,5 @@ def command_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in COMMANDS:
         module.add_to(commands)
+    parser.set_defaults(parser=parser)
     return parser

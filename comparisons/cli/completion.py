@@ -28,7 +28,5 @@ def run(given: "argparse.Namespace") -> int:
     """Print the script."""
     import shtab
 
-    from comparisons.cli.command import command_parser
-
-    sys.stdout.write(shtab.complete(command_parser(), given.shell) + "\n")
+    sys.stdout.write(shtab.complete(given.parser, given.shell) + "\n")
     return DONE

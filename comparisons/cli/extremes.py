@@ -41,7 +41,7 @@ def run(given: "argparse.Namespace") -> int:
     """Run the matrix, name the files and whatever is wrong."""
     writable_folder(given.out)
     from comparisons.extremes.run import counts, extremes
-    from comparisons.studies.output import tabulated
+    from comparisons.output import tabulated
     from comparisons.sweep.progress import line_ended, shown
     from comparisons.sweep.workers import local
 

@@ -28,7 +28,7 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Print the table."""
-    from comparisons.studies.output import csv_text
+    from comparisons.output import csv_text
     from comparisons.sweep.results import read_results, result_rows, result_table
 
     found = read_results(given.file)

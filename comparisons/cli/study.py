@@ -71,7 +71,7 @@ def _answer(given: "argparse.Namespace") -> int:
                 f"--{option.replace('_', '-')}", f"belongs to a study file, {given.study} is a question"
             )
     writable_folder(given.out)
-    from comparisons.studies.output import tabulated, write_rows
+    from comparisons.output import tabulated, write_rows
     from comparisons.studies.solid_accuracy import STUDIES
 
     rows = STUDIES[given.study](report)

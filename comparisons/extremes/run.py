@@ -10,8 +10,8 @@ from comparisons.extremes.cell import Cell, Judgement, Verdict, judged
 from comparisons.extremes.checks import Results
 from comparisons.extremes.maps import counted, sections
 from comparisons.files import write_text
+from comparisons.output import Row, write_numbers, write_rows
 from comparisons.report import page, provenance
-from comparisons.studies.output import Row, write_numbers, write_rows
 from comparisons.sweep.case import Case
 from comparisons.sweep.results import read_results
 from comparisons.sweep.run import Progress

@@ -7,7 +7,7 @@ from typing import Any
 from comparisons.junit import JUnitCase
 from comparisons.manual.judge import failure
 from comparisons.manual.record import Case, Run
-from comparisons.statement import versions
+from comparisons.version import versions
 
 HEAD = """# Verification manual
 

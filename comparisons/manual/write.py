@@ -9,7 +9,7 @@ from comparisons.manual.pictures import draw
 from comparisons.manual.problems import PROBLEMS
 from comparisons.manual.record import Manual, Problem
 from comparisons.manual.text import markdown, numbers
-from comparisons.studies.output import Report, write_numbers
+from comparisons.output import Report, write_numbers
 
 
 def write_manual(

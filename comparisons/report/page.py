@@ -10,8 +10,8 @@ from string import Template
 from typing import Any
 
 from comparisons.files import write_text
+from comparisons.output import plain
 from comparisons.report.markup import text
-from comparisons.studies.output import plain
 
 NAME = "report.html"
 

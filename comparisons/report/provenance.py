@@ -6,7 +6,7 @@ from pathlib import Path
 from comparisons.report.markup import definitions, file_links, folded, text
 from comparisons.report.page import Section
 from comparisons.scene import Scene, to_toml
-from comparisons.statement import machine, versions
+from comparisons.version import machine, versions
 
 
 def provenance(scenes: Iterable[Scene], files: Iterable[Path], folder: Path) -> list[Section]:

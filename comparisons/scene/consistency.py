@@ -1,11 +1,16 @@
 """What the records of a scene must obey together."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from comparisons.scene.contact import ContactSpec
 from comparisons.scene.joints import check_joints
-from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import MISSING, FieldError, Point, shown
+
+if TYPE_CHECKING:
+    from comparisons.scene.records import BeamSpec, Scene
 
 
 def check_scene(scene: Scene) -> None:

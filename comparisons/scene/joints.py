@@ -1,12 +1,17 @@
 """Joints: beams that share an end are one structure, which must be held, and each of its joints by one support at most."""
 
+from __future__ import annotations
+
 import math
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import combinations, product
+from typing import TYPE_CHECKING
 
-from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import FieldError, Point
+
+if TYPE_CHECKING:
+    from comparisons.scene.records import BeamSpec, Scene
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam, below which they are one joint by intention and must be so exactly."""

@@ -10,6 +10,8 @@ from functools import cache
 from itertools import pairwise
 from typing import Annotated, Any, get_args, get_type_hints
 
+from comparisons.scene.values import toml_value
+
 Point = tuple[float, float]
 Rule = Callable[[object], object]
 
@@ -55,8 +57,6 @@ MISSING = Missing()
 
 def shown(value: object) -> str:
     """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
-    from comparisons.scene.toml import toml_value
-
     try:
         text = "(missing)" if value is MISSING else " ".join(toml_value(value).split())
     except RecursionError:

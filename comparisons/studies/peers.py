@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from comparisons.output import Report, Row
 from comparisons.peers.calculix import Answer, pressed, tip_load
 from comparisons.response import Array
 from comparisons.scene import load_scene
-from comparisons.studies.output import Report, Row
 from comparisons.translate import to_solid
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.files import writable_folder, write_text
+from comparisons.output import write_numbers, write_rows
 from comparisons.studies.cantilever_shapes import Lifts, cantilever_shapes, plot_lifts
 from comparisons.studies.claims import Findings, claims_text
 from comparisons.studies.critical_area import PRINTED, RATIOS, SHOWN_TOLERANCE, CriticalAreas, critical_areas
@@ -22,7 +23,6 @@ from comparisons.studies.double_beam_plot import plot_histories, plot_stages
 from comparisons.studies.figures import FIGURES
 from comparisons.studies.formulations import FORMULATIONS
 from comparisons.studies.ks_shapes import READINGS, Shapes, ks_shapes, plot_readings, rows, shape_rows
-from comparisons.studies.output import write_numbers, write_rows
 from comparisons.studies.reproduce_report import write_reproduced_page
 
 Report = Callable[[str], None]

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models import solve
+from comparisons.output import Report, Row
 from comparisons.response import Array
 from comparisons.scene import Scene, load_scene
-from comparisons.studies.output import Report, Row
 from comparisons.studies.peers import peers
 from comparisons.translate import to_solid
 

@@ -12,8 +12,8 @@ from scipy.interpolate import CubicSpline
 
 from comparisons.models import solve
 from comparisons.options import ModelError
+from comparisons.output import plain
 from comparisons.response import Array, Response
-from comparisons.studies.output import plain
 from comparisons.sweep.case import Case
 from comparisons.sweep.memory import with_peak_memory
 

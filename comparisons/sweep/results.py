@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.files import OutputError
+from comparisons.output import Row, tabulated
 from comparisons.response import Array
-from comparisons.studies.output import Row, tabulated
 from comparisons.sweep.measure import Measurement
 from comparisons.sweep.schema import database_errors, open_for_reading
 from comparisons.sweep.settings import in_order, settings

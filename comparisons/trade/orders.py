@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import Any
 
-from comparisons.studies.output import Row
+from comparisons.output import Row
 from comparisons.sweep import Case
 from comparisons.trade.cases import family, refined, resolution
 from comparisons.trade.fits import Fit, convergence, power_law

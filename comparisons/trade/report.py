@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from comparisons.output import Row
 from comparisons.report import Section, definitions, folded, picture, provenance, table, write_page
-from comparisons.studies.output import Row
 from comparisons.trade.answers import QUANTITIES, SCOPES
 from comparisons.trade.points import COSTS, Trade
 from comparisons.trade.tables import cheapest_lines, order_lines, setting_rows

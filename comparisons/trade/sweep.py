@@ -6,8 +6,8 @@ from math import nan
 from pathlib import Path
 
 from comparisons.files import writable_folder
+from comparisons.output import Row, write_numbers, write_rows
 from comparisons.scene import Scene, to_toml
-from comparisons.studies.output import Row, write_numbers, write_rows
 from comparisons.sweep import Case
 from comparisons.sweep.results import read_results
 from comparisons.sweep.run import Progress, Tally, run

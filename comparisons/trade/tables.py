@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import isfinite
 
-from comparisons.studies.output import Row, tabulated
+from comparisons.output import Row, tabulated
 from comparisons.trade.answers import QUANTITIES, SCOPES
 from comparisons.trade.cases import family
 from comparisons.trade.points import TARGETS, Cheapest, Point, Trade, cheapest

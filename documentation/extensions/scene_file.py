@@ -9,7 +9,7 @@ from numpydoc.docscrape import NumpyDocString
 from comparisons.scene.read import LISTS
 from comparisons.scene.records import Scene
 from comparisons.scene.rules import Choice, Subset, field_rules
-from comparisons.scene.toml import toml_value
+from comparisons.scene.values import toml_value
 from documentation.extensions.markdown import table, text
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from comparisons.scene.toml import toml_value
+from comparisons.scene.values import toml_value
 from tests.fuzz.scenes import Tables, valid_scenes
 
 MOST = 12

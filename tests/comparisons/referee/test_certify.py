@@ -376,7 +376,7 @@ def test_the_allowance_is_the_callers() -> None:
 
 
 def test_a_certificate_is_stated_as_json() -> None:
-    from comparisons.statement import plain
+    from comparisons.output import plain
 
     found = certify(answer(KS), KS)
     read = json.loads(json.dumps(plain(found.as_dict()), allow_nan=False))

@@ -18,7 +18,7 @@ from comparisons.cli import main
 from comparisons.scene import Scene, SceneError, built_in_scenes, load_scene, read_scene, to_toml
 from comparisons.scene.json_schema import json_schema, json_schema_text
 from comparisons.scene.read import LISTS
-from comparisons.scene.toml import toml_value
+from comparisons.scene.values import toml_value
 
 SHIPPED = resources.files("comparisons.scene")
 TEMPLATE = SHIPPED.joinpath("template.toml").read_text()

@@ -15,7 +15,7 @@ from time import monotonic, sleep
 import pytest
 
 from comparisons.cli import main
-from comparisons.studies.output import csv_text
+from comparisons.output import csv_text
 from comparisons.sweep.results import read_results, result_rows
 from tests.comparisons.sweep.conftest import tiny
 

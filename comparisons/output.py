@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.files import write_text
-from comparisons.statement import versions
+from comparisons.version import versions
 
 Row = dict[str, Any]
 """One line of a study's table."""
