@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from comparisons.models import solve
+from comparisons.models import certified, solve
 from comparisons.options import ModelError
 from comparisons.output import plain
 from comparisons.response import Array, Response
@@ -39,6 +39,9 @@ class Measurement:
         How the solution ended: a name and its sentence; ``REFUSED`` if the model cannot state the case.
     completed : bool
         Whether it is complete and checked.
+    verdict : str
+        Verdict of the certificate of the last load parameter and of those beside events, ``CERTIFIED`` or another; empty where nothing was
+        reached, or no run is timed.
     seconds : float
         Processor time from the scene to the checked response, imports left out, median over `repeats` runs after a warm-up; nan if there is
         none. On one thread it is the time on the clock of a core that does nothing else, and it is not lengthened by what else
@@ -83,6 +86,7 @@ class Measurement:
     tip: dict[str, Array]
     shape_at: Array
     shape: dict[str, Array]
+    verdict: str = ""
 
     def to_json(self) -> str:
         """Return the measurement as JSON text; a number that is not finite is null."""
@@ -90,8 +94,8 @@ class Measurement:
 
     @classmethod
     def from_json(cls, text: str) -> "Measurement":
-        """Return the measurement that `to_json` wrote, every number the same."""
-        data = json.loads(text)
+        """Return the measurement that `to_json` wrote, every number the same; older versions wrote no verdict."""
+        data = {"verdict": ""} | json.loads(text)
         return cls(**{item.name: _restored(item.name, item.type, data[item.name]) for item in fields(cls)})
 
 
@@ -118,8 +122,14 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
         cutbacks=response.cutbacks,
         unknowns=response.unknowns,
         peak_memory=peak,
+        verdict=_verdict(response, case) if repeats else "",
         **_histories(response, case),
     )
+
+
+def _verdict(response: Response, case: Case) -> str:
+    found = certified(response, case.scene).certificate
+    return "" if found is None else found.verdict.name
 
 
 def _timed(case: Case) -> tuple[Response, float]:

@@ -107,6 +107,7 @@ def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
             "model": result.model,
             **{name: _text(result.settings.get(name)) for name in names},
             "status": measurement.status,
+            "verdict": measurement.verdict,
             **{name: answer.get(name) for name in columns},
             "iterations": measurement.iterations,
             "cutbacks": measurement.cutbacks,

@@ -64,6 +64,7 @@ def test_labels() -> None:
 def test_measurement_is_the_response(one: Case) -> None:
     found, response = measure(one, repeats=2), solve(one.scene, one.model, one.options)
     assert (found.status, found.completed, found.repeats) == ("COMPLETED", True, 2)
+    assert found.verdict == "CERTIFIED"
     assert 0.0 < found.seconds < 60.0
     assert found.iterations == response.newton_iterations.sum()
     assert np.array_equal(found.load_parameter, response.load_parameter)
