@@ -45,13 +45,15 @@ def _tsm(element: str, elements: int) -> Run:
 
 
 PAPER = tuple(_tsm("timoshenko", elements) for elements in (10, 20, 50))
-"""The paper's element; its shapes are drawn."""
+"""The paper's element."""
 MIXED = _tsm("mixed", 20)
 """The beams that are exported and rendered."""
 SOLID = Run(label="solid", model="solid", options=Options())
 ROD = Run(label="exact rod", model="rod", options=Options())
 ELASTICA = Run(label="elastica", model="elastica", options=Options())
 RUNS = (*PAPER, _tsm("mixed", 10), MIXED, _tsm("exact", 1), SOLID, ELASTICA, ROD)
+DRAWN = (SOLID, RUNS[5], *PAPER, RUNS[3], ROD)
+"""The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 
 
 APART = 0.5
@@ -169,7 +171,7 @@ def _write_all(
     scene: Scene, rows: list[Row], budget: Budget | None, folder: Path, report: Report
 ) -> list[Path]:
     responses = {row.label: row.response for row in rows}
-    names = [run.label for run in (SOLID, *PAPER, ROD)]
+    names = [run.label for run in DRAWN]
     shapes = [folder / "shapes.png", folder / "shapes.svg"]
     plot_shapes(scene, {name: responses[name] for name in names if name in responses}, *shapes)
     files = [*shapes, *_write_picture(scene, responses, folder, report)]

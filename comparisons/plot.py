@@ -1,6 +1,6 @@
 """Pictures by matplotlib: the overlay of deflected shapes, and a stand-in for the rendered picture."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,8 @@ BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": ".", "markersize": 4.0},
     {"marker": "^", "markersize": 4.0},
 )
+CONTINUOUS = {"linewidth": 3.5}
+"""Exact elements, which have no nodes to mark: their grid is finer than the axis that is drawn."""
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay; the nearest ones of the scene are drawn."""
 
@@ -76,14 +78,14 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     beam_styles = iter(BEAMS * len(responses))
     drawn: set[float] = set()
     for label, response in responses.items():
-        exact = response.model in ("rod", "elastica")
-        style = EXACT if exact else SOLID if response.model == "solid" else next(beam_styles)
-        style = {"color": palette.colour(label), **style}
+        style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
         for k in nearest_steps(response.load_parameter) if len(response.load_parameter) else []:
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:
                 _, line = response.axis_line(beam.name, k)
-                every = (len(line) - 1) // _elements(response, scene, k) if response.model == "tsm" else 1
+                every = (
+                    max(1, (len(line) - 1) // _elements(response, scene, k)) if "marker" in style else None
+                )
                 axes.plot(*line.T, label=label, markevery=every, **{"linewidth": 0.8, **style})
                 label = "_"  # noqa: PLW2901 one entry of the legend per response
     times = sorted(drawn)
@@ -94,6 +96,17 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
         for t, place in zip(times, places, strict=True):
             text = f"t = {t:.3g}"
             axes.annotate(text, place, (6, -10), textcoords="offset points", fontsize="x-small", clip_on=True)
+
+
+def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
+    """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
+    if response.model in ("rod", "elastica"):
+        return EXACT
+    if response.model == "solid":
+        return SOLID
+    reached = len(response.load_parameter)
+    points = len(response.axis_line(scene.beams[0].name, 0)[1]) if reached else 0
+    return CONTINUOUS if reached and _elements(response, scene, 0) >= points else next(beam_styles)
 
 
 def _elements(response: Response, scene: Scene, k: int) -> int:

@@ -70,7 +70,15 @@ def test_the_sdist_has_what_its_tests_need(built: Path) -> None:
     [sdist] = built.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    assert {"README.md", "LICENSE", "CITATION.cff", "Makefile", ".constraints.txt", "pyproject.toml"} <= names
+    assert {
+        "README.md",
+        "CHANGELOG.md",
+        "LICENSE",
+        "CITATION.cff",
+        "Makefile",
+        ".constraints.txt",
+        "pyproject.toml",
+    } <= names
     for folder in ("tsm", "comparisons", "fem_reference", "tests", "documentation"):
         assert any(name.startswith(f"{folder}/") for name in names)
     assert not [name for name in names if "__pycache__" in name or "_generated" in name]

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons import render
+from comparisons.compare import DRAWN
 from comparisons.models import solve
 from comparisons.options import Options
 from comparisons.plot import nearest_steps, plot_panels, plot_shapes
@@ -61,6 +62,18 @@ def test_shapes_are_drawn_in_both_formats(beams: Response, tmp_path: Path) -> No
     assert imread(paths[0]).std() > 0.05
     assert "<svg" in paths[1].read_text()
     assert sorted(tmp_path.iterdir()) == paths
+
+
+def test_every_model_is_drawn_and_an_exact_element_has_no_marks(beams: Response, tmp_path: Path) -> None:
+    models = {run.label.split(",")[0] for run in DRAWN}
+    assert models == {"solid", "TSM timoshenko", "TSM mixed", "TSM exact", "exact rod"}
+    exact = solve(SCENE, "tsm", Options(element="exact", elements=1))
+    path = tmp_path / "shapes.svg"
+    marks = []
+    for element, response in (("mixed", beams), ("exact", exact)):
+        plot_shapes(SCENE, {f"TSM {element}": response, "exact rod": solve(SCENE, "rod")}, path)
+        marks.append(path.read_text().count("<use "))
+    assert marks[0] >= marks[1] + 4 * 21
 
 
 def coloured(path: Path) -> float:

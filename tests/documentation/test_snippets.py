@@ -7,10 +7,14 @@ import pytest
 from tests.documentation.snippets import ROOT, SLOW, blocks, run_page, shows
 
 FOLDER = ROOT / "documentation"
+LINE_BY_LINE = FOLDER / "how-to" / "commands.md"
+"""Its commands are run one by one, in `test_commands.py`."""
 PAGES = {
     str(path.relative_to(FOLDER)): path.read_text()
     for path in sorted(FOLDER.rglob("*.md"))
-    if "_generated" not in path.parts and any(kind for kind, _ in blocks(path.read_text()))
+    if "_generated" not in path.parts
+    and path != LINE_BY_LINE
+    and any(kind for kind, _ in blocks(path.read_text()))
 }
 LONG = [page for page, text in PAGES.items() if any(f"\n{command}" in text for command in SLOW)]
 

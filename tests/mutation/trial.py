@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-_COPIED = ("tsm", "fem_reference", "comparisons", "tests", "pyproject.toml", "README.md")
+_COPIED = ("tsm", "fem_reference", "comparisons", "tests", "documentation", "pyproject.toml", "README.md")
 _MEMORY = 4 << 30
 """Bytes that a trial may take: a mutant can make a loop that only collects."""
 _STARTING = 10.0
@@ -51,7 +51,7 @@ def project_copy() -> Iterator[Path]:
         for name in _COPIED:
             source, copy = ROOT / name, Path(folder, name)
             if source.is_dir():
-                shutil.copytree(source, copy, ignore=shutil.ignore_patterns("__pycache__"))
+                shutil.copytree(source, copy, ignore=shutil.ignore_patterns("__pycache__", "_generated"))
             else:
                 shutil.copy(source, copy)
         yield Path(folder)

@@ -101,7 +101,7 @@ def test_a_small_load_takes_a_sharper_integration():
 
 
 def test_graded_elements_are_fewer_than_equal_ones(rod):
-    """On the whole way of the pin the best mesh there is has a quarter less: see the README."""
+    """On the whole way of the pin the best mesh there is has a quarter less: see results/accuracy.md."""
     answer = solve_to(KS, 1e-5, element="mixed")
     graded = len(answer.found.scene.beams[0].nodes) + 1
     error = difference(answer.response, rod, KS, "force")

@@ -234,7 +234,7 @@ def test_quick_matrix(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @pytest.mark.slow
-def test_many_elements_leave_what_the_readme_says() -> None:
+def test_many_elements_leave_what_the_page_says() -> None:
     """5,000 elements of `mixed`: 2e-10, and 19 % off would be wrong by eight powers of ten."""
     (cell,) = (one for one in matrix() if (one.axis, one.row, one.column) == ("elements", "mixed", "5000"))
     found = judged(cell, {case: measure(case, repeats=0) for case in cell.cases})

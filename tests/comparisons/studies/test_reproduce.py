@@ -158,7 +158,7 @@ def test_fig9(tmp_path):
     ]  # fmt: skip
     assert (
         max(max(check["force"], check["arc"]) for check in found["checks"]) < 2e-7
-    )  # as the README states it
+    )  # as results/paper.md states it
     assert [stage["key"] for stage in found["stages"]] == list("abcdef")
     depths = [stage["depth"] for stage in found["stages"]]
     assert depths == sorted(depths)
@@ -223,19 +223,19 @@ def test_all_with_full_settings(tmp_path):
     assert set(found.values()) <= set(Verdict)
     for claim in CLAIMS:
         assert found[claim.text] == FULL[claim.judge.__qualname__], claim.text
-    readme = Path(__file__).parents[3] / "README.md"
+    page = Path(__file__).parents[3] / "documentation" / "results" / "paper.md"
     counts = Counter(FULL[claim.judge.__qualname__] for claim in CLAIMS)
-    assert f"{len(CLAIMS)} claims" in readme.read_text()
+    assert f"{len(CLAIMS)} claims" in page.read_text()
     summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
     assert summary in (tmp_path / "claims.md").read_text()
-    assert summary in " ".join(readme.read_text().split())
+    assert summary in " ".join(page.read_text().split())
     critical = json.loads((tmp_path / "fig7b.json").read_text())
     for element, slope, within in (
         ("euler-bernoulli-simple", -3, 0.05), ("euler-bernoulli-cantilever", -3, 0.05), (turned_frame.NAME, -3, 0.05),
         ("timoshenko", -1, 0.05), ("mixed", 0, 0.05),
     ):  # fmt: skip
         assert critical["slopes_of_the_floor"][element] == pytest.approx([slope, slope], abs=within)
-    # round-off decides them, so another processor may differ; the README states 7e-11, 3e-10, 1e-12 and at most 2.5
+    # round-off decides them, so another processor may differ; results/paper.md states 7e-11, 3e-10, 1e-12 and at most 2.5
     for element, needed in (
         ("euler-bernoulli-simple", 7e-11),
         ("euler-bernoulli-cantilever", 3e-10),
