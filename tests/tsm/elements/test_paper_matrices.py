@@ -388,6 +388,35 @@ def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
     assert np.abs(S - (k @ v - lam * g)).max() <= 1e-13 * (np.abs(K) @ np.abs(v)).max()
 
 
+def newton(element_force, state, iterations, lift):
+    """Iterates of a cantilever of one element over a pin at 0.6 of its length."""
+    p, states = Properties(1.0, 0.0, 1.0, 1e3, 1.0, 0.01), [state]
+    for _ in range(iterations):
+        force, tangent = chord_contact.response(element_force, p, states[-1], (-0.6, -lift), 1.0, 0.0)
+        states.append(states[-1] - np.pad(np.linalg.solve(tangent[3:6, 3:6], force[3:6]), (3, 0)))
+    return states
+
+
+def test_newton_is_linear_without_the_part_of_the_slide():
+    """With ``J (dS/da) da`` left out every iteration leaves the same part of the error; with it the error is squared."""
+    exact = chord_contact.simply_supported(chord_contact.timoshenko)
+
+    def without(p, xi, deformation):
+        S, K, slope = exact(p, xi, deformation)
+        return S, K, 0 * slope
+
+    solution = np.zeros(6)
+    for lift in np.linspace(0.02, 0.3, 15):
+        solution = newton(exact, solution, 8, lift)[-1]
+    near = solution + np.array([0, 0, 0, 1e-4, -1e-4, 1e-4])
+    whole, part = (
+        np.array([np.abs(state - solution).max() for state in newton(f, near, 4, 0.3)])
+        for f in (exact, without)
+    )
+    assert whole[2] < 1e-11
+    assert part[2:] / part[1:-1] == pytest.approx(0.0095, rel=0.1)
+
+
 @pytest.mark.parametrize("name", PRINTED)
 def test_printed_elements_depend_on_the_unit_of_length(name):
     """Metres to millimetres: a force in newtons stays what it is, but not with the misprints."""
