@@ -6,16 +6,19 @@ and the pin's radius R. A penalty ``eps g^2 / 2`` is, with the contact force ``l
     Pi = -lam g - lam^2 / (2 eps).
 
 With ``W = d(r - x_c)/du`` at a fixed zeta, ``W' = dr'/du``, unit tangent t, ``rho = |r'|``, ``d = n . (r - x_c)``,
-``k = n . r''`` and ``h = rho^2 + d k``, elimination of zeta by its own stationarity gives both derivatives of the gap,
+``k = n . r''`` and ``D = rho^2 + d k``, elimination of zeta by its own stationarity gives both derivatives of the gap,
 hence force and symmetric tangent on both strips:
 
     dg/du   = -s W^T n
-    d2g/du2 = -s (k W^T t t^T W - rho (W^T t n^T W' + W'^T n t^T W) - d W'^T n n^T W') / h.
+    d2g/du2 = -s (k W^T t t^T W - rho (W^T t n^T W' + W'^T n t^T W) - d W'^T n n^T W') / D.
 
-The second holds at ``d = 0`` too: nothing is divided by the gap. Eliminating lam as well leaves the tangent
-``eps (W^T W - c c^T / (r' . r' + (r - x_c) . r''))`` of the penalty alone, ``c = W^T r' + W'^T (r - x_c)``; keeping lam spares
-Newton's method the force ``eps g`` of an iterate that is not yet in place, and the round-off of a stiff eps. An
-augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term, lam_0 being the force found before.
+Neither depends on R. The second holds at ``d = 0`` too, since nothing is divided by the gap. Eliminating lam as well would leave
+the tangent of the penalty alone, for a pin of any radius ::
+
+    eps (dg/du dg/du^T + g d2g/du2) = eps (W^T W - c c^T / D - R d2g/du2),    c = W^T r' + W'^T (r - x_c).
+
+Keeping lam spares Newton's method the force ``eps g`` of an iterate that is not yet in place, and the round-off of a stiff
+eps. An augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term, lam_0 being the force found before.
 """
 
 from dataclasses import dataclass

@@ -1,10 +1,11 @@
 """Arc-length control: the load parameter is an unknown and may turn back.
 
 A step goes a given distance along the tangent of the path, measured in displacements and rotations only (Crisfield 1981), and
-returns to it on the plane across the tangent (Riks 1972)::
+returns to it on the plane across the tangent (Riks 1972). With the unknowns x, the load parameter t, the unbalanced force f, its
+derivatives K in x and f_t in t, and the part tau of the path's tangent in x::
 
-    [ K   r_t ] [ dx ]     [ r ]
-    [ t    0  ] [ dl ] = - [ t . (x - x_predicted) ]
+    [ K    f_t ] [ dx ]     [ f ]
+    [ tau   0  ] [ dt ] = - [ tau . (x - x_predicted) ]
 
 K is solved for both right-hand sides at once, so its band is kept; the path passes limit points of the load.
 """

@@ -6,12 +6,12 @@ Clamp at the origin, undeformed rod along +x; the tip turns freely, so the inter
 
 with lengths in units of the rod's length L, forces in EI/L^2, moments in EI/L. At Gauss points both integrals are matrices; the
 unknowns are m at the points and n, the equations those above and `int_0^1 (r' - e1) = tip - e1` (differences, since a slender rod's
-axial force is its stretch, 1e-7 L, times EA). They make the energy stationary, at a saddle point: largest in n for every m, and that
-largest value least in m where the rod is stable (for n held it need not be),
+axial force is its stretch, 1e-7 L, times EA). They make an energy stationary, at a saddle point:
 
     Pi(m, n) = 1/2 int m^2 - int (N + N^2/2 EA + Q^2/2 GA) + n.tip
 
-so the state is stable among its neighbours with the same tip if and only if the Hessian has just two negative eigenvalues. The
+For every m the energy is largest in n. Where the rod is stable this largest value is least in m; with n held it need not be. So the
+state is stable among its neighbours with the same tip if and only if the Hessian has just two negative eigenvalues. The
 solution is analytic, so the error falls faster than any power of the number of points; a taut rod bends in a layer
 `1/sqrt(n)` at the clamp, where a slender rod therefore has more of them.
 

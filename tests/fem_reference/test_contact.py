@@ -183,11 +183,14 @@ def test_action_and_reaction_of_two_strips_cancel(strip):
     assert np.hypot(*upper) == pytest.approx(1, abs=1e-13)
 
 
-def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin):
-    """``eps (W^T W - c c^T / h)`` of the penalty alone is ``eps (g' g'^T + g g'')``."""
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("radius", [0.0, 0.01, 0.03])
+def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin, radius, side):
+    """``eps (W^T W - c c^T / D - R g'')`` of the penalty alone is ``eps (g' g'^T + g g'')``, the derivative of ``eps g g'``."""
     u = bent(model)
     point = near(model, u, 0.37, 0.02)
-    pair = with_pin(model, point).pairs[0]
+    pair = with_pin(model, point, radius=radius).pairs[0]
+    pair = replace(pair, contact=replace(pair.contact, side=side))
     at = pair.project(u, 0.0)
     U, H = pair.gap_derivatives(at)
     tangent = np.outer(U[:, 0], U[:, 0]) + pair.gap(at) * U @ H @ U.T
@@ -197,8 +200,18 @@ def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin):
         np.stack([pair.carrier.pull(at.basis[row], axis).ravel() for axis in np.eye(2)]) for row in range(2)
     )
     c = W.T @ r1 + W1.T @ d
-    np.testing.assert_allclose(tangent, W.T @ W - np.outer(c, c) / (r1 @ r1 + d @ r2), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(pair.gap(at) * U[:, 0], W.T @ d, rtol=0, atol=1e-14)
+    of_the_axis = W.T @ W - np.outer(c, c) / (r1 @ r1 + d @ r2)
+    np.testing.assert_allclose(tangent, of_the_axis - radius * U @ H @ U.T, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(pair.gap(at) * U[:, 0], W.T @ d - radius * U[:, 0], rtol=0, atol=1e-14)
+    # by complex steps of the gap, hence of the energy's gradient
+    for seed in range(5):
+        v = np.random.default_rng(seed).standard_normal(u.shape)
+        moved = pair.project(u + 1j * STEP * v, 0.0)
+        slope = (pair.gap(moved) * pair.gap_derivatives(moved)[0][:, 0]).imag / STEP
+        np.testing.assert_allclose(tangent @ v.ravel(), slope, rtol=0, atol=1e-11)
+    # without the last term the tangent would be that of a pin without radius
+    apart = float(np.abs(tangent - of_the_axis).max() / np.abs(tangent).max())
+    assert (apart > 1e-3) is (radius > 0.0)
 
 
 @pytest.mark.parametrize("axial", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])

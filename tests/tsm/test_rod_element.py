@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy as sp
 from scipy.integrate import solve_ivp
 
 import tsm
@@ -204,6 +205,27 @@ def test_half_way_elimination_is_regular_at_every_axial_force(order):
     for k in (-(np.pi**2), -4 * np.pi**2):
         assert condition(k, table.twice) <= 20
         assert condition(k, table.twice - line) > 1e12
+
+
+def test_half_way_determinant_of_a_straight_rod_is_positive():
+    """``h theta'(0) + theta(1) - theta(0)`` over ``2 theta'(0)`` from ``theta'' = -(k/h)^2 theta``: ``(1 + sin k/k)/2``, by sympy.
+
+    ``m' = -Q (1 + g N)`` of a rod that turns by theta under N has ``Q = -N theta``, hence ``k^2 = -N (1 + g N) h^2/EI``.
+    """
+    k, c, N, theta = sp.symbols("k c N theta")
+    angle = sp.Function("angle")
+    found = sp.dsolve(
+        angle(c).diff(c, 2) + k**2 * angle(c), ics={angle(0): 0, angle(c).diff(c).subs(c, 0): 1}
+    ).rhs
+    half_way = (found.diff(c).subs(c, 0) + found.subs(c, 1) - found.subs(c, 0)) / 2
+    assert sp.simplify(half_way.rewrite(sp.sin) - (1 + sp.sin(k) / k) / 2) == 0
+    g, EI, h = sp.symbols("g EI h", positive=True)
+    n = sp.Matrix([N, 0])
+    along, across = sp.Matrix([sp.cos(theta), sp.sin(theta)]), sp.Matrix([-sp.sin(theta), sp.cos(theta)])
+    rate = -n.dot(across) * (1 + g * n.dot(along))
+    assert sp.simplify(rate.diff(theta).subs(theta, 0) * h**2 / EI - N * (1 + g * N) * h**2 / EI) == 0
+    least = [np.linspace(1e-3, 60, 60000), 1j * np.linspace(1e-3, 60, 6000)]
+    assert min((1 + np.sin(part) / part).real.min() / 2 for part in least) > 0.39
 
 
 @pytest.mark.parametrize("k", [-100.0, -4 * np.pi**2, -(np.pi**2), 0.0, 1.0, 1e2, 1e3])

@@ -327,6 +327,13 @@ def test_many_elements_leave_the_third_power_of_the_shear_strain(shear):
     assert 0.2 * gamma**3 <= error <= 0.4 * gamma**3
 
 
+def test_what_many_elements_leave_on_the_ks_cantilever():
+    """The numbers of theory/beams.md: 4.5e-10 allowed, 1.3e-10 found."""
+    error, gamma = error_on_ks(640)
+    assert 0.4 * gamma**3 == pytest.approx(4.5e-10, rel=0.01)
+    assert error == pytest.approx(1.3e-10, rel=0.1)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("elements", [640, 5000])
 def test_round_off_does_not_grow_with_the_elements(elements):

@@ -1,18 +1,26 @@
 """The beam element between contacts: basic system simply supported on the chord.
 
 With the elongation ``e = l - l0`` of the chord, and of the end rotations from it the mean m (shear bends it so) and half the
-difference h (constant curvature), ``theta_i = m + h, theta_j = m - h``, the energy is ::
+difference h (constant curvature), ``theta_i = m + h, theta_j = m - h``, the strain energy is ::
 
     U = (e + em m^2 + eh h^2)^2 / (2 (c0 + cm m^2 + ch h^2)) + (km m^2 + kh h^2)/2 + r4 m^4 + r2 m^2 h^2
 
     c0 = l0/EA,  km = 12 EI/(l0 (1 + Phi)),  kh = 4 EI/l0
 
-The paper's element has these three coefficients only. The others carry the Reissner rod's strain measures
-``(1 + u') cos theta + w' sin theta - 1`` and ``w' cos theta - (1 + u') sin theta`` to fourth order in rotation and
-shear strain, e counted as of second order: ``em, eh`` are the length taken up by bending, ``integral (w'^2 - gamma^2)/2`` ("bow"), and em
-besides ``12 EI Phi/(l0 EA (1 + Phi)^2)``; ``cm, ch`` the normal force's
-share in shear; the rest what a finite shear strain gamma adds. Without them the element converges with second
-order only, or, with the bow alone, to a limit that is off by gamma^2.
+The paper's element has these three coefficients only. The six others carry the strains of the Reissner rod, axial
+``(1 + u') cos theta + w' sin theta - 1`` and shear ``w' cos theta - (1 + u') sin theta``::
+
+    em = l0 (1 - 5 Phi^2)/(10 (1 + Phi)^2) + 12 EI Phi/(l0 EA (1 + Phi)^2),    eh = l0/6
+    cm = D l0 (1 + 5 Phi^2)/(5 (1 + Phi)^2),    ch = D l0/3,    D = 1/GA - 1/EA
+    r4 = v sm/6 + v^2 cm/2,    r2 = v sh/6 + v^2 ch/2,    v = -12 EI/(l0^2 (1 + Phi))
+    sm = l0 (1 + B/2 + B^2/10 + B^3/140),    sh = l0 (1 + B/10),    B = -6/(1 + Phi)
+
+``em, eh`` are for the length that bending takes up, ``integral (w'^2 - gamma^2)/2`` with the shear strain gamma ("bow"); the second term
+of em is for the stretch by the shear force v m, which has a part along the turned sections. ``cm, ch`` are for the share of the axial
+force in shear, ``r4, r2`` for a finite gamma. With
+rotations of the size d the error of the energy is of the order d^6 where e is of the order d^2, and of the order d^4 where e is of
+the order d. Without the six the element converges with second order only; with the bow alone it converges to a limit that is off
+by gamma^2.
 
 In the terms of the tangent stiffness method ([P] (1)-(2)) the returned tangent is ``K_O + K_G``.
 """
@@ -53,8 +61,8 @@ class Coefficients(NamedTuple):
     l0 : ndarray, shape (n,)
         Undeformed length.
     constant, of_mm, of_hh : ndarray, shape (4, n)
-        Of the polynomial in ``m^2`` and ``h^2`` that gives lengthening, flexibility and, without the axial force, the
-        stiffnesses against m and h.
+        Coefficients of the polynomial in ``m^2`` and ``h^2`` that gives lengthening, flexibility and, without the axial force,
+        the stiffnesses against m and h.
     e, c : ndarray, shape (2, n)
         ``2 em, 2 eh`` and ``cm, ch``.
     r4, r2 : ndarray, shape (n,)
@@ -81,8 +89,8 @@ def linear_coefficients(p: Properties) -> Coefficients:
 def bowed_coefficients(p: Properties) -> Coefficients:
     """Coefficients with the strain measures of the Reissner rod to fourth order.
 
-    Perturbation of ``integral N_s^2/2EA + Q_s^2/2GA + EI theta'^2/2`` about Timoshenko's solution, whose rotation
-    from the chord is linear plus ``P xi (1 - xi)``, with ``integral theta = -gamma l0``, ``P = p m``.
+    They follow from ``N (l0 + e) - integral (N_s + N_s^2/2EA + Q_s^2/2GA - EI theta'^2/2)`` at Timoshenko's solution, which has the
+    shear force ``v m`` and the rotation ``m + h - 2 h xi + B m xi (1 - xi)`` from the chord.
     """
     l0, EA, EI, Phi = p.l0, p.EA, p.EI, p.Phi
     shear_strain = -Phi / (1 + Phi)
@@ -125,7 +133,7 @@ def response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     a : Coefficients
-        Of the energy.
+        Coefficients of the energy.
     x : ndarray, shape (6, n)
         Element displacements, component first.
 
@@ -146,7 +154,7 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     a : Coefficients
-        Of the energy.
+        Coefficients of the energy.
     x : ndarray, shape (6, ...)
         Element displacements, component first; the coefficients have the same axes behind the first.
 

@@ -8,11 +8,12 @@ material position xi in [0, 1] of the contact on the element, the Lagrangian ::
     p(xi) = x_i + xi d + w(xi) perp(d) + sigma offset m(phi)
     w(xi) = xi (1 - xi) ((1 - xi) tan s_i - xi tan s_j)
     s_i, s_j = end slopes of the centre line from the chord d, the rotations plus the shear strain
-    phi = slope angle of the loaded centre line at xi, m its normal, sigma = -side (-1 or +1) the side of the surface
+    phi = slope angle of the loaded centre line at xi, m its left normal
+    sigma = -side: -1 for a node from the right (side 1), +1 for one from the left (side -1)
     C(xi) = l0^3/(3 EI (1 + Phi)) (z^3 + Phi/4 z^2 + Phi (1 + Phi)/4 z),  z = xi (1 - xi)
 
-p is the centre line (or surface) without the deflection that F itself adds, ``C F``. The stationarity says: the node lies on the
-centre line deflected by F as well, ``p + C F = x_c``; the force is
+p is the centre line (or surface) without the deflection that F itself adds, ``C F``. Where L is stationary the node lies on the
+centre line that F deflects as well, ``p + C F = x_c``; the force is
 normal to the mean of the two tangents at the contact, ``F . p' + C' F.F/2 = 0``; and the beam carries the load
 that is equivalent to F. `C` and `w` vanish at both ends, so a node of the beam is a point like any other. The
 tangents of `s_i` make the curve continuous in slope from element to element (up to the true shear kink).

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from comparisons.exact.elastica import (
+    _polar_angle,
     contact_force_limit,
     elastica_under_pin,
     fold_angle,
@@ -184,6 +185,18 @@ def test_pin_behind_the_clamp_below_the_fold():
     state = elastica_under_pin(-0.05, 0.5)
     assert state.outcome is Outcome.CONTACT
     assert 2.494 < state.tangent_angle < fold_angle()
+
+
+def test_a_direction_of_the_pin_has_one_solution_below_the_fold_and_one_beyond():
+    """The polar angle of the pin grows up to the fold, at 2.983418, and falls beyond: the smaller root is the straight beam's branch."""
+    assert fold_angle() == pytest.approx(2.983418, abs=5e-7)
+    below, beyond = np.linspace(1e-3, fold_angle(), 400), np.linspace(fold_angle(), np.pi, 100)
+    polar = [np.array([_polar_angle(angle) for angle in part]) for part in (below, beyond)]
+    assert np.all(np.diff(polar[0]) > 0.0)
+    assert np.all(np.diff(polar[1]) < 0.0)
+    direction = _polar_angle(3.1)
+    pin = 0.5 * np.cos(direction), 0.5 * np.sin(direction)
+    assert elastica_under_pin(*pin).tangent_angle < fold_angle()
 
 
 @pytest.mark.parametrize(("EI", "length"), [(1e-30, 1e-9), (1e15, 1e6)])

@@ -171,6 +171,44 @@ def test_a_straight_rod_is_stable_below_the_first_critical_load_only():
     assert signs == [1.0, -1.0, 1.0, -1.0]
 
 
+def straight(load, flexibility):
+    """Hessian of the straight rod under an axial force, compression positive, in units of EI/L^2."""
+    rod = _rod(flexibility)
+    z = np.zeros(len(rod.grid.weights) + 2)
+    z[-2] = -load
+    return _equations(z, np.array([-load * flexibility.stretch, 0.0]), rod)[1]
+
+
+@pytest.mark.parametrize(
+    ("load", "in_moments", "reduced"), [(2.4, 0, 0), (2.6, 1, 0), (20.0, 1, 0), (20.3, 1, 1)]
+)
+def test_the_energy_is_least_in_the_moments_after_it_is_largest_in_the_force_only(load, in_moments, reduced):
+    """Between the critical loads of the free tip, 2.467, and of the tied one, 20.19, stable rods have a negative eigenvalue of H_mm."""
+    hessian = straight(load, Flexibility(stretch=1e-9, shear=3e-9))
+    mm, mn, nn = hessian[:-2, :-2], hessian[:-2, -2:], hessian[-2:, -2:]
+    condensed = mm - mn @ np.linalg.solve(nn, mn.T)
+    assert np.all(np.linalg.eigvalsh(nn) < 0.0)
+    assert [int((np.linalg.eigvalsh(part) < 0.0).sum()) for part in (mm, condensed)] == [in_moments, reduced]
+    assert _stable(hessian) is (reduced == 0)
+
+
+@pytest.mark.parametrize(("stretch", "shear"), [(1e-9, 0.0), (1e-9, 0.02), (0.005, 0.0125), (0.025, 0.033)])
+def test_a_straight_rod_buckles_where_shear_and_stretch_let_it(stretch, shear):
+    """``tan k = k (1 - P/EA)/(1 + P/GA - P/EA)``, ``k^2 = P (1 + P/GA - P/EA)`` with EI = L = 1."""
+
+    def excess(load):
+        both = 1.0 + load * (shear - stretch)
+        k = np.sqrt(load * both)
+        return np.sin(k) - np.cos(k) * k * (1.0 - load * stretch) / both
+
+    loads = np.linspace(5.0, 25.0, 201)
+    first = next(k for k in range(200) if excess(loads[k]) * excess(loads[k + 1]) < 0.0)
+    critical = brentq(excess, loads[first], loads[first + 1])
+    flexibility = Flexibility(stretch=stretch, shear=shear)
+    stable = [_stable(straight(part * critical, flexibility)) for part in (1.0 - 1e-6, 1.0 + 1e-6)]
+    assert stable == [True, False]
+
+
 @pytest.mark.parametrize("k", [1, 20, 50])
 def test_the_hessian_is_the_derivative_of_the_gradient(path, k):
     rod, step = _rod(path.flexibility), 1e-6

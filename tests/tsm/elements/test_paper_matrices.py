@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -170,6 +171,38 @@ def test_growth_of_round_off_in_the_force_equation_alone(formulation, at_i, at_j
 
     assert grown(a, b) == pytest.approx(-at_i, abs=0.05)
     assert grown(b, a) == pytest.approx(-at_j, abs=0.05)
+
+
+def force_errors(formulation, near, end, samples=30):
+    """Median error of the element forces in double precision, at the deformations of the element's own basic system.
+
+    The deformations of given forces are found in exact arithmetic and rounded to the last bit; the position is a double.
+    """
+    function = FORMULATIONS[formulation].correct
+    rng, errors = np.random.default_rng(15), []
+    for _ in range(samples):
+        distance = near * rng.uniform(1, 2)
+        xi = float(distance if end == "i" else 1 - distance)
+        one = Fraction(1)
+        exact, _ = function(Properties(one, 0 * one, one, one, one, 0 * one), Fraction(xi))
+        forces = [Fraction(value) for value in rng.normal(size=3)]
+        K = sp.Matrix(3, 3, [sp.Rational(v.numerator, v.denominator) for v in exact.ravel()])
+        v = K.LUsolve(sp.Matrix([sp.Rational(f.numerator, f.denominator) for f in forces]))
+        found, _ = function(Properties(1.0, 0.0, 1.0, 1.0, 1.0, 0.0), xi)
+        computed = found @ np.array([float(value) for value in v])
+        errors.append(np.abs(computed - [float(f) for f in forces]).max())
+    return np.median(errors)
+
+
+@pytest.mark.parametrize(
+    ("formulation", "end", "power"),
+    [("(5)-(6)", "i", -2), ("(5)-(6)", "j", -2), ("(7)-(8)", "i", -1), ("(7)-(8)", "j", -3)],
+)
+def test_round_off_of_the_force_equation_in_double_precision(formulation, end, power):
+    """The cantilever gains a power at its clamp and loses one at its tip."""
+    distances = 10.0 ** -np.arange(2, 8)
+    errors = [force_errors(formulation, near, end) for near in distances]
+    assert np.polyfit(np.log10(distances), np.log10(errors), 1)[0] == pytest.approx(power, abs=0.15)
 
 
 def test_verdicts_can_be_told_apart():
@@ -356,6 +389,35 @@ def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
     lam = -(g @ v) / C
     assert lam == pytest.approx(-0.3, rel=1e-9)
     assert np.abs(S - (k @ v - lam * g)).max() <= 1e-13 * (np.abs(K) @ np.abs(v)).max()
+
+
+def newton(element_force, state, iterations, lift):
+    """Iterates of a cantilever of one element over a pin at 0.6 of its length."""
+    p, states = Properties(1.0, 0.0, 1.0, 1e3, 1.0, 0.01), [state]
+    for _ in range(iterations):
+        force, tangent = chord_contact.response(element_force, p, states[-1], (-0.6, -lift), 1.0, 0.0)
+        states.append(states[-1] - np.pad(np.linalg.solve(tangent[3:6, 3:6], force[3:6]), (3, 0)))
+    return states
+
+
+def test_newton_is_linear_without_the_part_of_the_slide():
+    """With ``J (dS/da) da`` left out every iteration leaves the same part of the error; with it the error is squared."""
+    exact = chord_contact.simply_supported(chord_contact.timoshenko)
+
+    def without(p, xi, deformation):
+        S, K, slope = exact(p, xi, deformation)
+        return S, K, 0 * slope
+
+    solution = np.zeros(6)
+    for lift in np.linspace(0.02, 0.3, 15):
+        solution = newton(exact, solution, 8, lift)[-1]
+    near = solution + np.array([0, 0, 0, 1e-4, -1e-4, 1e-4])
+    whole, part = (
+        np.array([np.abs(state - solution).max() for state in newton(f, near, 4, 0.3)])
+        for f in (exact, without)
+    )
+    assert whole[2] < 1e-11
+    assert part[2:] / part[1:-1] == pytest.approx(0.0095, rel=0.1)
 
 
 @pytest.mark.parametrize("name", PRINTED)
