@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 _RESOLVED = 3e-14
 """Largest of an element's last two terms of the rotation [rad]."""
 _ITERATIONS, _ROUNDS, _HOLDING = 40, 12, 6
+_ROUGHLY = 0.01
+"""Differences of forces, over the largest, and of arc positions between an answer and the equilibrium next to it."""
 _LARGEST = 0.5
 """Largest change of a rotation in an iteration [rad]."""
 _CONTRAST = 1e10
@@ -98,10 +100,32 @@ def solve(scene: Scene, given: Given) -> Solution:
         )
     mesh = mesh_of(layout, _first_grids(layout, z))
     start = _fitted(layout, mesh, z, turns)
-    found = correct(layout, mesh, *start, _ITERATIONS)
-    if found.found is not Found.NO_EQUILIBRIUM or not layout.touches:
-        return found
-    return correct(layout, mesh, *_with_contacts_held(layout, mesh, *start), _ITERATIONS)
+    best = correct(layout, mesh, *start, _ITERATIONS)
+    for held in _known(layout):
+        if _is_near(layout, z, best):
+            break
+        found = correct(layout, mesh, *_settled(layout, mesh, *start, held), _ITERATIONS)
+        if best.found is Found.NO_EQUILIBRIUM or _is_near(layout, z, found):
+            best = found
+    return best
+
+
+def _known(layout: Layout) -> tuple[NDArray[np.int64], ...]:
+    """Unknowns that an answer states better than its rotations: the contacts' arc positions; these and the forces."""
+    arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
+    forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)], dtype=np.int64)
+    both = np.union1d(arcs, forces)
+    return (arcs, both) if len(arcs) else (both,)
+
+
+def _is_near(layout: Layout, z: Array, found: Solution) -> bool:
+    """Whether an equilibrium was found whose forces and arc positions are those of the answer, roughly."""
+    arcs = [touch.arc for touch in layout.touches]
+    forces = np.setdiff1d(_known(layout)[-1], arcs)
+    size = float(np.abs(z[forces]).max(initial=0.0))
+    apart = np.abs(found.z[: len(z)] - z)
+    close = apart[forces].max(initial=0.0) <= _ROUGHLY * size and apart[arcs].max(initial=0.0) <= _ROUGHLY
+    return found.found is Found.FOUND and bool(close)
 
 
 def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
@@ -136,13 +160,15 @@ def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
     )
 
 
-def _with_contacts_held(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
-    """Settle the deflection with the contacts at the arc positions of the answer.
+def _settled(
+    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: NDArray[np.int64]
+) -> tuple[Array, Array]:
+    """Settle the rotations while other unknowns keep the answer's values.
 
-    These are known better than its rotations. Where a contact is next to an end, the first correction of rough rotations would move
-    it beyond.
+    Where a contact is next to an end, the first correction of rough rotations would move it beyond. Where tension is near
+    GA EA/(EA - GA), rotations react so strongly that it may lead to another equilibrium.
     """
-    made, held = properties(layout, mesh), np.array([touch.arc for touch in layout.touches], dtype=np.int64)
+    made = properties(layout, mesh)
     for _ in range(_HOLDING):
         system = assemble(layout, mesh, made, z, bubbles)
         change = _step(system, held)
