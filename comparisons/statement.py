@@ -8,7 +8,6 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,8 @@ DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the distributions behind the numbers."""
+    from importlib import metadata
+
     found = {name: metadata.version(name) for name in DISTRIBUTIONS}
     return {"python": ".".join(map(str, sys.version_info[:3])), **found}
 

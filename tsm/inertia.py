@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs, dsytrf
 
 from tsm.elements.properties import Array
 
@@ -48,6 +47,8 @@ class Symmetric(NamedTuple):
 
 def negatives(symmetric: Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
+    from scipy.linalg.lapack import dpbtrf, dpbtrs
+
     band, right, corner, units, _ = symmetric
     factor, info = dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
@@ -105,6 +106,8 @@ def _equilibrating(largest: Array) -> Array:
 
 def _negatives_dense(matrix: Array) -> int | None:
     """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
+    from scipy.linalg.lapack import dsytrf
+
     lower = np.abs(np.tril(matrix))
     scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
     factors, exchanges, _ = dsytrf(matrix * scale * scale[:, None], lower=1)

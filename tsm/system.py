@@ -17,7 +17,6 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgbsv, dgesv
 
 from tsm.border import Border, Bordered, Units
 from tsm.elements import ClosedForm, beam, mixed_contact
@@ -329,6 +328,8 @@ class Assembler:
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
         """
+        from scipy.linalg.lapack import dgbsv, dgesv
+
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")
