@@ -21,6 +21,7 @@ import numpy as np
 from tsm.border import Border, Bordered, Units
 from tsm.elements import ClosedForm, beam, mixed_contact
 from tsm.elements.properties import Array
+from tsm.lapack import lapack
 from tsm.model import Model, PairModel
 from tsm.rods.assembly import RodBalance
 from tsm.rods.layout import OWN
@@ -328,8 +329,6 @@ class Assembler:
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
         """
-        from scipy.linalg.lapack import dgbsv, dgesv
-
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
         rhs = np.empty((banded, count + border), order="F")
@@ -340,7 +339,7 @@ class Assembler:
             tangent, given = self.units.without(tangent, given)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
-        lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        lu, pivots, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
         if border and (
             info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
         ):
@@ -351,7 +350,9 @@ class Assembler:
         if not border:
             return Solved(self._with_units(X), (factors,))
         reduced = tangent.below[:, :banded] @ X
-        lu, pivots, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
+        lu, pivots, z, info = lapack().dgesv(
+            tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count]
+        )
         if info != 0:
             return None
         x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
