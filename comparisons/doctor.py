@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from importlib import metadata
 from typing import NamedTuple
 
-NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "pyvista", "matplotlib")
+NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "pyvista", "matplotlib", "filelock", "psutil")
 EXTRAS = {"distributed": "extra cluster: studies on a Dask cluster (--cluster)"}
 PROGRAMS = {"ccx": "Debian's calculix-ccx: crossval study peers"}
 

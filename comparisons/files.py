@@ -1,9 +1,9 @@
 """Files that are either whole or not there."""
 
-import fcntl
 import os
 import signal
 import stat
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -31,7 +31,9 @@ def read_regular(path: str, most: int) -> bytes:
     OSError, ValueError
         If it cannot be read, is no regular file, or has more than `most` bytes.
     """
-    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
+    # a system without pipes in its file system has nothing to wait for
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    with os.fdopen(os.open(path, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise ValueError("is not a regular file")
         data = file.read(most + 1)
@@ -69,11 +71,21 @@ def write_text(path: Path, text: str) -> None:
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other runs that write a set of files into `folder` waiting, so that sets do not mix."""
+    """Keep other runs that write a set of files into `folder` waiting, so that sets do not mix.
+
+    The lock is on the folder itself, so it adds no file, and it ends with its process. Windows locks files only: there the lock is
+    on a file in the folder, which is removed with it.
+    """
+    from filelock import FileLock, lock_descriptor
+
+    if sys.platform == "win32":
+        with FileLock(folder / ".crossval.lock"):
+            yield
+        return
     place = os.open(folder, os.O_RDONLY)
     try:
         with suppress(OSError):  # a file system without locks
-            fcntl.flock(place, fcntl.LOCK_EX)
+            lock_descriptor(place)
         yield
     finally:
         os.close(place)

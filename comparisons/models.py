@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Literal
 
 from comparisons.discrete_models import solve_solid, solve_tsm
-from comparisons.exact_models import solve_elastica, solve_rod
 from comparisons.options import OPTIONS, ModelError, Options
 from comparisons.progress import Watch, unwatched
 from comparisons.response import Response
@@ -16,11 +15,25 @@ Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last and those beside events, every one, or none."""
 COARSE = 5e-2
 """Distance from the exact equilibrium that a coarse mesh may leave: an answer further away is refused."""
+
+
+def _rod(scene: Scene, options: Options, watch: Watch) -> Response:
+    from comparisons.exact_models import solve_rod
+
+    return solve_rod(scene, options, watch)
+
+
+def _elastica(scene: Scene, options: Options, watch: Watch) -> Response:
+    from comparisons.exact_models import solve_elastica
+
+    return solve_elastica(scene, options, watch)
+
+
 MODELS: dict[str, Callable[[Scene, Options, Watch], Response]] = {
     "tsm": solve_tsm,
     "solid": solve_solid,
-    "rod": solve_rod,
-    "elastica": solve_elastica,
+    "rod": _rod,
+    "elastica": _elastica,
 }
 
 

@@ -5,7 +5,6 @@ import os
 import platform
 import sys
 from functools import cache
-from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -16,6 +15,8 @@ DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 @cache
 def version() -> str:
     """Return the release and a digest of the sources, ``0.5.1+1a2b3c4d``: equal only where every line of code is."""
+    from importlib import metadata
+
     found = hashlib.sha256()
     for package in PACKAGES:
         spec = find_spec(package)
@@ -28,6 +29,8 @@ def version() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the distributions behind the numbers."""
+    from importlib import metadata
+
     found = {name: metadata.version(name) for name in DISTRIBUTIONS}
     return {"python": ".".join(map(str, sys.version_info[:3])), **found}
 

@@ -5,8 +5,6 @@ After such a step the node is nowhere over the beam, so that no gap tells of the
 
 from __future__ import annotations
 
-from scipy.optimize import brentq
-
 from tsm.contact import Projection, project
 from tsm.events import ROUND_OFF
 from tsm.model import Model, PairModel
@@ -46,6 +44,8 @@ def _over(model: Model, seen: Projection) -> bool:
 
 def _passage(model: Model, pair: PairModel, before: State, after: State, gap: float) -> float | None:
     """Load parameter at which the gap goes through zero over the beam."""
+    from scipy.optimize import brentq
+
     t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
 
     def seen(t: float) -> Projection:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs, dsytrf
 
 from tsm.elements.properties import Array
+from tsm.lapack import lapack
 
 _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-13
@@ -49,11 +49,11 @@ class Symmetric(NamedTuple):
 def negatives(symmetric: Symmetric) -> int | None:
     """Number of negative eigenvalues, None where one of them is zero or not a number."""
     band, right, corner, units, _ = symmetric
-    factor, info = dpbtrf(band, lower=1)
+    factor, info = lapack().dpbtrf(band, lower=1)
     if info == 0 and (factor[0] ** 2 > _WEAK * band[0]).all():
         if not len(corner):
             return 0
-        inside, _ = dpbtrs(factor, right, lower=1)
+        inside, _ = lapack().dpbtrs(factor, right, lower=1)
         reduced = corner - right.T @ inside
         if np.abs(reduced).max() < _SOFT:
             return _negatives_dense(reduced)
@@ -107,7 +107,7 @@ def _negatives_dense(matrix: Array) -> int | None:
     """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
     lower = np.abs(np.tril(matrix))
     scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
-    factors, exchanges, _ = dsytrf(matrix * scale * scale[:, None], lower=1)
+    factors, exchanges, _ = lapack().dsytrf(matrix * scale * scale[:, None], lower=1)
     single = exchanges > 0
     pivots = factors.diagonal()[single]
     if not np.isfinite(factors).all() or (np.abs(pivots) <= _EPS).any():

@@ -17,11 +17,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgbsv, dgesv
 
 from tsm.border import Border, Bordered, Units
 from tsm.elements import beam
 from tsm.elements.properties import Array
+from tsm.lapack import lapack
 from tsm.model import Model, PairModel
 from tsm.rods.assembly import RodBalance
 from tsm.rods.layout import OWN
@@ -334,7 +334,7 @@ class Assembler:
             tangent, given = self.units.without(tangent, given)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
-        lu, pivots, X, info = dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        lu, pivots, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
         if border and (
             info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
         ):
@@ -345,7 +345,9 @@ class Assembler:
         if not border:
             return Solved(self._with_units(X), (factors,))
         reduced = tangent.below[:, :banded] @ X
-        lu, pivots, z, info = dgesv(tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count])
+        lu, pivots, z, info = lapack().dgesv(
+            tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count]
+        )
         if info != 0:
             return None
         x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])

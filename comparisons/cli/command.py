@@ -5,7 +5,6 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, suppress
-from importlib import metadata
 from pathlib import Path
 from typing import NoReturn
 
@@ -109,6 +108,16 @@ class _Parser(argparse.ArgumentParser):
         super().error(printable(message))
 
 
+class _Version(argparse.Action):
+    """The version, looked up where it is asked for: the look-up imports more than the rest of the command."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib import metadata
+
+        print(f"crossval {metadata.version('tsm-crossval')}")
+        parser.exit()
+
+
 def _drop_output() -> None:
     """Spare the interpreter a last flush that fails."""
     with suppress(OSError):
@@ -122,7 +131,7 @@ def command_parser() -> argparse.ArgumentParser:
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
         epilog=EPILOG,
     )
-    parser.add_argument("--version", action="version", version=f"crossval {metadata.version('tsm-crossval')}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in COMMANDS:
         module.add_to(commands)

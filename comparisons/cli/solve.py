@@ -85,16 +85,15 @@ def run(given: "argparse.Namespace") -> int:
     if answer is None:
         with watching(given.model, quiet=given.quiet) as watch:
             response = solve(scene, given.model, _options(given), watch)
-        response = certified(response, scene, given.certify)
-        stated = as_json(response)
+        more = {}
     else:
         scene = answer.found.scene
-        response = certified(answer.response, scene, given.certify)
-        stated = as_json(response, accuracy=answer.as_dict())
+        response, more = answer.response, {"accuracy": answer.as_dict()}
+    response = certified(response, scene, given.certify)
     if given.json == "-":
-        sys.stdout.write(stated)
+        sys.stdout.write(as_json(response, **more))
     elif file is not None:
-        write_text(file, stated)
+        write_text(file, as_json(response, **more))
     if given.vtk is not None:
         from comparisons.export import write_series
 

@@ -2,7 +2,6 @@
 
 import ctypes
 import gc
-import resource
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -40,7 +39,14 @@ def _kibibytes(field: str) -> int:
 
 
 def _largest_so_far() -> int:
-    """Largest resident memory of the process so far, in bytes."""
+    """Largest resident memory of the process so far, in bytes; what it is now where the system keeps no peak."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        import psutil
+
+        memory = psutil.Process().memory_info()
+        return int(getattr(memory, "peak_wset", memory.rss))
     largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return largest if sys.platform == "darwin" else 1024 * largest
 

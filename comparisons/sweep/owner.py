@@ -3,11 +3,14 @@
 import os
 import socket
 from dataclasses import dataclass
-from pathlib import Path
 from time import time
+
+import psutil
 
 LEASE = 60.0
 """Seconds without a sign of life after which a run's claims are free, whatever it does."""
+CLOCK = 5.0
+"""Seconds by which the system's clock may be set while a run lasts: start times are told by that clock."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,19 +23,18 @@ class Owner:
         Name of its machine.
     pid : int
         Its number there.
-    born : str
-        When it was started, in the machine's own count, since numbers of processes are used again; empty where the system
-        does not tell.
+    born : float
+        When it was started [s since 1970], since numbers of processes are used again.
     """
 
     host: str
     pid: int
-    born: str
+    born: float
 
     @classmethod
     def this_process(cls) -> "Owner":
         """Return the owner that this process is."""
-        return cls(host=socket.gethostname(), pid=os.getpid(), born=_born(os.getpid()))
+        return cls(host=socket.gethostname(), pid=os.getpid(), born=psutil.Process().create_time())
 
     def alive(self, heard: float) -> bool:
         """Whether it may still be at work, last heard of at the time `heard`.
@@ -41,23 +43,15 @@ class Owner:
         """
         if time() - heard > LEASE:
             return False
-        return self.host != socket.gethostname() or (_exists(self.pid) and _born(self.pid) == self.born)
+        return self.host != socket.gethostname() or self._runs()
 
-
-def _exists(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
-
-
-def _born(pid: int) -> str:
-    """Return the start time of a process, field 22 of Linux's /proc/PID/stat; empty elsewhere, or if it is gone or dead."""
-    try:
-        state, *rest = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    except (OSError, ValueError):
-        return ""
-    return "" if state in "ZX" else rest[18]
+    def _runs(self) -> bool:
+        """Whether the process is on this machine, and not dead with nobody having asked how it ended."""
+        try:
+            process = psutil.Process(self.pid)
+            ended = process.status() in {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
+            return not ended and abs(process.create_time() - self.born) <= CLOCK
+        except psutil.AccessDenied:
+            return True
+        except psutil.NoSuchProcess:
+            return False

@@ -17,7 +17,7 @@ PATIENCE = 60.0
 TABLES = f"""
 CREATE TABLE run (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
-    host TEXT NOT NULL, pid INTEGER NOT NULL, born TEXT NOT NULL,   -- the process
+    host TEXT NOT NULL, pid INTEGER NOT NULL, born TEXT NOT NULL,   -- the process, start [s since 1970]
     heard REAL NOT NULL                                             -- last sign of life [s since 1970]
 );
 CREATE TABLE claim (

@@ -5,10 +5,13 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
+import os
 import platform
+import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -56,7 +59,10 @@ class Gate:
 
 
 def seconds(
-    *actions: Callable[[], Any], repeats: int = 7, of: Callable[[list[float]], float] = statistics.median
+    *actions: Callable[[], Any],
+    repeats: int = 7,
+    of: Callable[[list[float]], float] = statistics.median,
+    clock: Callable[[], float] = time.perf_counter,
 ) -> list[float]:
     """Median or other seconds of each action, taken in turn so that a slow moment of the machine meets all of them."""
     for action in actions:
@@ -64,10 +70,16 @@ def seconds(
     taken: list[list[float]] = [[] for _ in actions]
     for _ in range(repeats):
         for row, action in zip(taken, actions, strict=True):
-            begin = time.perf_counter()
+            begin = clock()
             action()
-            row.append(time.perf_counter() - begin)
+            row.append(clock() - begin)
     return [of(row) for row in taken]
+
+
+def children() -> float:
+    """Processor time of the processes that this one has started and seen end."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def beams_against_solid(gates: list[Gate], times: dict[str, float]) -> None:
@@ -385,16 +397,53 @@ def memory(gates: list[Gate], times: dict[str, float]) -> None:
     gates.append(Gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5, False))
 
 
-def import_time(gates: list[Gate], times: dict[str, float]) -> None:
-    def load() -> None:
-        subprocess.run([sys.executable, "-c", "import tsm"], check=True)
+KS = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "10"]
+CROSSVAL = "from comparisons.cli import main; import sys; sys.exit(main({}))"
+IN_PLACE = f"""
+import contextlib, io, statistics, time
+from comparisons.cli import main
+taken = []
+for _ in range(8):
+    began = time.process_time()
+    with contextlib.redirect_stdout(io.StringIO()):
+        main({KS})
+    taken.append(time.process_time() - began)
+print(statistics.median(taken[1:]))
+"""
 
-    def nothing() -> None:
-        subprocess.run([sys.executable, "-c", "pass"], check=True)
 
-    ours, bare = seconds(load, nothing)
-    times["import tsm"] = ours - bare
-    gates.append(Gate("seconds to import tsm", ours - bare, 0.5, False))
+def start_up(gates: list[Gate], times: dict[str, float]) -> None:
+    """Processor time of processes from start to end, over that of ``import numpy``, bytecode compiled as an installation has it.
+
+    Of the whole ``crossval solve`` the part that it takes again in the same process is its solution, and is taken off.
+    """
+    with tempfile.TemporaryDirectory() as bytecode:
+        apart = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+        environment = {**apart, "PYTHONPYCACHEPREFIX": bytecode}
+
+        def output(code: str) -> str:
+            command = [sys.executable, "-c", code]
+            return subprocess.run(command, check=True, capture_output=True, text=True, env=environment).stdout
+
+        def start(code: str) -> Callable[[], Any]:
+            return lambda: output(code)
+
+        numpy, ours, told, whole = seconds(
+            start("import numpy"),
+            start("import tsm"),
+            start(CROSSVAL.format(["--help"])),
+            start(CROSSVAL.format(KS)),
+            repeats=9,
+            clock=children,
+        )
+        solution = float(output(IN_PLACE))
+    times |= {"import numpy": numpy, "import tsm": ours, "crossval --help": told, "crossval solve": whole}
+    times["solution in crossval solve"] = solution
+    gates.append(Gate("import tsm over import numpy, processes", ours / numpy, 2.5, False))
+    gates.append(Gate("crossval --help over import numpy, processes", told / numpy, 1.5, False))
+    gates.append(
+        Gate("crossval solve without its solution over import numpy", (whole - solution) / numpy, 3, False)
+    )
 
 
 def recorded(gates: list[Gate], times: dict[str, float]) -> str:
@@ -425,7 +474,7 @@ def main() -> None:
         batches,
         assembly,
         memory,
-        import_time,
+        start_up,
     ):
         part(gates, times)
     for gate in gates:

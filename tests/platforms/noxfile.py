@@ -8,7 +8,7 @@ import nox
 
 ROOT = Path(__file__).parents[2]
 PYTHONS = ["3.11", "3.12", "3.13"]
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "filelock", "psutil")
 FIRST = {"3.13": {"numpy": "2.1.0", "scipy": "1.14.1"}}
 """First versions with wheels for a Python that is younger than the lowest."""
 nox.options.error_on_missing_interpreters = False
@@ -25,7 +25,7 @@ def lowest(python: str) -> list[str]:
 @nox.session(python=PYTHONS)
 @nox.parametrize("versions", ["oldest", "newest"])
 def numbers(session: nox.Session, versions: str) -> None:
-    """Compare essential numbers with those stored."""
+    """Compare essential numbers with those stored, and hold locks and processes to what studies need."""
     session.chdir(ROOT)
     if versions == "oldest":
         session.install("--only-binary", ":all:", *lowest(str(session.python)))
@@ -33,3 +33,4 @@ def numbers(session: nox.Session, versions: str) -> None:
         session.install("--upgrade", *LIBRARIES)
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     session.run("python", "-m", "tests.platforms.numbers", env=threads)
+    session.run("python", "-m", "tests.platforms.processes")

@@ -1,6 +1,7 @@
 """Cases and what one of them measures."""
 
 import pickle
+import sys
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 from comparisons.models import solve
 from comparisons.options import ModelError, Options
 from comparisons.scene import load_scene
-from comparisons.sweep import Case, Measurement, measure
+from comparisons.sweep import Case, Measurement, measure, memory
 from comparisons.sweep.memory import with_peak_memory
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -115,3 +116,13 @@ def test_peak_memory_is_of_the_action_alone() -> None:
         assert total == keep.sum()
         assert 0.9 * size < peak < 1.5 * size
     assert with_peak_memory(lambda: None)[1] < 0.1 * size
+
+
+def test_peak_memory_without_proc_and_resource(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows: psutil tells how much memory there is."""
+    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
+    monkeypatch.setitem(sys.modules, "resource", None)
+    size = 64 * 2**20
+    kept, rise = with_peak_memory(lambda: np.ones(size // 8))
+    assert 0.9 * size < rise < 1.5 * size
+    assert kept.nbytes == size

@@ -1,0 +1,35 @@
+"""LAPACK's routines without the rest of SciPy's linear algebra."""
+
+import subprocess
+import sys
+
+import pytest
+
+ALONE = """
+import sys
+import numpy as np
+from tsm.lapack import lapack
+A = np.random.default_rng(0).normal(size=(9, 9))
+alone = lapack().dgesv(A, A[:, :2])
+assert lapack().__name__ == "scipy.linalg._flapack" and "scipy.linalg" not in sys.modules
+import scipy.linalg.lapack, scipy.sparse.linalg
+for routines in (scipy.linalg.lapack, lapack()):
+    assert all(np.array_equal(one, other) for one, other in zip(alone, routines.dgesv(A, A[:, :2])))
+"""
+IMPORTED = """
+import scipy.linalg.lapack
+from tsm.lapack import lapack
+assert lapack() is scipy.linalg.lapack
+"""
+ELSEWHERE = """
+import sys
+from tsm import lapack
+lapack._NAME = "scipy.linalg._elsewhere"
+assert lapack.lapack() is sys.modules["scipy.linalg.lapack"]
+"""
+
+
+@pytest.mark.parametrize("code", [ALONE, IMPORTED, ELSEWHERE], ids=["alone", "imported", "elsewhere"])
+def test_the_routines_are_those_of_the_package(code: str) -> None:
+    """Their file alone, and the package imported after it; the package where it is there already, or where there is no such file."""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=300)
