@@ -26,7 +26,8 @@ TAILS = {"support_force": (2,), "other_end_force": (2,), "tip": (2,), "shape": (
 """Shape of one row of the tables that are not of numbers, which an empty table has lost in JSON."""
 SHAPES_AT = (0.2, 0.4, 0.6, 0.8)
 """Load parameters, besides the last, whose axes are kept where the case has them."""
-LIBRARIES = {"tsm": ("tsm",), "solid": ("fem_reference", "skfem"), "rod": (), "elastica": ()}
+EXACT = ("comparisons.exact_models",)
+LIBRARIES = {"tsm": ("tsm",), "solid": ("fem_reference", "skfem"), "rod": EXACT, "elastica": EXACT}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
