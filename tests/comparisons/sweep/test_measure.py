@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
+import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
 import pytest
 
 from comparisons.models import solve
