@@ -27,7 +27,7 @@ from tsm.settings import Settings
 from tsm.solve import SolveError
 from tsm.state import State
 from tsm.status import Status
-from tsm.stepping import Step
+from tsm.step import Step
 from tsm.structure import Structure
 from tsm.system import Linearisation
 

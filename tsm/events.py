@@ -144,6 +144,24 @@ def passed(model: Model, passage: Passage) -> list[Event]:
     return events
 
 
+def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]:
+    """Pass-throughs of the contacts that changed their owner between two equilibria."""
+    events = []
+    for k, (old, new) in enumerate(zip(before.state.touches, after.state.touches, strict=True)):
+        if old is None or new is None or old.element == new.element:
+            continue
+        first, last = (arc_position(model.pairs[k].target, touch.element, touch.xi) for touch in (old, new))
+        passage = Passage(
+            pair=k,
+            t=(before.state.load_parameter, after.state.load_parameter),
+            element=(old.element, new.element),
+            arc=(first, last),
+            force=(normal_force(model, before, k), normal_force(model, after, k)),
+        )
+        events += passed(model, passage)
+    return events
+
+
 def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:
     """Margins of the events that may come next, those of forces over the solution's own tolerance."""
     state = equilibrium.state

@@ -115,6 +115,18 @@ class Newton:
         work = state.load_parameter * float(self.model.load @ state.q)
         return self.assembler.energy(state) - work
 
+    def balanced(self, equilibrium: Equilibrium) -> bool:
+        """Whether support reactions and pin forces add up to nothing."""
+        model, system = self.model, equilibrium.system
+        held = np.zeros(model.dof_count)
+        held[model.fixed] = system.nodal[model.fixed]
+        pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
+        loads = equilibrium.state.load_parameter * model.load
+        total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
+        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
+        noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
+        return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
+
     def size(self, change: Array) -> float:
         """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
         return float(np.abs(change * self.per_limit).max(initial=0.0))

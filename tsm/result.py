@@ -21,7 +21,7 @@ from tsm.newton import Equilibrium
 from tsm.rods.accuracy import deflected, truncation
 from tsm.rods.shape import Stations, pieces
 from tsm.status import Status
-from tsm.stepping import Step
+from tsm.step import Step
 from tsm.system import Assembler
 
 

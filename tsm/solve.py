@@ -13,7 +13,8 @@ from tsm.model import Model
 from tsm.result import Result, collect
 from tsm.settings import Settings
 from tsm.status import Status
-from tsm.stepping import Step, Stepper
+from tsm.step import Step
+from tsm.stepping import Stepper
 from tsm.structure import Structure
 
 

@@ -10,9 +10,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
@@ -21,7 +19,6 @@ from tsm.critical import (
     CriticalKind,
     CriticalPoint,
     critical_point,
-    limit_load,
     locate_bifurcation,
     mode_shape,
 )
@@ -32,32 +29,22 @@ from tsm.events import (
     Event,
     EventKind,
     Margin,
-    Passage,
     broken,
     locate,
     margins,
     normal_force,
-    passed,
+    passes,
 )
 from tsm.fall import Fall, descends, met
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
-from tsm.path import FOLLOWED, LONGEST_STEP, PathTangent
-from tsm.predictor import extrapolate
+from tsm.path import FOLLOWED, PathTangent
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
+from tsm.step import Step
+from tsm.track import FAR, Track
 
-MEMORY = 4
-"""States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
-_MEMORY_WHOLE = 8
-"""The same where nothing is passed."""
-_FOLD = 100.0
-"""Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
-FAR = 1.0
-"""Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
-_FEW = 3
-"""Fewer states than these are extrapolated along the tangent."""
 _SAFE = 0.8
 """Part of the step that the tangents would still allow, of which the next one is tried."""
 _SHORTENED = 0.1
@@ -66,46 +53,10 @@ _STRAIGHT = 0.02
 """A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
-_GROWING, _ROOM = 1.4, 0.6
-"""Growth of the speed that shows a limit point ahead, and the part of the way there of the next step, a little less than tangents explain."""
 _NEAR = 1e-9
 """Turns of a pin that are as close as this to a prescribed load parameter are there."""
 _COINCIDENT = 1e-6
 """Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Step:
-    """An accepted step, or the end of the march.
-
-    Attributes
-    ----------
-    equilibrium : Equilibrium
-        Last accepted configuration.
-    requested : bool
-        Whether it lies on a prescribed load parameter.
-    status : Status
-        CONVERGED, or why the march ends here.
-    iterations : int
-        Newton iterations spent since the step before, failed attempts and location of events included.
-    cutbacks : int
-        Attempts given up since the step before.
-    events : tuple of Event
-        Contact events since the step before.
-    critical : tuple of CriticalPoint
-        Critical points since the step before.
-    index : int
-        Index of the equilibrium, see `tsm.stability`.
-    """
-
-    equilibrium: Equilibrium
-    requested: bool
-    status: Status
-    iterations: int
-    cutbacks: int
-    events: tuple[Event, ...]
-    critical: tuple[CriticalPoint, ...] = ()
-    index: int = -1
 
 
 class Stepper:
@@ -118,19 +69,18 @@ class Stepper:
         self.iterations = 0
         self.cutbacks = 0
         self.events: list[Event] = []
+        self.critical: list[CriticalPoint] = []
         self.chatter: Counter[tuple[int, float]] = Counter()
         start = self.newton.solve(initial_state(model))
-        self.accepted = start
-        self.history = [start.state]
+        self.track = Track(self.newton, start)
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
-        self.step = 1.0
+        self.step, self.shortened, self.target = 1.0, 1 / 2, 0.0
         self.failure = start.status
-        self.memory = _MEMORY_WHOLE if model.whole else MEMORY
-        self.shortened = 1 / 2
-        self.tangent = PathTangent(self.newton, start)
-        self.critical: list[CriticalPoint] = []
-        self.target, self.earlier = 0.0, self.tangent
-        self.index = max(self.tangent.index, 0) if start.status is Status.CONVERGED else 0
+
+    @property
+    def accepted(self) -> Equilibrium:
+        """The last equilibrium of the path."""
+        return self.track.accepted
 
     def resume(self, accepted: list[State], step: float) -> None:
         """Go on from configurations that were accepted elsewhere, oldest first, instead of from the start.
@@ -142,18 +92,9 @@ class Stepper:
         step : float
             Longest next step.
         """
-        state = accepted[-1]
-        self.accepted = Equilibrium(
-            state=state,
-            status=Status.CONVERGED,
-            iterations=0,
-            residuals=(),
-            system=self.newton.assembler.linearise(state),
-        )
-        self.history = accepted
+        self.track.resume(accepted)
         self.margins = self._measure(self.accepted)
         self.step = step
-        self.tangent = PathTangent(self.newton, self.accepted)
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
@@ -172,7 +113,7 @@ class Stepper:
                     return
                 attempts += 1
                 left = target - t
-                step = min(self.step, self._room())
+                step = min(self.step, self.track.room())
                 goal = target if left <= step * (1 + 1e-6) else t + step
                 here = step < self.settings.smallest_step
                 status = self._refuse(1 / 2) if here else self._attempt(goal)
@@ -213,7 +154,7 @@ class Stepper:
         }
         if self.failure in told or self.settings.smallest_step > 0.5:
             return self.failure
-        return Status.LIMIT_POINT if self.tangent.speed() > _FOLD else Status.CUTBACK_FLOOR
+        return Status.LIMIT_POINT if self.track.folds() else Status.CUTBACK_FLOOR
 
     def _record(self, requested: bool, status: Status) -> Step:
         step = Step(
@@ -224,7 +165,7 @@ class Stepper:
             cutbacks=self.cutbacks,
             events=tuple(self.events),
             critical=tuple(self.critical),
-            index=self.tangent.index,
+            index=self.track.tangent.index,
         )
         self.iterations = self.cutbacks = 0
         self.events, self.critical = [], []
@@ -244,19 +185,19 @@ class Stepper:
         events = broken(self.margins, self._measure(reached))
         if events:
             return self._stop_at_first(events, goal)
-        if not self._balanced(reached):
+        if not self.newton.balanced(reached):
             return Status.UNBALANCED
         return self._advance(reached)
 
     def _advance(self, reached: Equilibrium) -> Status:
         """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
         before, tangent = self.accepted.state, PathTangent(self.newton, reached)
-        missed = max(self._missed(self.tangent, reached), self._missed(tangent, reached))
+        missed = max(self.track.missed(at, reached) for at in (self.track.tangent, tangent))
         fitting = _SAFE * FOLLOWED / max(missed, 1e-9)
         if missed > FOLLOWED:
             return self._refuse(fitting)
-        old, new = self.index, tangent.index
-        changed = 0 <= new != old and (new > old or self.tangent.index == old)
+        old, new = self.track.index, tangent.index
+        changed = 0 <= new != old and (new > old or self.track.tangent.index == old)
         if changed:
             if missed > _STRAIGHT:
                 return self._refuse(1 / 2)
@@ -279,17 +220,9 @@ class Stepper:
             return Status.CONVERGED
         return self._turn(at) if self.settings.branch == "stable" else Status.BIFURCATION
 
-    def _room(self) -> float:
-        """Part of the way to a limit point ahead, if the last two speeds of the path show one, that a step can follow."""
-        (t0, v0), (t1, v1) = ((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent))
-        if len(self.history) < 2 or t0 >= t1 or not v1 > _GROWING * v0:
-            return float("inf")
-        return _ROOM * (limit_load((t0, v0), (t1, v1)) - t1) or float("inf")
-
     def _meet_limit_point(self) -> Status:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
-        load = limit_load(*((one.state.load_parameter, one.speed()) for one in (self.earlier, self.tangent)))
-        self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, load)
+        self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, self.track.limit())
         return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
 
     def _note_critical(self, kind: CriticalKind, at: Equilibrium, load_parameter: float) -> None:
@@ -326,7 +259,7 @@ class Stepper:
             return Status.FALLING
         least, rest = min(found, key=lambda pair: pair[0])
         self.events[-1] = replace(self.events[-1], released=self.newton.potential(held) - least)
-        self.history = []
+        self.track.history = []
         self._accept(rest)
         self.step = 1.0
         return Status.CONVERGED
@@ -336,57 +269,20 @@ class Stepper:
         self.failure, self.shortened = Status.ITERATION_LIMIT, min(max(part, _SHORTENED), 1 / 2)
         return self.failure
 
-    def _balanced(self, equilibrium: Equilibrium) -> bool:
-        """Whether support reactions and pin forces add up to nothing."""
-        model, system = self.model, equilibrium.system
-        held = np.zeros(model.dof_count)
-        held[model.fixed] = system.nodal[model.fixed]
-        pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
-        loads = equilibrium.state.load_parameter * model.load
-        total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
-        largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
-        noise = max(self.newton.noise, self.newton.tolerance) * model.force_scale + system.noise
-        return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
-
     def _solve(self, t: float) -> Equilibrium | None:
         """Equilibrium at t from the predicted state, if the tangent leads to it."""
-        start = self._predicted(t)
+        start = self.track.predicted(t)
         equilibrium = self.newton.solve(start)
         self.iterations += equilibrium.iterations
         self.shortened = 1 / 2
         if equilibrium.status is not Status.CONVERGED:
             self.failure = equilibrium.status
             return None
-        missed = self._missed(self.tangent, equilibrium)
-        if missed > FOLLOWED or self._strays(start, equilibrium):
+        missed = self.track.missed(self.track.tangent, equilibrium)
+        if missed > FOLLOWED or self.track.strays(start, equilibrium):
             self._refuse(_SAFE * FOLLOWED / missed if missed > FOLLOWED else 1 / 2)
             return None
         return equilibrium
-
-    def _predicted(self, t: float) -> State:
-        """State at t from the last states, or along the tangent where they are few."""
-        if len(self.history) < _FEW and not self._chord_contact():
-            return self.tangent.predicted(self.accepted.state, t)
-        return self.newton.prescribed(extrapolate(self.model, self.history, t), t)
-
-    def _missed(self, tangent: PathTangent, found: Equilibrium) -> float:
-        """Part of the step to an equilibrium that a tangent does not explain; nothing is asked of contacts without an energy."""
-        if self._chord_contact():
-            return 0.0
-        return tangent.missed(self.accepted.state, found.state)
-
-    def _strays(self, predicted: State, found: Equilibrium) -> bool:
-        """Whether an equilibrium lies too far away; where contacts on chords allow no tangent, too far from its prediction."""
-        if self._chord_contact():
-            return self.newton.apart(predicted, found.state) > FAR
-        return self.newton.apart(self.accepted.state, found.state) > LONGEST_STEP
-
-    def _chord_contact(self) -> bool:
-        """Whether a contact is closed whose stiffness grows without bound at the nodes: its tangents are round-off there."""
-        touches = self.accepted.state.touches
-        return any(
-            touch is not None and pair.slot < 0 for pair, touch in zip(self.model.pairs, touches, strict=True)
-        )
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
         """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
@@ -491,10 +387,10 @@ class Stepper:
             state = changed(self.model, state, k, None, armed=True)
         if jump:
             self._note_release(began - energy)
-        self.history = []
-        held = self.index
+        self.track.history = []
+        held = self.track.index
         self._accept(equilibrium)
-        if self.index > held and self.settings.branch != "primary":
+        if self.track.index > held and self.settings.branch != "primary":
             return self._meet_limit_point()
         return Status.CONVERGED
 
@@ -533,29 +429,7 @@ class Stepper:
 
     def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""
-        if self.history:
-            self._note_passes(equilibrium)
-        state = rearm(self.model, equilibrium.state)
-        self.accepted = replace(equilibrium, state=state)
-        earlier = [old for old in self.history if old.load_parameter < state.load_parameter]
-        self.history = [*earlier[1 - self.memory :], state]
+        if self.track.history:
+            self.events.extend(passes(self.model, self.accepted, equilibrium))
+        self.track.accept(replace(equilibrium, state=rearm(self.model, equilibrium.state)), tangent)
         self.margins = self._measure(self.accepted)
-        self.earlier, self.tangent = self.tangent, tangent or PathTangent(self.newton, self.accepted)
-        self.earlier.release()
-        self.index = self.tangent.index if self.tangent.index >= 0 else self.index
-
-    def _note_passes(self, equilibrium: Equilibrium) -> None:
-        """Note changes of owner since the last state, at linearly interpolated load parameters."""
-        model, before, after = self.model, self.accepted, equilibrium
-        for k, (old, new) in enumerate(zip(before.state.touches, after.state.touches, strict=True)):
-            if old is None or new is None or old.element == new.element:
-                continue
-            arcs = [arc_position(model.pairs[k].target, touch.element, touch.xi) for touch in (old, new)]
-            passage = Passage(
-                pair=k,
-                t=(before.state.load_parameter, after.state.load_parameter),
-                element=(old.element, new.element),
-                arc=(arcs[0], arcs[1]),
-                force=(normal_force(model, before, k), normal_force(model, after, k)),
-            )
-            self.events.extend(passed(model, passage))

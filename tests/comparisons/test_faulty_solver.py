@@ -15,7 +15,7 @@ from comparisons.options import Options
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.test_certify import BEAM, PORTAL
-from tsm import path, stepping
+from tsm import path, stepping, track
 from tsm.events import EventKind
 from tsm.model import Model
 from tsm.system import Assembler
@@ -45,7 +45,7 @@ def without(kind: EventKind) -> Callable[[Any, Any], Any]:
 
 def another_branch(patch: pytest.MonkeyPatch) -> None:
     """Any equilibrium that Newton's method finds is taken."""
-    patch.setattr(stepping.Stepper, "_missed", lambda *_: 0.0)
+    patch.setattr(track.Track, "missed", lambda *_: 0.0)
     patch.setattr(path.PathTangent, "index", 0)
 
 

@@ -35,6 +35,7 @@ MODULES = (
     "tsm/path.py",
     "tsm/predictor.py",
     "tsm/stepping.py",
+    "tsm/track.py",
     "comparisons/exact/*.py",
 )
 _EVENTS = ["tests/tsm/test_contact_events.py", "tests/tsm/test_statuses.py"]

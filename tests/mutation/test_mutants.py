@@ -38,7 +38,7 @@ WORST = [
     ("tsm/events.py", "push = model.pairs[k].side * ((fy * dx + fx * dy))", _EVENTS),
     (
         "tsm/stepping.py",
-        "changed = (0 > new != old) and (new > old or self.tangent.index == old)",
+        "changed = (0 > new != old) and (new > old or self.track.tangent.index == old)",
         "tests/tsm/test_path.py",
     ),
     ("tsm/elements/mixed_contact.py", "dot = (ax * bx - ay * by)", "tests/tsm/test_elements.py"),

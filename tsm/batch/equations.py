@@ -142,8 +142,8 @@ class Equations:
             force[:, e, which] += gradient[:4]
             entries[:, e, which] += block[:10]
         nodal = self.gather @ force.reshape(-1, count)
-        for k, (which, e, gradient, block) in enumerate(closings):
-            self._enter(numbers, at, k, which, (nodal, own, right, corner), e, gradient, block)
+        for k, closing in enumerate(closings):
+            self._enter(numbers, at, k, closing, (nodal, own, right, corner))
         for k in range(len(closings)):
             for other in range(k):
                 self._share(numbers, at, (other, k), own, corner)
@@ -175,14 +175,12 @@ class Equations:
         numbers: Numbers,
         at: Points,
         k: int,
-        which: Array,
+        closing: tuple[Array, Array, Array, Array],
         system: tuple[Array, Array, Array, Array],
-        e: Array,
-        gradient: Array,
-        block: Array,
     ) -> None:
         """Enter pair k where it is closed; where it is open, its unknowns stand alone."""
         model, pair = self.model, self.model.pairs[k]
+        which, e, gradient, block = closing
         nodal, own, right, corner = system
         slots = pair.slots
         for n in range(slots.start, slots.stop):

@@ -11,7 +11,7 @@ from tsm.batch.geometry import slide
 from tsm.batch.numbers import Numbers
 from tsm.elements.properties import Array
 from tsm.state import State, Touch
-from tsm.stepping import MEMORY
+from tsm.track import MEMORY
 
 
 class History(NamedTuple):

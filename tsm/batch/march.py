@@ -259,7 +259,7 @@ class March:
             record.end[structure] = steps[-1]
             front.target[n] = len(self.targets)
             return
-        replace_history(front, n, stepper.history)
+        replace_history(front, n, stepper.track.history)
         which = np.array([n])
         front.normal[:, which], front.arc[:, which] = measure(self.equations, front.numbers, front.at, which)
         front.step[n], front.orientation[n] = stepper.step, 0

@@ -11,7 +11,7 @@ from tsm.events import Event, Passage
 from tsm.model import Model
 from tsm.state import State, Touch
 from tsm.status import Status
-from tsm.stepping import Step
+from tsm.step import Step
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,7 @@ from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.result import Result, SupportHistory, collect
 from tsm.status import Status
-from tsm.stepping import Step
+from tsm.step import Step
 from tsm.structure import Structure
 from tsm.system import Assembler
 

@@ -1,0 +1,44 @@
+"""What a march hands on after every step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tsm.critical import CriticalPoint
+from tsm.events import Event
+from tsm.newton import Equilibrium
+from tsm.status import Status
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """An accepted step, or the end of the march.
+
+    Attributes
+    ----------
+    equilibrium : Equilibrium
+        Last accepted configuration.
+    requested : bool
+        Whether it lies on a prescribed load parameter.
+    status : Status
+        CONVERGED, or why the march ends here.
+    iterations : int
+        Newton iterations spent since the step before, failed attempts and location of events included.
+    cutbacks : int
+        Attempts given up since the step before.
+    events : tuple of Event
+        Contact events since the step before.
+    critical : tuple of CriticalPoint
+        Critical points since the step before.
+    index : int
+        Index of the equilibrium, see `tsm.stability`.
+    """
+
+    equilibrium: Equilibrium
+    requested: bool
+    status: Status
+    iterations: int
+    cutbacks: int
+    events: tuple[Event, ...]
+    critical: tuple[CriticalPoint, ...] = ()
+    index: int = -1
