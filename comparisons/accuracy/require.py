@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from comparisons.options import ModelError
 from comparisons.scene import Scene
-from comparisons.translate import to_rod, to_solid
+from comparisons.translate import to_rod, to_solid, to_structure
 
 STOCKY = 0.1
 """Height over length from which a beam is a solid."""
@@ -59,6 +59,7 @@ def required(
         raise ModelError(f"model = {model}: has no resolution to choose; tsm and solid have")
     if quantity == "stress":
         raise ModelError("quantity = stress: beams have section forces; --model solid has stresses")
+    to_structure(loaded, element=element)
     return Requirement(scene=loaded, model=model, element=element or "exact", decisions=said)
 
 
