@@ -3,11 +3,17 @@
 import os
 import signal
 import stat
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+try:
+    from fcntl import LOCK_EX, flock
+except ImportError:  # Windows
+    LOCKS_FOLDERS = False
+else:
+    LOCKS_FOLDERS = True
 
 
 class OutputError(ValueError):
@@ -73,19 +79,19 @@ def write_text(path: Path, text: str) -> None:
 def alone_in(folder: Path) -> Iterator[None]:
     """Keep other runs that write a set of files into `folder` waiting, so that sets do not mix.
 
-    The lock is on the folder itself, so it adds no file, and it ends with its process. Windows locks files only: there the lock is
-    on a file in the folder, which is removed with it.
+    The lock is on the folder itself, so it adds no file, and it ends with its process. Systems without `fcntl` lock files only: there
+    the lock is on a file in the folder, which is removed with it.
     """
-    from filelock import FileLock, lock_descriptor
+    if not LOCKS_FOLDERS:
+        from filelock import FileLock
 
-    if sys.platform == "win32":
         with FileLock(folder / ".crossval.lock"):
             yield
         return
     place = os.open(folder, os.O_RDONLY)
     try:
         with suppress(OSError):  # a file system without locks
-            lock_descriptor(place)
+            flock(place, LOCK_EX)
         yield
     finally:
         os.close(place)
