@@ -51,8 +51,9 @@ MIXED = _tsm("mixed", 20)
 SOLID = Run(label="solid", model="solid", options=Options())
 ROD = Run(label="exact rod", model="rod", options=Options())
 ELASTICA = Run(label="elastica", model="elastica", options=Options())
-RUNS = (*PAPER, _tsm("mixed", 10), MIXED, _tsm("exact", 1), SOLID, ELASTICA, ROD)
-DRAWN = (SOLID, RUNS[5], *PAPER, RUNS[3], ROD)
+COARSE_MIXED, EXACT = _tsm("mixed", 10), _tsm("exact", 1)
+RUNS = (*PAPER, COARSE_MIXED, MIXED, EXACT, SOLID, ELASTICA, ROD)
+DRAWN = (SOLID, EXACT, *PAPER, COARSE_MIXED, ROD)
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 
 

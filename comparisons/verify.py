@@ -23,7 +23,7 @@ PENETRATION = 1e-2
 INSIDE = 1e-3
 """Largest depth of a round pin or thick end in a beam away from its contact, relative to the length: the stated axis is that good."""
 KINK = 0.2
-"""Largest kink of an axis at a contact that a round pin in it is put down to [rad]."""
+"""Largest kink of the axis at a contact that excuses a round pin inside the beam [rad]."""
 STRAIN = 0.1
 """Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
 MOTION = 1e-10
@@ -140,8 +140,8 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
     inside = depth > INSIDE * length
     if inside.any():
         yield (
-            f"{spec.node} is {depth[inside][0] / length:.2g} L inside the beam beside its contact {_first(inside, response)}: "
-            "it touches at more than one place"
+            f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact {_first(inside, response)}: "
+            "one contact of a pair is modelled"
         )
 
 

@@ -20,7 +20,7 @@ of the largest force."""
 
 
 _SHARPEST = 1.4
-"""Turn of the axis from a chord to the next that its length still bounds the corner by [rad]."""
+"""Largest turn from one chord to the next that enters the bound of what chords cut off [rad]: beyond, its tangent grows without limit."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -101,7 +101,8 @@ def solve(scene: Scene, given: Given) -> Solution:
     mesh = mesh_of(layout, _first_grids(layout, z))
     start = _fitted(layout, mesh, z, turns)
     best = correct(layout, mesh, *start, _ITERATIONS)
-    for held in _known(layout):
+    arcs, forces = _stated(layout)
+    for held in (arcs, np.union1d(arcs, forces)):
         if _is_near(layout, z, best):
             break
         found = correct(layout, mesh, *_settled(layout, mesh, *start, held), _ITERATIONS)
@@ -110,18 +111,15 @@ def solve(scene: Scene, given: Given) -> Solution:
     return best
 
 
-def _known(layout: Layout) -> tuple[NDArray[np.int64], ...]:
-    """Unknowns that an answer states better than its rotations: the contacts' arc positions; these and the forces."""
+def _stated(layout: Layout) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Unknowns that an answer states better than its rotations: the contacts' arc positions, and the forces of the parts."""
     arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
-    forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)], dtype=np.int64)
-    both = np.union1d(arcs, forces)
-    return (arcs, both) if len(arcs) else (both,)
+    return arcs, np.unique([k for part in layout.parts for k in (part.force, part.force + 1)])
 
 
 def _is_near(layout: Layout, z: Array, found: Solution) -> bool:
-    """Whether an equilibrium was found whose forces and arc positions are those of the answer, roughly."""
-    arcs = [touch.arc for touch in layout.touches]
-    forces = np.setdiff1d(_known(layout)[-1], arcs)
+    """Whether an equilibrium was found whose forces and arc positions are roughly the answer's."""
+    arcs, forces = _stated(layout)
     size = float(np.abs(z[forces]).max(initial=0.0))
     apart = np.abs(found.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _ROUGHLY * size and apart[arcs].max(initial=0.0) <= _ROUGHLY
@@ -163,7 +161,7 @@ def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
 def _settled(
     layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: NDArray[np.int64]
 ) -> tuple[Array, Array]:
-    """Settle the rotations while other unknowns keep the answer's values.
+    """Settle the rotations while the unknowns `held` keep the answer's values.
 
     Where a contact is next to an end, the first correction of rough rotations would move it beyond. Where tension is near
     GA EA/(EA - GA), rotations react so strongly that it may lead to another equilibrium.

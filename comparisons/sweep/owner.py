@@ -10,7 +10,7 @@ import psutil
 LEASE = 60.0
 """Seconds without a sign of life after which a run's claims are free, whatever it does."""
 CLOCK = 5.0
-"""Seconds by which the system's clock may be set while a run lasts: start times are told by that clock."""
+"""Largest difference of two readings of one process's start [s]. The system derives it from its clock, which may be set meanwhile."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ class Owner:
         return self.host != socket.gethostname() or self._runs()
 
     def _runs(self) -> bool:
-        """Whether the process is on this machine, and not dead with nobody having asked how it ended."""
+        """Whether the process runs on this machine. One that ended and waits for its parent does not."""
         try:
             process = psutil.Process(self.pid)
             ended = process.status() in {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}

@@ -161,7 +161,9 @@ class Store:
         owner = self._one("SELECT run.* FROM claim JOIN run ON run.id = claim.run WHERE key = ?", key)
         if owner is None or owner["id"] == self._run:
             return False
-        return Owner(host=owner["host"], pid=owner["pid"], born=float(owner["born"])).alive(owner["heard"])
+        return Owner(host=owner["host"], pid=owner["pid"], born=float(owner["born"] or 0.0)).alive(
+            owner["heard"]
+        )
 
     def _one(self, query: str, *values: str) -> sqlite3.Row | None:
         row: sqlite3.Row | None = self._connection.execute(query, values).fetchone()

@@ -415,7 +415,7 @@ print(statistics.median(taken[1:]))
 def start_up(gates: list[Gate], times: dict[str, float]) -> None:
     """Processor time of processes from start to end, over that of ``import numpy``, bytecode compiled as an installation has it.
 
-    Of the whole ``crossval solve`` the part that it takes again in the same process is its solution, and is taken off.
+    The solution in ``crossval solve`` is the time that the command takes when it is repeated in one process. It is subtracted.
     """
     with tempfile.TemporaryDirectory() as bytecode:
         apart = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}

@@ -8,7 +8,7 @@ import nox
 
 ROOT = Path(__file__).parents[2]
 PYTHONS = ["3.11", "3.12", "3.13"]
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "filelock", "psutil")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "psutil")
 FIRST = {"3.13": {"numpy": "2.1.0", "scipy": "1.14.1"}}
 """First versions with wheels for a Python that is younger than the lowest."""
 nox.options.error_on_missing_interpreters = False
