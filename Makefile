@@ -26,8 +26,8 @@ mutation: setup
 	$(THREADS) PYTHONPATH=. $(BIN)/python tests/mutation/sample.py --out out/mutation.tsv
 
 docs: setup
-	rm -rf docs
-	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d docs/doctrees documentation docs/html
+	rm -rf out/docs
+	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d out/docs/doctrees docs out/docs/html
 
 bench: setup
 	$(THREADS) $(BIN)/python -m tests.benchmarks.bench --out bench.json
@@ -64,4 +64,4 @@ $(STAMP): pyproject.toml .constraints.txt
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .nox out docs documentation/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .nox out docs/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache

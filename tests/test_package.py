@@ -79,6 +79,6 @@ def test_the_sdist_has_what_its_tests_need(built: Path) -> None:
         ".constraints.txt",
         "pyproject.toml",
     } <= names
-    for folder in ("tsm", "comparisons", "fem_reference", "tests", "documentation"):
+    for folder in ("tsm", "comparisons", "fem_reference", "tests", "docs"):
         assert any(name.startswith(f"{folder}/") for name in names)
     assert not [name for name in names if "__pycache__" in name or "_generated" in name]

@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.scene import load_scene
-from tests.documentation.snippets import ROOT, blocks, make_targets, run_page
+from tests.docs.snippets import ROOT, blocks, make_targets, run_page
 
 README = (ROOT / "README.md").read_text()
 BLOCKS = blocks(README)
@@ -49,7 +49,7 @@ def test_links_lead_somewhere():
 def test_every_sentence_on_trust_has_a_page():
     trust = README.partition("## How far to trust it\n")[2].partition("\n## ")[0].strip().splitlines()
     assert len(trust) == 5
-    assert all(re.search(r"\(\[\w+\]\(documentation/[\w/-]+\.md\)\)\.$", sentence) for sentence in trust)
+    assert all(re.search(r"\(\[\w+\]\(docs/[\w/-]+\.md\)\)\.$", sentence) for sentence in trust)
 
 
 def test_its_first_scene_prints_what_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

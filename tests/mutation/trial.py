@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-_COPIED = ("tsm", "fem_reference", "comparisons", "tests", "documentation", "pyproject.toml", "README.md")
+_COPIED = ("tsm", "fem_reference", "comparisons", "tests", "docs", "pyproject.toml", "README.md")
 _MEMORY = 4 << 30
 """Bytes that a trial may take: a mutant can make a loop that only collects."""
 _STARTING = 10.0

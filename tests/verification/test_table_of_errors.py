@@ -11,7 +11,7 @@ from comparisons.models import solve
 from comparisons.scene import load_scene
 
 ROOT = Path(__file__).parents[2]
-PAGE, README = ROOT / "documentation" / "results" / "accuracy.md", ROOT / "README.md"
+PAGE, README = ROOT / "docs" / "results" / "accuracy.md", ROOT / "README.md"
 COLUMNS = ("contact_force", "arc_position", "clamp_moment", "tip")
 ROWS = {
     "`timoshenko`, 10 elements": PAPER[0],

@@ -223,7 +223,7 @@ def test_all_with_full_settings(tmp_path):
     assert set(found.values()) <= set(Verdict)
     for claim in CLAIMS:
         assert found[claim.text] == FULL[claim.judge.__qualname__], claim.text
-    page = Path(__file__).parents[3] / "documentation" / "results" / "paper.md"
+    page = Path(__file__).parents[3] / "docs" / "results" / "paper.md"
     counts = Counter(FULL[claim.judge.__qualname__] for claim in CLAIMS)
     assert f"{len(CLAIMS)} claims" in page.read_text()
     summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])

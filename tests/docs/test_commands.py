@@ -11,9 +11,9 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.cli.command import command_parser
-from tests.documentation.snippets import ROOT, blocks, make_targets, run_line, run_python
+from tests.docs.snippets import ROOT, blocks, make_targets, run_line, run_python
 
-FOLDER = ROOT / "documentation"
+FOLDER = ROOT / "docs"
 PAGES = {path: path.read_text() for path in sorted(FOLDER.rglob("*.md")) if "_generated" not in path.parts}
 SOURCES = (ROOT / "README.md", FOLDER / "how-to" / "commands.md")
 LINES = [

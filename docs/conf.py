@@ -1,4 +1,4 @@
-"""Settings of the documentation: `make docs` builds it strictly into docs/."""
+"""Settings of the documentation: `make docs` builds it strictly into out/docs/."""
 
 import logging
 import sys
@@ -19,10 +19,10 @@ extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
     "numpydoc",
-    "documentation.extensions.mathml",
-    "documentation.extensions.proofs",
-    "documentation.extensions.generated",
-    "documentation.extensions.manual",
+    "docs.extensions.mathml",
+    "docs.extensions.proofs",
+    "docs.extensions.generated",
+    "docs.extensions.manual",
 ]
 exclude_patterns = ["extensions", "static", "_generated/*.md"]  # those pages are included by others
 

@@ -1,4 +1,4 @@
-"""The messages of the scene reader with their cures, from ``documentation/reference/messages.toml``."""
+"""The messages of the scene reader with their cures, from ``docs/reference/messages.toml``."""
 
 import tomllib
 from dataclasses import dataclass

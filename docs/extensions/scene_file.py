@@ -10,7 +10,7 @@ from comparisons.scene.read import LISTS
 from comparisons.scene.records import Scene
 from comparisons.scene.rules import Choice, Subset, field_rules
 from comparisons.scene.values import toml_value
-from documentation.extensions.markdown import table, text
+from docs.extensions.markdown import table, text
 
 
 def page() -> str:

@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from documentation.extensions.mathml import mathml
-from documentation.extensions.proofs import exists
-from tests.documentation.snippets import ROOT
+from docs.extensions.mathml import mathml
+from docs.extensions.proofs import exists
+from tests.docs.snippets import ROOT
 
-FOLDER = ROOT / "documentation"
+FOLDER = ROOT / "docs"
 PAGES = {
     str(path.relative_to(FOLDER)): path.read_text()
     for path in sorted(FOLDER.rglob("*.md"))

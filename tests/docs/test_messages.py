@@ -9,8 +9,8 @@ import pytest
 from comparisons import scene as reader
 from comparisons.cli import main
 from comparisons.scene import FieldError, InputError, Scene, load_scene
-from documentation.extensions.messages import FILE, SCENES, Message, messages
-from tests.documentation.sentences import sentences
+from docs.extensions.messages import FILE, SCENES, Message, messages
+from tests.docs.sentences import sentences
 
 SOURCES = sorted(Path(reader.__file__).parent.glob("*.py"))
 LISTED = messages()

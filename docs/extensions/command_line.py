@@ -3,7 +3,7 @@
 import argparse
 
 from comparisons.cli.command import command_parser
-from documentation.extensions.markdown import table, text
+from docs.extensions.markdown import table, text
 
 
 def page() -> str:

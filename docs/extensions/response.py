@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from documentation.extensions.markdown import table, text
+from docs.extensions.markdown import table, text
 
 FILE = Path(__file__).parents[1] / "reference" / "response.schema.json"
 SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))

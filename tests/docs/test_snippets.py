@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.documentation.snippets import ROOT, SLOW, blocks, run_page, shows
+from tests.docs.snippets import ROOT, SLOW, blocks, run_page, shows
 
-FOLDER = ROOT / "documentation"
+FOLDER = ROOT / "docs"
 LINE_BY_LINE = FOLDER / "how-to" / "commands.md"
 """Its commands are run one by one, in `test_commands.py`."""
 PAGES = {

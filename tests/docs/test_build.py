@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.documentation.snippets import ROOT
+from tests.docs.snippets import ROOT
 
 LOADED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "link": "href"}
 
@@ -44,7 +44,7 @@ def test_an_address_elsewhere_is_found() -> None:
 def build(folder: Path) -> Path:
     """Build the site as ``make docs`` does it, in another place."""
     target = re.search(
-        r"-m sphinx (.*) -d docs/doctrees documentation docs/html", (ROOT / "Makefile").read_text()
+        r"-m sphinx (.*) -d out/docs/doctrees docs out/docs/html", (ROOT / "Makefile").read_text()
     )
     assert target is not None
     options = target[1].split()
@@ -57,7 +57,7 @@ def build(folder: Path) -> Path:
             *options,
             "-d",
             folder / "doctrees",
-            "documentation",
+            "docs",
             folder / "html",
         ],
         cwd=ROOT,

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
-from documentation.extensions import api, command_line, messages, response, scene_file, statuses
+from docs.extensions import api, command_line, messages, response, scene_file, statuses
 
 PAGES = {
     "scene-file.md": scene_file.page,

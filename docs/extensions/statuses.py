@@ -2,7 +2,7 @@
 
 import fem_reference
 import tsm
-from documentation.extensions.markdown import table, text
+from docs.extensions.markdown import table, text
 
 
 def page() -> str:

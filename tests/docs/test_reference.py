@@ -12,8 +12,8 @@ import tsm
 from comparisons.cli import main
 from comparisons.cli.command import COMMANDS
 from comparisons.scene.read import LISTS
-from documentation.extensions import api, command_line, response, scene_file, statuses
-from documentation.extensions.generated import PAGES, write_pages
+from docs.extensions import api, command_line, response, scene_file, statuses
+from docs.extensions.generated import PAGES, write_pages
 
 
 def test_every_key_of_a_scene_is_listed() -> None:
