@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models import solve
-from comparisons.options import ModelError, Options
+from comparisons.models.options import ModelError, Options
+from comparisons.models.translate import to_rod, to_solid
 from comparisons.response import Array
 from comparisons.scene import Scene
-from comparisons.translate import to_rod, to_solid
 
 if TYPE_CHECKING:
     from fem_reference import SolidProblem

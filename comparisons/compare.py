@@ -7,23 +7,23 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from comparisons.budget import Budget, error_budget
-from comparisons.budget_plot import plot_budget, write_budget
-from comparisons.compare_report import write_comparison_page
-from comparisons.export import check_series, write_series
+from comparisons.errors import errors
 from comparisons.files import alone_in, writable_folder, write_text
-from comparisons.metrics import errors
 from comparisons.models import certified, solve
-from comparisons.options import ModelError, Options
+from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Watch, unwatched
+from comparisons.models.translate import to_rod
 from comparisons.output import plain
-from comparisons.plot import nearest_steps, plot_shapes
-from comparisons.progress import Watch, unwatched
-from comparisons.render import render_panels
 from comparisons.response import Response
+from comparisons.response.to_json import as_dict
 from comparisons.scene import Scene, to_toml
-from comparisons.statement import as_dict
-from comparisons.stress import beam_panel, solid_panel
-from comparisons.table import Row, table_csv
-from comparisons.translate import to_rod
+from comparisons.show.budget_plot import plot_budget, write_budget
+from comparisons.show.compare_report import write_comparison_page
+from comparisons.show.export import check_series, write_series
+from comparisons.show.plot import nearest_steps, plot_shapes
+from comparisons.show.render import render_panels
+from comparisons.show.stress import beam_panel, solid_panel
+from comparisons.show.table import Row, table_csv
 from comparisons.version import versions
 
 Report = Callable[[str], None]

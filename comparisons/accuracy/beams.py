@@ -10,7 +10,7 @@ from comparisons.accuracy.answer import Discretised
 from comparisons.accuracy.pilot import SAFETY, pilot
 from comparisons.accuracy.quantities import difference
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec, Scene
 

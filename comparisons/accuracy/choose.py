@@ -7,7 +7,7 @@ from comparisons.accuracy.beams import exact_to, graded_to
 from comparisons.accuracy.require import Requirement, required
 from comparisons.accuracy.solid import solid_to
 from comparisons.accuracy.theory import beam_theory
-from comparisons.options import QUANTITIES, ModelError
+from comparisons.models.options import QUANTITIES, ModelError
 from comparisons.scene import Scene
 
 

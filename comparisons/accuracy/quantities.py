@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.options import QUANTITIES
+from comparisons.models.options import QUANTITIES
+from comparisons.models.translate.to_solid import rectangle
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
-from comparisons.translate.to_solid import rectangle
 
 Ints = NDArray[np.integer]
 STATIONS = np.linspace(0.0, 1.0, 101)

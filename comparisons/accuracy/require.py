@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 
-from comparisons.options import ModelError
+from comparisons.models.options import ModelError
+from comparisons.models.translate import to_rod, to_solid, to_structure
 from comparisons.scene import Scene
-from comparisons.translate import to_rod, to_solid, to_structure
 
 STOCKY = 0.1
 """Height over length from which a beam is a solid."""

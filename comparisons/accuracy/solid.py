@@ -8,7 +8,7 @@ from comparisons.accuracy.answer import Discretised
 from comparisons.accuracy.pilot import SAFETY, pilot
 from comparisons.accuracy.quantities import difference
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene
 
@@ -51,7 +51,7 @@ def solid_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
 
 def _meshed(scene: Scene, mesh: tuple[int, int]) -> Scene:
     """Return the scene with every strip meshed alike, stocky ones with fewer elements along."""
-    from comparisons.translate.to_solid import rectangle
+    from comparisons.models.translate.to_solid import rectangle
 
     beams = []
     for beam in scene.beams:

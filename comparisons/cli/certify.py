@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
 from comparisons.files import writable_file, write_text
-from comparisons.options import OPTIONS, ModelError, Options
+from comparisons.models.options import OPTIONS, ModelError, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def run(given: "argparse.Namespace") -> int:
     """Read or solve, judge, and print the certificate."""
     file = None if given.json in (None, "-") else writable_file(Path(given.json))
     from comparisons.referee import Verdict, certify
-    from comparisons.restated import read_response
-    from comparisons.statement import to_text
+    from comparisons.response.from_json import read_response
+    from comparisons.response.to_json import to_text
 
     stored = given.answer.endswith(".json")
     if stored:

@@ -26,8 +26,8 @@ from comparisons.cli import (
 )
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, report
 from comparisons.files import OutputError, printable
-from comparisons.options import ModelError
-from comparisons.peers.ccx import CalculixError
+from comparisons.models.options import ModelError
+from comparisons.models.outside.ccx import CalculixError
 from comparisons.scene import InputError
 
 COMMANDS = (

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli.outcome import EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
-from comparisons.progress import Watch
+from comparisons.models.progress import Watch
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def run(given: "argparse.Namespace") -> int:
     """Compare, print the table and name the files."""
     scene = load_scene(given.scene)
     from comparisons.compare import ROD, compare
-    from comparisons.table import table_text
+    from comparisons.show.table import table_text
 
     def tell(line: str) -> None:
         if not given.quiet:

@@ -24,7 +24,7 @@ def add_to(commands: "Commands") -> None:
 
 def run(_: "argparse.Namespace") -> int:
     """Print what was looked at."""
-    from comparisons.doctor import examined
+    from comparisons.cli.machine import examined
 
     well = True
     for finding in examined():

@@ -40,10 +40,10 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Run the matrix, name the files and whatever is wrong."""
     writable_folder(given.out)
-    from comparisons.extremes.run import counts, extremes
+    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.workers import local
+    from comparisons.claims.extremes.run import counts, extremes
     from comparisons.output import tabulated
-    from comparisons.sweep.progress import line_ended, shown
-    from comparisons.sweep.workers import local
 
     with line_ended():
         found = extremes(given.out, local(given.workers), shown(), quick=given.quick)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
-from comparisons.options import OPTIONS, QUANTITIES, Options
+from comparisons.models.options import OPTIONS, QUANTITIES, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def run(given: argparse.Namespace) -> int:
     """Measure, print the bounds and write them."""
     scene = load_scene(given.scene)
     file = None if given.junit is None else writable_file(Path(given.junit))
-    from comparisons.gate import gate
+    from comparisons.claims.gate import gate
 
     options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
     found = gate(scene, given.model, options, dict(given.max_error), given.against)

@@ -39,10 +39,10 @@ def run(given: "argparse.Namespace") -> int:
     """Solve, write, name what failed."""
     writable_folder(given.out)
     file = None if given.junit is None else writable_file(given.junit)
-    from comparisons.junit import junit_text
-    from comparisons.manual import write_manual
-    from comparisons.manual.judge import failure
-    from comparisons.manual.text import junit_cases
+    from comparisons.claims.junit import junit_text
+    from comparisons.claims.manual import write_manual
+    from comparisons.claims.manual.judge import failure
+    from comparisons.claims.manual.text import junit_cases
 
     manual = write_manual(given.out, (lambda _: None) if given.quiet else report)
     if file is not None:

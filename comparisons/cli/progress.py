@@ -7,7 +7,7 @@ from shutil import get_terminal_size
 from time import monotonic
 from typing import TextIO
 
-from comparisons.progress import REDRAW, Reached, Watch, bar, unwatched
+from comparisons.models.progress import REDRAW, Reached, Watch, bar, unwatched
 
 
 @contextmanager

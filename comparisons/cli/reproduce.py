@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from comparisons.claims.paper.figures import FIGURES
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, report
 from comparisons.files import writable_folder
-from comparisons.studies.figures import FIGURES
 
 if TYPE_CHECKING:
     import argparse
@@ -40,7 +40,7 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Reproduce and name the files."""
     writable_folder(given.out)
-    from comparisons.studies.reproduce import reproduce
+    from comparisons.claims.paper.reproduce import reproduce
 
     done = reproduce(given.figure, given.out, quick=given.quick, report=report)
     print("files:", *(f"  {path}" for path in done.files), sep="\n")

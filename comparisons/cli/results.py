@@ -28,8 +28,8 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Print the table."""
+    from comparisons.cases.results import read_results, result_rows, result_table
     from comparisons.output import csv_text
-    from comparisons.sweep.results import read_results, result_rows, result_table
 
     found = read_results(given.file)
     if not given.csv:

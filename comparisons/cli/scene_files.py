@@ -59,7 +59,7 @@ def run_check(given: "argparse.Namespace") -> int:
     picture = writable_file(Path(given.out or f"{scene.name}.png"))
     if picture.suffix not in (".png", ".svg"):
         raise OutputError(f"{given.out}: must end in .png or .svg")
-    from comparisons.sketch import draw, stated
+    from comparisons.show.sketch import draw, stated
 
     for line in stated(scene):
         print(line)

@@ -8,7 +8,7 @@ from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.options import BRANCHES, OPTIONS, QUANTITIES, ModelError, Options
+from comparisons.models.options import BRANCHES, OPTIONS, QUANTITIES, ModelError, Options
 from comparisons.scene import built_in_scenes, load_scene
 
 if TYPE_CHECKING:
@@ -75,11 +75,11 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     file = None if given.json in (None, "-") else writable_file(Path(given.json))
     if given.vtk is not None:
-        from comparisons.export import check_series
+        from comparisons.show.export import check_series
 
         check_series(writable_folder(given.vtk), given.model or "tsm", scene)
     from comparisons.models import certified, solve
-    from comparisons.statement import as_json, summary
+    from comparisons.response.to_json import as_json, summary
 
     answer = _answer(scene, given)
     if answer is None:
@@ -95,7 +95,7 @@ def run(given: "argparse.Namespace") -> int:
     elif file is not None:
         write_text(file, as_json(response, **more))
     if given.vtk is not None:
-        from comparisons.export import write_series
+        from comparisons.show.export import write_series
 
         write_series(given.vtk, response, scene)
     if given.json != "-":

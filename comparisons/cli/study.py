@@ -5,18 +5,18 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from comparisons.claims.solid.questions import QUESTIONS
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, report
 from comparisons.files import writable_folder
 from comparisons.scene.tables import InputError
-from comparisons.studies.questions import QUESTIONS
 
 if TYPE_CHECKING:
     import argparse
 
+    from comparisons.cases.run import Tally
+    from comparisons.cases.workers import Workers
     from comparisons.cli.outcome import Commands
-    from comparisons.sweep.run import Tally
-    from comparisons.sweep.workers import Workers
 
 STUDY_EPILOG = """exit status: 0 every case has a result (a solution that stopped is one, and is named), 2 bad input or a place
 that cannot be used, 3 cases are left without a result, 130 interrupted; what is done is kept, and the same command goes on from there"""
@@ -71,8 +71,8 @@ def _answer(given: "argparse.Namespace") -> int:
                 f"--{option.replace('_', '-')}", f"belongs to a study file, {given.study} is a question"
             )
     writable_folder(given.out)
+    from comparisons.claims.solid.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
-    from comparisons.studies.solid_accuracy import STUDIES
 
     rows = STUDIES[given.study](report)
     print(tabulated(rows))
@@ -81,10 +81,10 @@ def _answer(given: "argparse.Namespace") -> int:
 
 
 def _run_file(given: "argparse.Namespace") -> int:
-    from comparisons.sweep.progress import line_ended, shown
-    from comparisons.sweep.run import run as run_cases
-    from comparisons.sweep.store import Store
-    from comparisons.sweep.study import read_study
+    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.run import run as run_cases
+    from comparisons.cases.store import Store
+    from comparisons.cases.study import read_study
 
     study = read_study(Path(given.study))
     file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
@@ -104,7 +104,7 @@ def _run_file(given: "argparse.Namespace") -> int:
 
 def workers(given: "argparse.Namespace") -> "Workers":
     """Return where the cases run: ``--cluster``, or ``--workers`` processes."""
-    from comparisons.sweep.workers import cluster, local
+    from comparisons.cases.workers import cluster, local
 
     return local(given.workers) if given.cluster is None else cluster(given.cluster)
 
@@ -119,7 +119,7 @@ def report_older(tally: "Tally", *, keep: bool = False) -> None:
 
 def _concluded(name: str, tally: "Tally", file: Path) -> int:
     """Say how the cases ended; a case without a result makes the exit status."""
-    from comparisons.sweep.store import UNSETTLED
+    from comparisons.cases.store import UNSETTLED
 
     ends = ", ".join(f"{status} {number}" for status, number in tally.statuses.items())
     print(f"{name}: {tally.done} cases: {ends}")

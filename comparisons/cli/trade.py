@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import argparse
 
     from comparisons.cli.outcome import Commands
-    from comparisons.trade.points import Trade
+    from comparisons.cost.points import Trade
 
 TRADE_EPILOG = """exit status: 0 every setting was tried (those that stopped are listed), 2 bad input or a place that cannot be used,
 3 nothing to measure errors against, 130 interrupted; what is done is kept, and the same command goes on from there"""
@@ -45,9 +45,9 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     folder = given.out or Path("out/trade") / scene.name
     given.workers = given.workers or 1
-    from comparisons.sweep.progress import line_ended, shown
-    from comparisons.trade.references import NoReferenceError
-    from comparisons.trade.sweep import trade_off
+    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cost.references import NoReferenceError
+    from comparisons.cost.sweep import trade_off
 
     try:
         with line_ended():
@@ -63,9 +63,9 @@ def run(given: "argparse.Namespace") -> int:
 
 
 def _text(trade: "Trade") -> str:
-    from comparisons.trade.orders import orders
-    from comparisons.trade.sweep import SHOWN
-    from comparisons.trade.tables import cheapest_text, orders_text, stopped_text
+    from comparisons.cost.orders import orders
+    from comparisons.cost.sweep import SHOWN
+    from comparisons.cost.tables import cheapest_text, orders_text, stopped_text
 
     limit = (
         "not known: a solid that it is extrapolated from stopped"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
 from comparisons.files import OutputError, writable_folder
-from comparisons.options import ModelError, Options
+from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from comparisons.cli.outcome import Commands
     from comparisons.response import Response
     from comparisons.scene import Scene
-    from comparisons.view import Series
+    from comparisons.show.view import Series
 
 BEAMS = Options(element="mixed", elements=20)
 
@@ -47,13 +47,13 @@ def run(given: "argparse.Namespace") -> int:
         if given.mesh is not None:
             raise ModelError("--mesh: belongs to a scene, not to a folder")
         out = _target(given.out, folder.resolve().name)
-        from comparisons.view import read_series
+        from comparisons.show.view import read_series
 
         return _present(read_series(folder), "axial stress", out)
     scene = load_scene(given.what)
     out = _target(given.out, scene.name)
     responses = _solve(scene, given)
-    from comparisons.view import solved_series
+    from comparisons.show.view import solved_series
 
     force, length = (unit.strip() for unit in scene.units.split(","))
     series = [
@@ -90,7 +90,7 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
 
 
 def _present(series: "list[Series]", label: str, out: Path | None) -> int:
-    from comparisons.view import film, show, write
+    from comparisons.show.view import film, show, write
 
     shown = film(series, label)
     if out is None:

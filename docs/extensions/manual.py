@@ -31,7 +31,7 @@ def up_to_date(page: Path) -> bool:
 
 
 def _on_start(app: Sphinx) -> None:
-    from comparisons.manual import write_manual
+    from comparisons.claims.manual import write_manual
 
     page = Path(app.srcdir) / "_generated" / "manual" / "index.md"
     if up_to_date(page):

@@ -23,15 +23,15 @@ import numpy as np
 
 import fem_reference
 import tsm
+from comparisons.cases import measure
+from comparisons.cost.points import cheapest
+from comparisons.cost.sweep import measure_trade
 from comparisons.files import write_text
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
+from comparisons.models.translate import to_solid, to_structure
 from comparisons.referee import certify, equilibrium, given_by
 from comparisons.scene import load_scene, read_scene
-from comparisons.sweep import measure
-from comparisons.trade.points import cheapest
-from comparisons.trade.sweep import measure_trade
-from comparisons.translate import to_solid, to_structure
 from fem_reference.tangent import linearise
 from tests.comparisons.many_beams import MANY
 from tests.comparisons.referee.test_index import CROWD
@@ -383,7 +383,7 @@ import resource
 import numpy as np
 import fem_reference
 from comparisons.scene import load_scene
-from comparisons.translate import to_solid
+from comparisons.models.translate import to_solid
 fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """

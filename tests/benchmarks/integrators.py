@@ -19,8 +19,8 @@ from scipy.integrate import DOP853
 
 import tsm
 from comparisons.exact.rod import rod_under_pin
+from comparisons.models.translate import to_rod, to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_rod, to_structure
 from tsm import contact, contact_set, newton, path
 from tsm.elements import rod
 from tsm.elements.collocation import collocation

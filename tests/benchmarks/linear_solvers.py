@@ -27,8 +27,8 @@ from scipy.sparse import csc_matrix, csr_matrix, load_npz, save_npz, triu
 from scipy.sparse.linalg import LinearOperator, cg, gmres, minres, spilu, splu
 
 import fem_reference
+from comparisons.models.translate import to_solid
 from comparisons.scene import load_scene
-from comparisons.translate import to_solid
 from fem_reference.model import build
 from fem_reference.state import state
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_structure
 from tsm.elements import rod
 
 _spec = importlib.util.spec_from_file_location("integrators", Path(__file__).with_name("integrators.py"))

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from comparisons.budget import PARTS, QUANTITIES, TIMES, Budget, error_budget
-from comparisons.budget_plot import plot_budget, write_budget
-from comparisons.options import ModelError
+from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
+from comparisons.show.budget_plot import plot_budget, write_budget
 
 
 @pytest.fixture(scope="module", params=["ks-cantilever", "ks-face"])

@@ -7,11 +7,11 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.restated import read_response
+from comparisons.response.from_json import read_response
+from comparisons.response.to_json import as_json
 from comparisons.scene import load_scene
-from comparisons.statement import as_json
 
 PAIR = "pin->cantilever"
 

@@ -12,11 +12,11 @@ from comparisons import compare as compared
 from comparisons import models
 from comparisons.cli import main
 from comparisons.compare import PAPER, RUNS, compare
-from comparisons.metrics import errors
-from comparisons.options import ModelError, Options
+from comparisons.errors import errors
+from comparisons.models.options import ModelError, Options
+from comparisons.models.translate import to_rod
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
-from comparisons.translate import to_rod
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 FILES = {

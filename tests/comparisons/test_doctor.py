@@ -4,7 +4,7 @@ from importlib import metadata
 
 import pytest
 
-from comparisons import doctor
+from comparisons.cli import machine as doctor
 from comparisons.cli import main
 
 Output = pytest.CaptureFixture[str]
@@ -24,7 +24,7 @@ def test_everything_needed_is_here(capsys: Output) -> None:
 def test_what_is_missing_is_named(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
     monkeypatch.setattr(doctor, "NEEDED", ("numpy", "no-such-distribution"))
     monkeypatch.setattr(doctor, "PROGRAMS", {"no-such-program": "what it is for"})
-    monkeypatch.setattr("comparisons.render.renders", lambda: False)
+    monkeypatch.setattr("comparisons.show.render.renders", lambda: False)
     assert main(["doctor"]) == 1
     mark = {what: (mark, state) for mark, what, state in looked_at(capsys)}
     assert mark["no-such-distribution"] == ("MISSING", "missing")

@@ -12,13 +12,13 @@ import pytest
 import pyvista
 
 from comparisons.cli import main
-from comparisons.export import pin_grid, write_series, write_vtu
 from comparisons.files import OutputError
-from comparisons.listing import digest, with_digests
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import ContactSpec, load_scene
+from comparisons.show.export import pin_grid, write_series, write_vtu
+from comparisons.show.listing import digest, with_digests
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 ROUND_TRIP = {"rtol": 1e-12, "atol": 1e-12}

@@ -14,7 +14,7 @@ from pathlib import Path
 import meshio
 import pytest
 
-from comparisons.render import INSTEAD
+from comparisons.show.render import INSTEAD
 
 HERE = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 COMMAND = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
@@ -53,11 +53,11 @@ def names(folder: Path) -> set[str]:
 WRITE = """
 import sys, time
 from pathlib import Path
-from comparisons.export import write_series
+from comparisons.show.export import write_series
 from comparisons.files import write_text
 from comparisons.models import solve
 from comparisons.scene import load_scene
-from comparisons.statement import as_json
+from comparisons.response.to_json import as_json
 scene = load_scene("ks-cantilever")
 response = solve(scene, "tsm")
 text = as_json(response)
@@ -270,9 +270,9 @@ PICTURE = """
 from pathlib import Path
 from dataclasses import replace
 from comparisons.models import solve
-from comparisons.render import render_panels
+from comparisons.show.render import render_panels
 from comparisons.scene import load_scene
-from comparisons.stress import beam_panel
+from comparisons.show.stress import beam_panel
 scene = replace(load_scene("ks-cantilever"), load_parameters=2)
 print(render_panels([beam_panel(solve(scene, "tsm"), scene, [1], "beams")], "stress", Path("a.png")))
 """

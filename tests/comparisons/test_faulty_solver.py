@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons import discrete_models
-from comparisons.discrete_models import solve_tsm
-from comparisons.options import Options
+from comparisons.models import discrete as discrete_models
+from comparisons.models.discrete import solve_tsm
+from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.test_certify import BEAM, PORTAL

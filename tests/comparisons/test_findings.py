@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import certified, solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
 

@@ -10,10 +10,10 @@ import pytest
 
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.models import solve
+from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.response import Response, SupportHistory
+from comparisons.response.to_json import as_json, summary
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec
-from comparisons.statement import as_json, summary
-from comparisons.verify import CHECK_FAILED, verified
 
 STIFF = {"youngs_modulus": 1e6, "shear_modulus": 1e6, "area": 1.0, "second_moment": 1e-6}
 """EI = 1 with EA = GA = 1e6: the elastica to a few millionths."""

@@ -9,8 +9,8 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import solve
+from comparisons.response.to_json import as_json, summary
 from comparisons.scene import read_scene
-from comparisons.statement import as_json, summary
 from tests.comparisons.many_beams import MANY, chain
 
 

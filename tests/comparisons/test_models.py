@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from comparisons.models import MODELS, solve
-from comparisons.options import OPTIONS, ModelError, Options
+from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.response.to_json import as_json
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
-from comparisons.statement import as_json
 
 KS = load_scene("ks-cantilever")
 SHORT = replace(KS, load_parameters=8)

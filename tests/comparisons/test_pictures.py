@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from comparisons import render
 from comparisons.compare import DRAWN
 from comparisons.models import solve
-from comparisons.options import Options
-from comparisons.plot import nearest_steps, plot_panels, plot_shapes
-from comparisons.render import render_panels
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import load_scene
-from comparisons.stress import LAYERS, Panel, Scale, beam_panel, solid_panel
+from comparisons.show import render
+from comparisons.show.plot import nearest_steps, plot_panels, plot_shapes
+from comparisons.show.render import render_panels
+from comparisons.show.stress import LAYERS, Panel, Scale, beam_panel, solid_panel
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)
 

@@ -12,8 +12,8 @@ from comparisons.cli import main
 from comparisons.cli import progress as shown
 from comparisons.cli.progress import watching
 from comparisons.models import solve
-from comparisons.options import Options
-from comparisons.progress import Reached
+from comparisons.models.options import Options
+from comparisons.models.progress import Reached
 from comparisons.scene import load_scene
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
+from comparisons.models.translate.to_solid import rectangle, to_solid
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
-from comparisons.translate.to_solid import rectangle, to_solid
 
 AXIS = load_scene("double-beam")
 UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.metrics import errors
+from comparisons.errors import errors
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Response
+from comparisons.response.to_json import as_json, summary
 from comparisons.scene import PinSpec, load_scene
-from comparisons.statement import as_json, summary
-from comparisons.table import Row, table_csv, table_text
+from comparisons.show.table import Row, table_csv, table_text
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR, BEAM = "pin->cantilever", "cantilever"

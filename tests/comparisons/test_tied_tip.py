@@ -10,7 +10,7 @@ import pytest
 from comparisons.cli import main
 from comparisons.exact.tied import rod_with_tied_tip
 from comparisons.models import solve
-from comparisons.options import ModelError
+from comparisons.models.options import ModelError
 from comparisons.response import Response
 from comparisons.scene import LoadSpec, Scene, SupportSpec, load_scene
 

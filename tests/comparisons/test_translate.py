@@ -7,9 +7,9 @@ import pytest
 
 import tsm
 from comparisons.models import solve
-from comparisons.options import ModelError
+from comparisons.models.options import ModelError
+from comparisons.models.translate import to_rod, to_solid, to_structure
 from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
-from comparisons.translate import to_rod, to_solid, to_structure
 
 KS = load_scene("ks-cantilever")
 FACE = load_scene("ks-face")

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
+from comparisons.models.verify import CHECK_FAILED, failures, verified
 from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import ContactSpec, PinSpec, load_scene
-from comparisons.verify import CHECK_FAILED, failures, verified
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR, BEAM = "pin->cantilever", "cantilever"

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from comparisons import render
 from comparisons.cli import main
-from comparisons.export import write_series
 from comparisons.files import writable_folder
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.response import Grid, Response
 from comparisons.scene import built_in_scenes, load_scene
-from comparisons.view import Series, film, read_series, solved_series
-from comparisons.view.bodies import panel
+from comparisons.show import render
+from comparisons.show.export import write_series
+from comparisons.show.view import Series, film, read_series, solved_series
+from comparisons.show.view.bodies import panel
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 Output = pytest.CaptureFixture[str]
@@ -132,10 +132,10 @@ def test_a_window_where_there_is_a_display(
     write_series(writable_folder(tmp_path / "tsm"), solve(SCENE, "tsm"), SCENE)
     monkeypatch.setenv("DISPLAY", ":0")
     shown = []
-    monkeypatch.setattr("comparisons.view.show", lambda found: shown.append(found) or True)
+    monkeypatch.setattr("comparisons.show.view.show", lambda found: shown.append(found) or True)
     assert main(["view", str(tmp_path)]) == 0
     assert len(shown[0].frames) == 3
-    monkeypatch.setattr("comparisons.view.show", lambda _: False)
+    monkeypatch.setattr("comparisons.show.view.show", lambda _: False)
     assert main(["view", str(tmp_path)]) == 2
     assert "no window could be opened" in capsys.readouterr().err
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.sweep.results import read_results
-from tests.comparisons.sweep.conftest import COMMAND
+from comparisons.cases.results import read_results
+from tests.comparisons.cases.conftest import COMMAND
 
 BLOCK = """
 import os, signal, sys

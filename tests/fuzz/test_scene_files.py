@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
+from comparisons.models.verify import CHECK_FAILED
 from comparisons.scene import load_scene
-from comparisons.verify import CHECK_FAILED
 from tests.fuzz.broken import toml_text
 from tests.fuzz.judge import solved
 from tests.fuzz.run import tally

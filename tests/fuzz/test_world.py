@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
+from comparisons.models.verify import penetration
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
-from comparisons.verify import penetration
 from tests.fuzz.world import drawn
 from tests.fuzz.world_judge import Row, findings, judged
 

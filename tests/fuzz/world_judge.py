@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from comparisons.models import solve
-from comparisons.options import ModelError, Options
+from comparisons.models.options import ModelError, Options
+from comparisons.models.verify import penetration
 from comparisons.referee import Judgement, certify
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
-from comparisons.verify import penetration
 from tests.fuzz.judge import LIMIT, Hang, time_limit
 
 MODELS = {

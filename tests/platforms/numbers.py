@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.scene import load_scene
 
 STORED = Path(__file__).parents[1] / "reference" / "numbers.json"

@@ -9,8 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import time
 
+from comparisons.cases.owner import Owner
 from comparisons.files import alone_in
-from comparisons.sweep.owner import Owner
 
 HOLD = """
 import sys, time

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_structure
 from tsm.batch import march
 from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.batch.equations import Equations, Points

@@ -9,8 +9,8 @@ import pytest
 
 import tsm
 from comparisons.exact.rod import rod_under_pin
+from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_structure
 from tsm.contact import arc_position, slide
 from tsm.model import Model
 

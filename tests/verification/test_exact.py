@@ -9,14 +9,14 @@ import pytest
 from scipy.integrate import solve_bvp
 
 import tsm
+from comparisons.claims.manual.frames import lee_limit
 from comparisons.exact import elastica
 from comparisons.exact.coupled import coupled_rods
 from comparisons.exact.end_loads import tip_under_dead_load
 from comparisons.exact.rod import rod_under_pin
-from comparisons.manual.frames import lee_limit
 from comparisons.models import solve as solve_scene
+from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_structure
 from tsm.events import EventKind
 from tsm.rods.accuracy import deflected
 from tsm.status import Status

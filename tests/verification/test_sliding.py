@@ -9,8 +9,8 @@ import pytest
 
 import tsm
 from comparisons.exact.rod import rod_under_pin
+from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from comparisons.translate import to_structure
 from tsm.elements import mixed_contact
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Properties

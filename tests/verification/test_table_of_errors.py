@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
-from comparisons.metrics import errors
+from comparisons.errors import errors
 from comparisons.models import solve
 from comparisons.scene import load_scene
 

@@ -11,7 +11,7 @@ from comparisons.accuracy.pilot import pilot
 from comparisons.accuracy.quantities import difference
 from comparisons.accuracy.require import without_idle
 from comparisons.models import solve
-from comparisons.options import QUANTITIES, ModelError, Options
+from comparisons.models.options import QUANTITIES, ModelError, Options
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5)

@@ -11,8 +11,8 @@ import pytest
 
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models import MODELS, solve
-from comparisons.options import Options
-from comparisons.progress import unwatched
+from comparisons.models.options import Options
+from comparisons.models.progress import unwatched
 from comparisons.referee import Certificate, Verdict, certify, equilibrium
 from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene

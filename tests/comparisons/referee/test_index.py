@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from comparisons.exact.elastica import fold_angle
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.referee import Equilibrium, Found, Given, equilibrium, given_by
 from comparisons.referee.equations import assemble, moved, properties
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene

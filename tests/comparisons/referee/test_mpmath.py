@@ -7,7 +7,7 @@ import pytest
 from mpmath import cos, lu_solve, matrix, mp, mpf, sin
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.referee import Equilibrium, Found, equilibrium, given_by
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import solve
-from comparisons.options import Options
+from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.referee.equations import mesh_of
 from comparisons.referee.equilibrium import Found, correct

@@ -1,0 +1,85 @@
+"""One case of a sweep: a scene, a model and its options, complete and hashable."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.scene import Scene, to_toml
+from comparisons.version import version
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """What is solved, and how: everything that a result depends on.
+
+    Element order, penalty and load steps are entries of the scene (`BeamSpec.solid_element`, `ContactSpec.penalty`,
+    `Scene.load_parameters`), elements and meshes are options.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    model : str
+        Key of `comparisons.models.MODELS`.
+    options : Options
+        The model's options.
+
+    Raises
+    ------
+    ModelError
+        If there is no such model.
+    """
+
+    scene: Scene
+    model: str
+    options: Options = field(default_factory=Options)
+
+    def __post_init__(self) -> None:
+        if self.model not in OPTIONS:
+            raise ModelError(f"model = {self.model}: must be one of {', '.join(OPTIONS)}")
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of scene, mesh files, model, options and the version of the sources, in hexadecimal digits."""
+        content = {
+            "version": version(),
+            "scene": to_toml(self.scene),
+            "mesh_files": [_digest(beam.solid_mesh_file) for beam in self.scene.beams],
+            "model": self.model,
+            "options": asdict(self.options),
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    @property
+    def label(self) -> str:
+        """Short text for people: ``tsm mixed 10``, ``solid Q2 50x2``."""
+        parts = {"tsm": self._beams, "solid": self._solid}.get(self.model, str)()
+        branch = "" if self.options.branch is None else f" {self.options.branch}"
+        return f"{self.model} {parts}".rstrip() + branch
+
+    def _beams(self) -> str:
+        element = self.options.element or "mixed"
+        counts = {
+            self.options.elements or (1 if element == "exact" else beam.elements) for beam in self.scene.beams
+        }
+        tolerance = "" if self.options.tolerance is None else f" tolerance {self.options.tolerance:g}"
+        return f"{element} {'+'.join(map(str, sorted(counts)))}{tolerance}"
+
+    def _solid(self) -> str:
+        meshes = {self.options.mesh or beam.solid_mesh_file or beam.mesh for beam in self.scene.beams}
+        names = sorted(mesh if isinstance(mesh, str) else f"{mesh[0]}x{mesh[1]}" for mesh in meshes)
+        orders = sorted({beam.solid_element for beam in self.scene.beams})
+        given = "".join(
+            f" {name} {value:g}"
+            for name in ("penalty", "penetration")
+            for value in sorted({getattr(item, name) for item in self.scene.contacts} - {None})
+        )
+        return f"{'+'.join(orders)} {'+'.join(names)}{given}"
+
+
+def _digest(mesh_file: str | None) -> str | None:
+    """Return a digest of what a mesh file holds; None where there is none, which the solution will say."""
+    path = None if mesh_file is None else Path(mesh_file)
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path is not None and path.is_file() else None

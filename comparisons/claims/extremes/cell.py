@@ -1,0 +1,133 @@
+"""One cell of the matrix, and its verdict."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from comparisons.cases.case import Case
+from comparisons.cases.run import COMPLETED
+from comparisons.cases.store import UNSETTLED
+from comparisons.claims.extremes.checks import Check, Finding, Results
+from comparisons.models.verify import CHECK_FAILED
+
+
+class Verdict(StrEnum):
+    """What becomes of a cell."""
+
+    RIGHT = "right"
+    STOPPED = "stopped"
+    WITHDRAWN = "withdrawn"
+    """An answer that its own checks refuse: neither right nor a stop in time."""
+    WRONG = "wrong"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """A case at one place of the matrix and what it is compared with.
+
+    Attributes
+    ----------
+    axis, row, column : str
+        Its place: what varies, the model, the value.
+    case : Case
+        What is solved.
+    checks : tuple of Check
+        All of them must hold.
+    """
+
+    axis: str
+    row: str
+    column: str
+    case: Case
+    checks: tuple[Check, ...]
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """The case, and those that its checks need."""
+        return (self.case, *(case for check in self.checks for case in check.needs))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """The verdict on a cell.
+
+    Attributes
+    ----------
+    cell : Cell
+        The cell.
+    verdict : Verdict
+        Wrong is an error above what is allowed, at any load parameter that was reached, and a case without a status of its own;
+        an answer that fails its own checks is withdrawn, and counts neither as right nor as stopped.
+    status, message : str
+        How the solution ended.
+    reached : float
+        The last load parameter reached, zero if none was.
+    findings : tuple of Finding
+        Of every check, over what was reached; empty if nothing was.
+    iterations, cutbacks : int
+        What it took.
+    seconds : float
+        Processor time, nan if nothing ran.
+    """
+
+    cell: Cell
+    verdict: Verdict
+    status: str
+    message: str
+    reached: float
+    findings: tuple[Finding, ...]
+    iterations: int
+    cutbacks: int
+    seconds: float
+
+    @property
+    def needless(self) -> bool:
+        """Whether an answer is withdrawn of which everything that was reached is within what is allowed."""
+        held = bool(self.findings) and all(finding.holds for finding in self.findings)
+        return self.verdict is Verdict.WITHDRAWN and held
+
+    @property
+    def decisive(self) -> Finding | None:
+        """The finding that comes nearest to what is allowed, or exceeds it most."""
+        return max(self.findings, key=_share, default=None)
+
+    @property
+    def sentence(self) -> str:
+        """What is wrong, in one line."""
+        place = f"{self.cell.axis} {self.cell.column}, {self.cell.case.label}: {self.verdict}: {self.status}"
+        if self.decisive is None:
+            return f"{place}: {self.message}"
+        found = self.decisive
+        return f"{place}, error {found.error:.2g} against {found.against}, allowed {found.allowed:.2g} ({found.why})"
+
+
+def _share(finding: Finding) -> float:
+    """Return the error as a part of what is allowed, infinite if it is no number."""
+    share = finding.error / finding.allowed
+    return share if np.isfinite(share) else np.inf
+
+
+def judged(cell: Cell, results: Results) -> Judgement:
+    """Return the verdict on `cell` by the `results` of its `cases`."""
+    own = results[cell.case]
+    reached = bool(len(own.load_parameter))
+    found = [check.finding(cell.case, own, results) for check in cell.checks] if reached else []
+    findings = tuple(finding for finding in found if finding is not None)
+    if own.status == CHECK_FAILED:
+        verdict = Verdict.WITHDRAWN
+    elif own.status in UNSETTLED or not all(finding.holds for finding in findings):
+        verdict = Verdict.WRONG
+    else:
+        verdict = Verdict.RIGHT if own.status == COMPLETED else Verdict.STOPPED
+    return Judgement(
+        cell=cell,
+        verdict=verdict,
+        status=own.status,
+        message=own.message,
+        reached=float(own.load_parameter[-1]) if reached else 0.0,
+        findings=findings,
+        iterations=own.iterations,
+        cutbacks=own.cutbacks,
+        seconds=own.seconds,
+    )

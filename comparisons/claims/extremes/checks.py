@@ -1,0 +1,177 @@
+"""What an answer is compared with: another answer, the energy of a rod in closed form, a circle."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from comparisons.accuracy.quantities import difference
+from comparisons.cases.case import Case
+from comparisons.cases.measure import Measurement
+from comparisons.claims.extremes.allowance import (
+    FLOOR,
+    LARGEST,
+    Allowance,
+    allowance,
+    bending,
+    element_lengths,
+)
+from comparisons.claims.extremes.units import in_units_of
+from comparisons.exact.end_loads import tip_under_moment
+from comparisons.response import Array
+from comparisons.scene import BeamSpec
+
+COMPARED = ("force", "arc", "moment", "tip")
+"""Quantities whose largest relative difference is the error."""
+INVARIANT = 1e-12
+NEXT_TERM = 1.05
+"""What the terms behind the first neglected one add to it in a roll-up."""
+
+Results = Mapping[Case, Measurement]
+"""What was measured."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """An error, what is allowed, and why that much.
+
+    Attributes
+    ----------
+    against : str
+        What the answer is compared with.
+    error, allowed : float
+        Relative; infinite where one of the two has no answer.
+    why : str
+        Where the allowed error comes from.
+    """
+
+    against: str
+    error: float
+    allowed: float
+    why: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether the error is within what is allowed; nan is not."""
+        return self.error <= self.allowed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Against:
+    """Comparison with the answer of another case, at the load parameters of both; units may differ.
+
+    Parameters
+    ----------
+    case : Case
+        The other case.
+    name : str
+        What it is, in words.
+    allowed : Allowance, optional
+        What is allowed; by default `allowance`, which takes `case` for the exact answer.
+    """
+
+    case: Case
+    name: str = "exact rod"
+    allowed: Allowance | None = None
+
+    @property
+    def needs(self) -> tuple[Case, ...]:
+        """The cases that must have been measured."""
+        return (self.case,)
+
+    def finding(self, case: Case, own: Measurement, results: Results) -> Finding | None:
+        """Return the error of `own`, measured on `case`; infinite where it went further than its reference.
+
+        The elastica is another beam, which may go further; None if the reference has nothing to compare it with, or is too soft to be.
+        """
+        other, beam = results[self.case], self.case.scene.beams[0]
+        allowed = self.allowed or allowance(case, bending(beam, other))
+        if case.model == "elastica" and (allowed.error > LARGEST or not len(other.load_parameter)):
+            return None
+        if case.model != "elastica" and len(own.load_parameter) > len(other.load_parameter):
+            return Finding(
+                against=self.name,
+                error=np.inf,
+                allowed=allowed.error,
+                why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
+            )
+        ours = in_units_of(beam, case.scene.beams[0], own)
+        theirs = in_units_of(beam, beam, other)
+        error = max(difference(ours, theirs, self.case.scene, quantity) for quantity in COMPARED)
+        return Finding(against=self.name, error=error, allowed=allowed.error, why=allowed.why)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Energy:
+    """Energy of the loaded part of a rod under a pin on its axis, which no quadrature enters.
+
+    With the force ``F (-sin b, cos b)`` at (x, y), ``c = 1/EA - 1/GA`` and ``S = (F/GA)/(1 + sqrt(1 - F^2 c/GA))``
+
+        F (x cos b + y sin b)^2 = 2 EI (sin b - S) (1 - F c (sin b + S)/2)
+
+    and for the elastica, where b is the tangent's angle at the contact, ``F (x cos tc + y sin tc)^2 = 2 EI sin tc``.
+
+    Parameters
+    ----------
+    rigid : bool
+        Whether the rod is rigid in stretch and shear.
+    """
+
+    rigid: bool = False
+    needs: tuple[Case, ...] = field(default=(), init=False)
+
+    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+        """Return the largest violation over ``2 EI sin b``."""
+        beam, pin = case.scene.beams[0], case.scene.pins[0]
+        force = -own.support_force[beam.name]
+        closed = np.hypot(*force.T) > 0.0
+        place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
+        error = _violation(beam, force[closed], place[closed], rigid=self.rigid)
+        what = "2 EI sin tc of the elastica" if self.rigid else "its energy integral"
+        return Finding(against=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
+
+
+def _violation(beam: BeamSpec, force: Array, place: Array, *, rigid: bool) -> float:
+    F = np.hypot(*force.T)
+    x, y = place.T
+    sine, cosine = -force[:, 0] / F, force[:, 1] / F
+    shear, stretch = (0.0, 0.0) if rigid else (1 / beam.GA, 1 / beam.EA)
+    c = stretch - shear
+    S = F * shear / (1 + np.sqrt(1 - F**2 * c * shear))
+    left = F * (x * cosine + y * sine) ** 2
+    right = 2 * beam.EI * (sine - S) * (1 - F * c * (sine + S) / 2)
+    return float((np.abs(left - right) / (2 * beam.EI * sine)).max(initial=0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circle:
+    """A beam rolled up by a moment at its tip: an arc, whatever EA and GA.
+
+    Every element bends to the same arc of the angle t. One whose strain measures stop before a term makes its chord, and with it the whole circle,
+    too large by that term: the paper's by t^2/24, `mixed` by t^4/1920. The tip is off by the term times its distance from the clamp.
+    """
+
+    needs: tuple[Case, ...] = field(default=(), init=False)
+
+    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+        """Return the largest error of the tip's position over the length."""
+        beam, load = case.scene.beams[0], case.scene.loads[0]
+        exact = [
+            tip_under_moment(load.moment * float(t), EI=beam.EI, length=beam.length)
+            for t in own.load_parameter
+        ]
+        error = float(np.hypot(*(own.tip[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
+        element = case.options.element
+        turn = load.moment * element_lengths(case)[0] * beam.length / beam.EI * own.load_parameter
+        if element == "exact":
+            term, why = 0.0 * turn, "accuracy of the integration"
+        elif element == "mixed":
+            term, why = turn**4 / 1920, "fourth order of the element"
+        else:
+            term, why = turn**2 / 24, "second order of the element"
+        distance = np.hypot(*np.array(exact).reshape(-1, 2).T) / beam.length
+        allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
+        return Finding(against="circle", error=error, allowed=allowed, why=why)
+
+
+Check = Against | Energy | Circle

@@ -1,0 +1,144 @@
+"""The maps as sections of a page: one table for each axis, models down, values across."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from html import escape
+from itertools import pairwise
+from typing import Protocol
+
+from comparisons.claims.extremes.cell import Judgement, Verdict
+from comparisons.show.pages import Section
+
+MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
+"""What tells the verdicts apart without colour."""
+STYLE = """
+<style>
+.map { overflow-x: auto; } .map table, .key { border-collapse: separate; border-spacing: 2px; }
+.map thead th { font-weight: 400; text-align: center; font-size: .75rem; white-space: normal; max-width: 7em; }
+.map tbody th { position: sticky; left: 0; background: var(--paper); }
+.map td, .key td { text-align: center; padding: 3px 6px; min-width: 5em; font-size: .75rem; border: 0; print-color-adjust: exact; }
+td.stopped { background: repeating-linear-gradient(45deg, var(--line) 0 6px, transparent 6px 9px) var(--paper); outline: 1px solid var(--line); }
+td.withdrawn { outline: 2px dashed var(--line); }
+td.wrong { background: #d55e00; color: #fff; font-weight: 700; }
+td.none { color: var(--line); } .key td { min-width: 0; }
+</style>
+"""
+LEGEND = """A cell shows the largest error of force, arc position, moment and tip over all load parameters reached: of the comparisons that
+must hold, the one that comes nearest to what is allowed. A cell that stopped shows the name of the reason, one that is withdrawn by its own
+checks the error that it would have had. Hover over it to see what it
+is compared with, what is allowed and why."""
+SHADES = (
+    (-14.0, (8, 48, 107)),
+    (-10.0, (33, 113, 181)),
+    (-6.0, (107, 174, 214)),
+    (-3.0, (189, 215, 231)),
+    (0.0, (255, 247, 188)),
+)
+"""Blue for small errors to pale yellow for large ones, by the decimal logarithm: safe for the colour-blind."""
+
+
+class Titled(Protocol):
+    """What a map says about its axis."""
+
+    @property
+    def name(self) -> str:
+        """The axis, as its cells call it."""
+
+    @property
+    def title(self) -> str:
+        """For people."""
+
+    @property
+    def scene(self) -> str:
+        """What is solved."""
+
+
+def sections(axes: Iterable[Titled], judgements: Sequence[Judgement]) -> list[Section]:
+    """Return the key and one map for each axis that has cells."""
+    parts = [Section(title="How to read the maps", html=f"{STYLE}<p>{LEGEND}</p>{_key()}")]
+    for axis in axes:
+        own = [item for item in judgements if item.cell.axis == axis.name]
+        if own:
+            about = f"<p>{escape(axis.scene)}. {counted(own)}.</p>"
+            parts.append(Section(title=axis.title, html=about + _map(own)))
+    return parts
+
+
+def counted(judgements: Sequence[Judgement]) -> str:
+    """Return how many cells there are, how many of each verdict, and how many are withdrawn although they are right."""
+    number = Counter(item.verdict for item in judgements)
+    needless = sum(item.needless for item in judgements)
+    counts = {verdict: f"{number[verdict]} {verdict}" for verdict in Verdict}
+    counts[Verdict.WITHDRAWN] += f" ({needless} needlessly)" if needless else ""
+    return f"{len(judgements)} cells: " + ", ".join(counts.values())
+
+
+def _key() -> str:
+    shades = "".join(
+        f'<td style="{_shade(10.0**power)}">{_number(10.0**power)}</td>' for power in (-14, -10, -6, -3, -1)
+    )
+    return (
+        f'<table class="key"><tr><th>completed and right, error</th>{shades}'
+        f'<td class="stopped">{MARKS[Verdict.STOPPED]}stopped by name</td><td class="withdrawn">{MARKS[Verdict.WITHDRAWN]}withdrawn by its own checks</td><td class="wrong">{MARKS[Verdict.WRONG]}wrong</td></tr></table>'
+    )
+
+
+def _map(judgements: Sequence[Judgement]) -> str:
+    rows = list(dict.fromkeys(item.cell.row for item in judgements))
+    columns = list(dict.fromkeys(item.cell.column for item in judgements))
+    at = {(item.cell.row, item.cell.column): item for item in judgements}
+    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
+    body = "\n".join(
+        f'<tr><th scope="row">{escape(row)}</th>'
+        + "".join(_cell(at.get((row, column))) for column in columns)
+        + "</tr>"
+        for row in rows
+    )
+    return f'<div class="map"><table><thead><tr><th></th>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
+
+
+def _cell(item: Judgement | None) -> str:
+    if item is None:
+        return '<td class="none">·</td>'
+    decisive = item.decisive
+    shown = item.status if item.verdict is Verdict.STOPPED or decisive is None else _number(decisive.error)
+    style = f' style="{_shade(decisive.error)}"' if item.verdict is Verdict.RIGHT and decisive else ""
+    return f'<td class="{item.verdict}"{style} title="{escape(_details(item))}">{MARKS[item.verdict]}{escape(shown)}</td>'
+
+
+def _details(item: Judgement) -> str:
+    found = [
+        f"against {finding.against}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
+        for finding in item.findings
+    ]
+    ended = f"{item.status}: {item.message}"
+    return "\n".join(
+        [
+            f"{item.cell.case.label}, {item.cell.column}: {item.verdict}",
+            ended,
+            f"reached {item.reached:.4g} of 1",
+            *found,
+            f"{item.iterations} iterations, {item.cutbacks} cut-backs",
+        ]
+    )
+
+
+def _number(value: float) -> str:
+    return (
+        "0"
+        if value == 0
+        else f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+")
+        if math.isfinite(value)
+        else "∞"
+    )
+
+
+def _shade(error: float) -> str:
+    """Return background and ink for an error."""
+    power = min(max(math.log10(max(error, 1e-300)), SHADES[0][0]), SHADES[-1][0])
+    (low, one), (high, other) = next(pair for pair in pairwise(SHADES) if power <= pair[1][0])
+    part = (power - low) / (high - low)
+    red, green, blue = (round(a + part * (b - a)) for a, b in zip(one, other, strict=True))
+    ink = "#fff" if 0.3 * red + 0.59 * green + 0.11 * blue < 130 else "#111"
+    return f"background:rgb({red},{green},{blue});color:{ink}"

@@ -1,0 +1,124 @@
+"""Run the matrix, judge every cell, write the maps."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from comparisons.cases.case import Case
+from comparisons.cases.results import read_results
+from comparisons.cases.run import Progress
+from comparisons.cases.run import run as run_cases
+from comparisons.cases.store import Store
+from comparisons.cases.workers import Workers
+from comparisons.claims.extremes.axes import AXES, matrix
+from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
+from comparisons.claims.extremes.checks import Results
+from comparisons.claims.extremes.maps import counted, sections
+from comparisons.files import write_text
+from comparisons.output import Row, write_numbers, write_rows
+from comparisons.show.pages import page, provenance
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extremes:
+    """What became of the matrix.
+
+    Attributes
+    ----------
+    judgements : tuple of Judgement
+        One for each cell.
+    files : tuple of Path
+        What was written.
+    """
+
+    judgements: tuple[Judgement, ...]
+    files: tuple[Path, ...]
+
+    @property
+    def wrong(self) -> tuple[Judgement, ...]:
+        """The cells that are wrong."""
+        return tuple(item for item in self.judgements if item.verdict is Verdict.WRONG)
+
+
+def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool = False) -> Extremes:
+    """Run the matrix and write ``extremes.html``, ``.csv`` and ``.json`` into `folder`.
+
+    A run that was interrupted is taken up where it was; one that ended starts anew.
+
+    Raises
+    ------
+    OutputError, WorkersError
+        If a file cannot be written, or the workers are gone.
+    """
+    cells = matrix(quick=quick)
+    kept = folder / ".extremes.sqlite"
+    results = measured(cells, kept, workers, progress)
+    judgements = tuple(judged(cell, results) for cell in cells)
+    files = write(folder, judgements, quick=quick)
+    for name in (kept, *(kept.with_name(kept.name + ending) for ending in ("-wal", "-shm"))):
+        name.unlink(missing_ok=True)
+    return Extremes(judgements=judgements, files=files)
+
+
+def measured(cells: Sequence[Cell], kept: Path, workers: Workers, progress: Progress) -> Results:
+    """Return the results of all cases of `cells`, kept in the file `kept` as they come."""
+    cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
+    with Store(kept) as store:
+        run_cases(cases, store, workers, repeats=0, progress=progress)
+    found = {result.key: result.measurement for result in read_results(kept)}
+    return {case: found[case.key] for case in cases}
+
+
+def _cost(case: Case) -> int:
+    """Return steps times elements: the long cases come first, so that no worker ends up alone with one."""
+    elements = case.options.elements or 1
+    along, across = case.options.mesh or (0, 0)
+    return case.scene.load_parameters * (elements + 40 * along * across)
+
+
+def write(folder: Path, judgements: Sequence[Judgement], *, quick: bool) -> tuple[Path, ...]:
+    """Write the three files and return their names."""
+    html, rows = folder / "extremes.html", [row(item) for item in judgements]
+    tables = (
+        write_rows(folder / "extremes.csv", rows),
+        write_numbers(
+            folder / "extremes.json", {"quick": quick, "verdicts": counts(judgements), "cells": rows}
+        ),
+    )
+    part = ", a part of the matrix (quick)" if quick else ""
+    whole = [*sections(AXES, judgements), *provenance((), tables, folder)[1:]]
+    write_text(html, page("Where it holds, where it stops", f"{counted(judgements)}{part}.", whole))
+    return html, *tables
+
+
+def counts(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
+    """Return how many cells of each axis are right, stopped, withdrawn and wrong."""
+    return {
+        axis.name: {str(verdict): number[verdict] for verdict in Verdict}
+        for axis in AXES
+        if (number := Counter(item.verdict for item in judgements if item.cell.axis == axis.name))
+    }
+
+
+def row(item: Judgement) -> Row:
+    """Return one line of the table: the cell, its verdict, and the comparison that decides it."""
+    decisive = item.decisive
+    return {
+        "axis": item.cell.axis,
+        "model": item.cell.row,
+        "value": item.cell.column,
+        "label": item.cell.case.label,
+        "verdict": str(item.verdict),
+        "needless": item.needless,
+        "status": item.status,
+        "reached": item.reached,
+        "error": decisive.error if decisive else None,
+        "allowed": decisive.allowed if decisive else None,
+        "against": decisive.against if decisive else None,
+        "why": decisive.why if decisive else None,
+        "iterations": item.iterations,
+        "cutbacks": item.cutbacks,
+        "seconds": item.seconds,
+        "message": item.message,
+    }

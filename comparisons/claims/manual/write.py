@@ -1,0 +1,54 @@
+"""The manual as a folder: ``index.md``, a picture for each case, ``manual.json``."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from comparisons.claims.manual.judge import failure, judge
+from comparisons.claims.manual.pictures import draw
+from comparisons.claims.manual.problems import PROBLEMS
+from comparisons.claims.manual.record import Manual, Problem
+from comparisons.claims.manual.text import markdown, numbers
+from comparisons.files import writable_folder, write_text
+from comparisons.output import Report, write_numbers
+
+
+def write_manual(
+    folder: Path, report: Report, problems: Sequence[Callable[[], Problem]] | None = None
+) -> Manual:
+    """Solve all problems, judge the answers and write the manual.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    report : callable
+        Told a line for each case.
+    problems : sequence of callable, optional
+        What is solved, all problems if not given.
+
+    Returns
+    -------
+    Manual
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be written in.
+    """
+    writable_folder(folder)
+    cases, pictures = [], []
+    for state in PROBLEMS if problems is None else problems:
+        problem = state()
+        picture = folder / f"{problem.name}.svg"
+        case, curves = judge(problem, picture.name)
+        draw(case.title, problem.picture, curves, picture)
+        cases.append(case)
+        pictures.append(picture)
+        report(f"{case.name}: {'passed' if case.passed else 'FAILED'}, {case.seconds:.1f} s")
+        for run in case.runs:
+            if not run.passed:
+                report(f"  {run.label}: {failure(case, run)}")
+    page = folder / "index.md"
+    write_text(page, markdown(cases))
+    values = write_numbers(folder / "manual.json", numbers(cases))
+    return Manual(cases=tuple(cases), files=(page, values, *pictures))

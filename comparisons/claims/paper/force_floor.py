@@ -1,0 +1,183 @@
+"""How small the unbalanced force of a contact element can get beside a beam node: round-off against l_i/l.
+
+An element and the node that touches it are put into a state with a stated contact force in extended precision. The nodal
+forces there balance some outer load; rounding the state to double precision and evaluating the forces in
+double precision leaves the difference as unbalanced force, and no iteration in double precision can do better than hit it
+by luck. Newton's method, its tolerance and the load step play no part: this is the floor of the element alone.
+
+A contact stiffness ``K_cc`` times the last bit of a coordinate is what to expect: ``3 EI/b^3`` (Euler-Bernoulli) or ``GA/b``
+(Timoshenko, b below ``sqrt(Psi)``); with the force as an unknown nothing is multiplied. The reference has the same
+amplification with a last bit 2000 times smaller (x86). Elements that divide by b stop at 1e-15 of their length.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from comparisons.claims.paper import turned_frame
+from tsm.elements import CLOSED_FORM, ClosedForm, beam
+from tsm.elements.properties import Array, Properties
+
+_Extended = np.longdouble
+_SIDE, _OFFSET = 1.0, 0.0
+
+
+class _State(NamedTuple):
+    """Element displacements (6), node position (2), arc fraction and force (2), all rounded together."""
+
+    x: Array
+    node: Array
+    xi: Any
+    force: Array
+
+
+class _Element(NamedTuple):
+    """An element beside its node; `kind` is None for `turned_frame`."""
+
+    kind: ClosedForm | None
+    p: Properties
+    start: Array
+    contact_force: float
+
+
+def force_floor(
+    element: str,
+    ratio: float,
+    *,
+    end: Literal["start", "end"] = "start",
+    Psi: float = 9.0,
+    elements: int = 10,
+    samples: int = 50,
+    seed: int = 0,
+) -> float:
+    """Unbalanced force that round-off leaves, median over random states.
+
+    Parameters
+    ----------
+    element : str
+        Element type, a key of `tsm.ELEMENTS` with a closed form, or `turned_frame.NAME`.
+    ratio : float
+        Distance of the contact point from the near end in parts of the element's length.
+    end : {"start", "end"}
+        Which end is near.
+    Psi : float
+        ``EI/(G A_e)`` in ``l0^2``: 9 in [P] 4.1, about 0.04 in 4.2 with 20 elements.
+    elements : int
+        Elements on the beam, ``L = elements l0``: coordinates are of the size of L, and the contact force is ``EI/L^2``.
+    samples : int
+        Number of random states: place, direction, rotations and strain.
+    seed : int
+        Of the random states.
+
+    Returns
+    -------
+    float
+        Largest entry of the unbalanced force of element and node in ``EI/L^2``, moments in ``EI/L``: the scale that
+        `tsm.Settings.tolerance` has.
+
+    Raises
+    ------
+    ValueError
+        If `element` or `end` is not known, `ratio` does not lie in [0, 1], another number is not positive, and where the
+        platform has no floating-point type beyond double precision.
+    """
+    if element not in (known := (*CLOSED_FORM, turned_frame.NAME)):
+        raise ValueError(f"element = {element!r}: must be one of {', '.join(known)}")
+    if end not in {"start", "end"}:
+        raise ValueError(f'end = {end!r}: must be "start" or "end"')
+    if not 0 <= ratio <= 1:
+        raise ValueError(f"ratio = {ratio!r}: must lie in [0, 1]")
+    for name, value in (("Psi", Psi), ("elements", elements), ("samples", samples)):
+        if not value > 0:
+            raise ValueError(f"{name} = {value!r}: must be positive")
+    if np.finfo(_Extended).eps > 1e-3 * np.finfo(float).eps:
+        raise ValueError("numpy.longdouble: this platform's is no wider than double precision")
+    rng = np.random.default_rng(seed)
+    xi = _Extended(ratio) if end == "start" else 1 - _Extended(ratio)
+    kind = CLOSED_FORM.get(element)
+    return float(np.median([_sample(kind, xi, Psi, elements, rng) for _ in range(samples)]))
+
+
+def _sample(kind: ClosedForm | None, xi: Any, Psi: float, elements: int, rng: np.random.Generator) -> float:
+    """Floor at one random state of an element with ``l0 = EI = 1``, ``EA = 3 GA`` as of a solid section."""
+    angle = rng.uniform(0, 2 * np.pi)
+    p = Properties(np.cos(angle), np.sin(angle), 1.0, 3 / Psi, 1.0, 12 * Psi)
+    p = p if kind is None else kind.constants(p)
+    element = _Element(kind, p, elements * rng.uniform(-1, 1, 2), 1 / elements**2)
+    x = _random_displacements(p, rng).astype(_Extended)
+    if kind is None:
+        state = _across_the_section(element, x, xi)
+    else:
+        state = (_carried if kind.contact_unknowns else _deflected)(element, x, xi)
+    rounded = _State(*(np.asarray(part).astype(float) for part in state))
+    error = np.abs(_forces(element, rounded) - _forces(element, state)) / element.contact_force
+    error[[2, 5]] /= elements
+    return float(error.max())
+
+
+def _random_displacements(p: Properties, rng: np.random.Generator) -> Array:
+    """Rigid motion, end rotations about 0.05 from the chord and a strain about 1e-3."""
+    turn, stretch = rng.uniform(-2, 2), 1 + 1e-3 * rng.normal()
+    c, s = stretch * np.cos(turn), stretch * np.sin(turn)
+    shift = rng.normal(size=2)
+    moved = shift + np.array([c * p.dx0 - s * p.dy0 - p.dx0, s * p.dx0 + c * p.dy0 - p.dy0])
+    theta_i, theta_j = turn + 0.05 * rng.normal(size=2)
+    return np.array([*shift, theta_i, *moved, theta_j])
+
+
+def _deflected(element: _Element, x: Array, xi: Any) -> _State:
+    """State whose contact force follows from the deflection: the node moves across the chord until it is as stated."""
+    p = element.p
+    d = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2])
+    n = np.array([-d[1], d[0]]) / np.sqrt(d @ d)
+    node = element.start + x[:2] + xi * d
+    for _ in range(3):
+        force, tangent = _contact(element, _State(x, node, xi, np.zeros(2)))
+        node = node + n * (element.contact_force - force[6:8] @ n) / (n @ tangent[6:8, 6:8] @ n)
+    return _State(x, node, xi, np.zeros(2))
+
+
+def _across_the_section(element: _Element, x: Array, xi: Any) -> _State:
+    """State of the turned frame: the node moves across the section at end i, along which a is measured, until the force is as stated."""
+    p = element.p
+    t, n = turned_frame.frame(p, x)
+    node = element.start + x[:2] + xi * p.l0 * t
+    force, K = turned_frame.contact(p, x, element.start + x[:2] - node)
+    node = node + n * (element.contact_force - force[6:8] @ n) / K[1, 1]
+    return _State(x, node, xi, np.zeros(2))
+
+
+def _carried(element: _Element, x: Array, xi: Any) -> _State:
+    """State whose contact force is an unknown: the force in the direction it must have, the node where it must be."""
+    unloaded = _State(x, element.start + x[:2], xi, np.zeros(2, dtype=_Extended))
+    _, tangent = _contact(element, unloaded)
+    along = -tangent[10, 8:10] * element.p.l0
+    speed = np.sqrt(along @ along)
+    t = along / speed
+    n = np.array([-t[1], t[0]])
+    # F . p' + C' F.F/2 = 0, C' from what is left of it at F = n
+    gradient, _ = _contact(element, unloaded._replace(force=n))
+    sine = gradient[10] * element.p.l0 * element.contact_force / speed
+    force = element.contact_force * (n * np.sqrt(1 - sine * sine) + sine * t)
+    gradient, _ = _contact(element, unloaded._replace(force=force))
+    return _State(x, unloaded.node - gradient[8:10], xi, force)
+
+
+def _contact(element: _Element, state: _State) -> tuple[Array, Array]:
+    assert element.kind is not None
+    lever = element.start + state.x[:2] - state.node
+    return element.kind.contact.response(element.p, state.x, lever, state.xi, state.force, _SIDE, _OFFSET)
+
+
+def _forces(element: _Element, state: _State) -> Array:
+    """Forces on element and node, and the contact's equation of direction where it has one."""
+    if element.kind is None:
+        return turned_frame.contact(element.p, state.x, element.start + state.x[:2] - state.node)[0]
+    gradient, _ = _contact(element, state)
+    if not element.kind.contact_unknowns:
+        return gradient
+    column = Properties(*(np.array([value]) for value in element.p))
+    own, _ = beam.response(element.kind.coefficients(column), state.x[:, None])
+    return np.concatenate([gradient[:6] + own[:, 0], gradient[6:8], gradient[10:]])

@@ -1,0 +1,1 @@
+"""How far the solid can be trusted: one question each."""

@@ -1,0 +1,152 @@
+"""What errors are measured against: the best exact answer of a scene, and the solid's own limit."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from comparisons.cases import Case, Measurement
+from comparisons.cost.answers import (
+    Answer,
+    Scales,
+    answer,
+    end_state,
+    errors,
+    extrapolated,
+    scales,
+    uncertainty,
+)
+from comparisons.cost.cases import family, limit_cases, refined, resolution
+from comparisons.models.options import ModelError, Options
+from comparisons.models.translate import to_rod
+from comparisons.scene import Scene
+
+Errors = Mapping[str, Mapping[str, float]]
+"""Numbers by scope and quantity."""
+Measured = Mapping[Case, Measurement]
+
+ROUND_OFF = 2.0**-52
+"""No answer is known better, even if another one is equal to it."""
+
+
+class NoReferenceError(ValueError):
+    """No exact answer of the scene, and none to extrapolate it from: one line."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reference:
+    """An answer that errors are measured against.
+
+    Attributes
+    ----------
+    answer : Answer
+        The answer.
+    scale : Scales
+        What errors are relative to.
+    end : float
+        The load parameter of the scope ``end``.
+    uncertainty : dict of dict of float
+        How well the answer is known, by scope and quantity.
+    name, sentence : str
+        What it is, in a few words and in full.
+    """
+
+    answer: Answer
+    scale: Scales
+    end: float
+    uncertainty: Errors
+    name: str
+    sentence: str
+
+    def errors(self, measured: Measurement) -> Errors:
+        """Return the errors of a measured case."""
+        return errors(answer(measured), self.answer, self.scale, self.end)
+
+
+def reference_cases(scene: Scene) -> list[Case]:
+    """Return the cases that the reference is chosen from: the rod where it can state the scene, and exact elements."""
+    found = [_exact(scene, elements) for elements in (1, 2)]
+    try:
+        to_rod(scene)
+    except ModelError:
+        return found
+    return [Case(scene=scene, model="rod"), *found]
+
+
+def _exact(scene: Scene, elements: int) -> Case:
+    options = Options(element="exact", elements=elements, tolerance=1e-12)
+    return Case(scene=scene, model="tsm", options=options)
+
+
+def best_reference(scene: Scene, measured: Measured) -> Reference:
+    """Return the best answer of the scene: the Reissner rod, else exact elements, else what `mixed` elements converge to.
+
+    The rod and not the elastica: every model of the sweep stretches and shears.
+
+    Raises
+    ------
+    NoReferenceError
+        If none of them completed.
+    """
+    exact, finer = (measured[_exact(scene, elements)] for elements in (1, 2))
+    rod = measured.get(Case(scene=scene, model="rod"))
+    if rod is not None and rod.completed:
+        return _rod(scene, rod, exact)
+    if exact.completed and finer.completed:
+        told = (
+            "TSM exact elements, two a beam: they solve the rod's own equations but are not independent of the other TSM "
+            "elements; one a beam is within {:.1e} of the largest force"
+        )
+        return _by_difference(scene, finer, exact, "TSM exact, 2 elements", told)
+    return _of_mixed(scene, measured)
+
+
+def _rod(scene: Scene, rod: Measurement, exact: Measurement) -> Reference:
+    confirmed = (
+        "TSM exact, which shares nothing with it, agrees within {:.1e} of the largest force"
+        if exact.completed
+        else "TSM exact, which would confirm it, did not complete"
+    )
+    told = f"the exact Reissner rod, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
+    return _by_difference(scene, rod, exact if exact.completed else rod, "exact rod", told)
+
+
+def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: str, told: str) -> Reference:
+    """Return a reference that is as uncertain as its difference from another solution."""
+    found = answer(best)
+    scale, end = scales(found, scene), end_state(found)
+    apart = errors(answer(other), found, scale, end)
+    known = {
+        scope: {quantity: max(error, ROUND_OFF) for quantity, error in table.items()}
+        for scope, table in apart.items()
+    }
+    sentence = told.format(apart["path"]["force"])
+    return Reference(answer=found, scale=scale, end=end, uncertainty=known, name=name, sentence=sentence)
+
+
+def _of_mixed(scene: Scene, measured: Measured) -> Reference:
+    sample = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=1))
+    completed = [case for case in refined(sample, measured) if measured[case].completed]
+    # a constant ratio of refinement: every mesh has twice the elements of the one before
+    halved = {resolution(completed[-1]) / 2**k for k in range(3)} if completed else set()
+    chain = [case for case in completed if resolution(case) in halved]
+    if len(chain) < 3:
+        raise NoReferenceError(
+            f"{scene.name}: no exact answer and fewer than three `mixed` solutions to extrapolate one from"
+        )
+    return _limit(scene, measured, chain, "TSM mixed, extrapolated")
+
+
+def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:
+    """Return what the solid of the scene's material converges to, contacts closed without penetration; None if a mesh did not complete."""
+    cases = limit_cases(scene, quick=quick)
+    if not all(measured[case].completed for case in cases):
+        return None
+    return _limit(scene, measured, cases, "the solid's own limit")
+
+
+def _limit(scene: Scene, measured: Measured, cases: Sequence[Case], name: str) -> Reference:
+    found, doubt = extrapolated([answer(measured[case]) for case in cases])
+    scale, end = scales(found, scene), end_state(found)
+    known = uncertainty(doubt, scale, end)
+    meshes = ", ".join(case.label.removeprefix(f"{family(case)} ") for case in cases)
+    sentence = f"extrapolated from {meshes}, known to {known['path']['force']:.1e} of the largest force"
+    return Reference(answer=found, scale=scale, end=end, uncertainty=known, name=name, sentence=sentence)

@@ -1,0 +1,143 @@
+"""The trade-off of a scene: run every setting, state its errors, write tables and diagrams."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import nan
+from pathlib import Path
+
+from comparisons.cases import Case
+from comparisons.cases.results import read_results
+from comparisons.cases.run import Progress, Tally, run
+from comparisons.cases.store import Store
+from comparisons.cases.workers import Workers
+from comparisons.cost.answers import QUANTITIES, SCOPES
+from comparisons.cost.cases import sweep_cases
+from comparisons.cost.orders import orders
+from comparisons.cost.plots import plot_all
+from comparisons.cost.points import COSTS, Point, Trade, front
+from comparisons.cost.references import Measured, best_reference, reference_cases, solid_limit
+from comparisons.cost.report import write_trade_page
+from comparisons.cost.tables import cheapest_rows, setting_rows
+from comparisons.files import writable_folder
+from comparisons.output import Row, write_numbers, write_rows
+from comparisons.scene import Scene, to_toml
+
+Runner = Callable[[Sequence[Case]], Measured]
+"""Measures cases."""
+UNKNOWN = {scope: dict.fromkeys(QUANTITIES, nan) for scope in SCOPES}
+SHOWN = "force"
+"""The quantity of the diagrams, and of the tables for people; the files have all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """A trade-off, the files that hold it, and how its cases went."""
+
+    trade: Trade
+    files: list[Path]
+    tallies: list[Tally]
+
+
+def trade_off(
+    scene: Scene, folder: Path, workers: Workers, *, quick: bool = False, progress: Progress = lambda _: None
+) -> Written:
+    """Measure the trade-off of `scene` and write it to `folder`; what ``results.sqlite`` there has of this version is not run again.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    folder : Path
+        Made if it is not there.
+    workers : Workers
+        Where cases run.
+    quick : bool
+        Fewer settings.
+    progress : callable
+        Told of the progress.
+
+    Raises
+    ------
+    OutputError
+        If `folder` cannot be written; nothing is computed.
+    NoReferenceError
+        If there is nothing to measure errors against.
+    """
+    file = writable_folder(folder) / "results.sqlite"
+
+    tallies: list[Tally] = []
+
+    def measured(cases: Sequence[Case]) -> Measured:
+        with Store(file) as store:
+            tallies.append(run(cases, store, workers, progress=progress))
+        found = {result.key: result.measurement for result in read_results(file)}
+        return {case: found[case.key] for case in cases}
+
+    trade = measure_trade(scene, measured, quick=quick)
+    return Written(trade=trade, files=[file, *write_trade(trade, folder)], tallies=tallies)
+
+
+def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
+    """Run every setting of `scene` and state its errors.
+
+    Raises
+    ------
+    NoReferenceError
+        If there is nothing to measure errors against.
+    """
+    cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
+    measured = run(cases)
+    reference = best_reference(scene, measured)
+    limit = solid_limit(scene, measured, quick=quick)
+    points = []
+    for case in cases:
+        errors = reference.errors(measured[case])
+        own = errors if case.model != "solid" else UNKNOWN if limit is None else limit.errors(measured[case])
+        points.append(Point(case=case, measured=measured[case], errors=errors, own_errors=own))
+    return Trade(scene=scene, points=points, reference=reference, limit=limit)
+
+
+def write_trade(trade: Trade, folder: Path) -> list[Path]:
+    """Write the tables and diagrams; return the files."""
+    fitted = {quantity: list(orders(trade, quantity)) for quantity in QUANTITIES}
+    numbers = {
+        "scene": trade.scene.name,
+        "scene_file": to_toml(trade.scene),
+        "references": {
+            name: known and {"is": known.sentence, "end": known.end, "uncertainty": known.uncertainty}
+            for name, known in (("error", trade.reference), ("own_error of the solid", trade.limit))
+        },
+        "cheapest": cheapest_rows(trade),
+        "orders": fitted,
+        "pareto": _fronts(trade),
+    }
+    tables: dict[str, list[Row]] = {
+        "trade.csv": setting_rows(trade),
+        "cheapest.csv": cheapest_rows(trade),
+        "orders.csv": [{"quantity": name, **row} for name, rows in fitted.items() for row in rows],
+    }
+    files = [write_rows(folder / name, rows) for name, rows in tables.items() if rows]
+    files.append(write_numbers(folder / "trade.json", numbers))
+    files += plot_all(trade, SHOWN, folder, SCOPES)
+    return [write_trade_page(trade, fitted[SHOWN], SHOWN, files, folder), *files]
+
+
+def _fronts(trade: Trade) -> list[Row]:
+    """Return the points of the Pareto fronts."""
+    return [
+        {
+            "model": model,
+            "scope": scope,
+            "quantity": quantity,
+            "cost": cost,
+            "label": one.point.case.label,
+            "load_steps": one.point.case.scene.load_parameters,
+            "spent": one.cost,
+            "own_error": one.error,
+        }
+        for model in ("tsm", "solid")
+        for scope in SCOPES
+        for quantity in QUANTITIES
+        for cost in COSTS
+        for one in front(trade, model, scope, quantity, cost)
+    ]

@@ -1,0 +1,268 @@
+"""The two discrete models, TSM beams and the solid, as responses."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Reached, Watch, unwatched
+from comparisons.models.translate import to_solid, to_structure
+from comparisons.response import (
+    Array,
+    ContactEvent,
+    ContactHistory,
+    CriticalPoint,
+    Deformation,
+    Grid,
+    Response,
+    SupportHistory,
+)
+from comparisons.scene import Scene, SupportSpec
+
+
+def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Response:
+    """Solve `scene` by the tangent stiffness method.
+
+    Raises
+    ------
+    ModelError
+        If a tolerance is given and the elements are not exact.
+    """
+    import tsm
+
+    structure = to_structure(scene, elements=options.elements, element=options.element)
+    settings = tsm.Settings(branch=options.branch or "stop")
+    if options.tolerance is not None:
+        if options.element != "exact":
+            raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
+        settings = replace(settings, accuracy=options.tolerance)
+    try:
+        result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
+    except tsm.SolveError as error:
+        result = error.result
+
+    def grid(k: int) -> Grid:
+        return _beam_grid(scene, result, k)
+
+    response = _response("tsm", scene, result, result.axis_line, grid)
+    return replace(
+        response,
+        tips={beam.name: _tip(scene, result, beam.name) for beam in scene.beams},
+        supports=_beam_supports(scene, result),
+        contacts=_beam_contacts(response, result),
+        events=tuple(_event(event) for event in result.events),
+        integration_error=result.integration_error,
+        deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
+    )
+
+
+def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
+    """Return what passes accepted steps on to `watch`, contacts with their elements counted from 1."""
+    first, count = {}, 0
+    for beam in structure.beams:
+        first[beam.name], count = count, count + beam.elements
+    elements = {beam.name: beam.elements for beam in structure.beams}
+
+    def told(step: Any) -> None:
+        state = step.equilibrium.state
+        touching = tuple(
+            f"{pair.name} on element {touch.element - first[pair.beam] + 1} of {elements[pair.beam]}"
+            for pair, touch in zip(structure.contacts, state.touches, strict=True)
+            if touch is not None
+        )
+        watch(Reached(state.load_parameter, step.iterations, touching))
+
+    return told
+
+
+def _event(event: Any) -> ContactEvent:
+    return ContactEvent(
+        kind=event.kind.value,
+        load_parameter=event.load_parameter,
+        pair=event.pair,
+        element=int(event.element),
+        arc_position=event.arc_position,
+        force=event.force,
+        released=event.released,
+    )
+
+
+def _beam_contacts(response: Response, result: Any) -> dict[str, ContactHistory]:
+    """Add the force vectors and the first slip-off of each pair."""
+    slipped = {
+        event.pair: event.load_parameter for event in reversed(result.events) if event.kind.name == "SLIP_OFF"
+    }
+    return {
+        pair: replace(
+            history,
+            slip_off=slipped.get(pair, np.nan),
+            vector=_rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
+        )
+        for number, (pair, history) in enumerate(response.contacts.items())
+    }
+
+
+def _beam_supports(scene: Scene, result: Any) -> dict[str, SupportHistory]:
+    supports: dict[str, SupportHistory] = {}
+    for beam in scene.beams:
+        own = [_reaction(support, result) for support in scene.supports_of(beam.name)]
+        if own:
+            supports[beam.name] = replace(own[0], other_end=own[1]) if len(own) > 1 else own[0]
+    return supports
+
+
+def _reaction(support: SupportSpec, result: Any) -> SupportHistory:
+    """Forces on the held components of a supported node."""
+    node = 3 * result.model.end_node(support.node)
+    held = [value is not None for value in support.motion]
+    table = _rows(
+        [np.where(held, state.system.nodal[node : node + 3], 0.0) for state in result.equilibria], 3
+    )
+    return SupportHistory(force=table[:, :2], moment=table[:, 2])
+
+
+def _rows(rows: list[Any], width: int) -> Array:
+    return np.array(rows, dtype=np.float64).reshape(-1, width)
+
+
+def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Response:
+    """Solve `scene` with solid elements in contact."""
+    import fem_reference
+
+    problem = to_solid(scene, mesh=options.mesh)
+    settings = fem_reference.Settings(branch=options.branch or "stop")
+
+    def told(step: Any) -> None:
+        touching = tuple(
+            f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed
+        )
+        watch(Reached(step.load_parameter, step.iterations, touching))
+
+    try:
+        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=told)
+    except fem_reference.SolveError as error:
+        result = error.result
+
+    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+        return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
+
+    def grid(k: int) -> Grid:
+        displacement = result.displacement[k]
+        data = {
+            "displacement": displacement,
+            "deformed": result.mesh_points + displacement,
+            "cauchy_stress": fem_reference.nodal_stress(result, k),
+            "axial_stress": fem_reference.fibre_stress(result, k),
+        }
+        return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
+
+    response = _response("solid", scene, result, axis_line, grid)
+    contacts = {
+        contact.name: replace(
+            response.contacts[contact.name],
+            compliance=1.0 / problem.penalty(contact) if contact.penetration is None else 0.0,
+            slip_off=result.contacts[contact.name].slip_off,
+            vector=result.contacts[contact.name].vector,
+        )
+        for contact in problem.contacts
+    }
+    turn = 2 * np.max([_half_turns(response, beam.name) for beam in scene.beams], axis=0)
+    deformation = Deformation(
+        load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
+    )
+    return replace(response, contacts=contacts, deformation=deformation)
+
+
+def _half_turns(response: Response, beam: str) -> Array:
+    """Largest angle (s,) between neighbouring chords of the axis, two of which span an element."""
+    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
+    chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
+    return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
+
+
+def _response(
+    model: str,
+    scene: Scene,
+    result: Any,
+    axis_line: Callable[[str, int], tuple[Array, Array]],
+    grid: Callable[[int], Grid],
+) -> Response:
+    """Take over what both solvers' results have in common."""
+    contacts = {
+        pair: ContactHistory(
+            force=history.force,
+            arc_position=history.arc_position,
+            gap=history.gap,
+        )
+        for pair, history in result.contacts.items()
+    }
+    return Response(
+        model=model,
+        scene=scene.name,
+        status=result.status.name,
+        message=result.message,
+        completed=result.status.name == "COMPLETED",
+        load_parameter=result.load_parameter,
+        contacts=contacts,
+        supports={
+            beam: SupportHistory(force=support.force, moment=support.moment)
+            for beam, support in result.supports.items()
+        },
+        tips=dict(result.tips),
+        newton_iterations=result.newton_iterations,
+        cutbacks=result.cutbacks,
+        unknowns=result.unknowns,
+        wall_seconds=result.wall_seconds,
+        axis_line=axis_line,
+        grid=grid,
+        index=result.index,
+        critical=tuple(
+            CriticalPoint(kind=str(point.kind), load_parameter=point.load_parameter, mode=point.mode)
+            for point in result.critical
+        ),
+    )
+
+
+def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
+    """Return the TSM elements, each with its own two points: section forces jump at a contact.
+
+    Besides the fields, `beam` is the beam's number in the scene, `arc` the distance along its undeformed axis, and the axial stresses
+    are those of the faces to the right and left of its direction; `height` is 0 where the section has none.
+    """
+    parts = [_one_beam(scene, number, result, k) for number in range(len(scene.beams))]
+    data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    points = data.pop("reference")
+    return Grid(points=points, cells={"line": np.arange(len(points)).reshape(-1, 2)}, point_data=data)
+
+
+def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array]:
+    beam = scene.beams[number]
+    stations = result.stations(beam.name, k)
+    arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
+    fraction = arc[:, None] / beam.length
+    reference = (1.0 - fraction) * np.array(beam.start) + fraction * np.array(beam.end)
+    N, V, M = stations.forces.reshape(-1, 3).T
+    area, inertia, _ = beam.cross_section
+    height = beam.height or 0.0
+    return {
+        "reference": reference,
+        "displacement": deformed - reference,
+        "deformed": deformed,
+        "rotation": stations.rotation.ravel(),
+        "N": N,
+        "V": V,
+        "M": M,
+        "beam": np.full(len(arc), float(number)),
+        "arc": arc,
+        "height": np.full(len(arc), height),
+        "axial_stress_right": N / area + M * height / (2.0 * inertia),
+        "axial_stress_left": N / area - M * height / (2.0 * inertia),
+    }
+
+
+def _tip(scene: Scene, result: Any, beam: str) -> Array:
+    """Deformed positions (s, 2) of a beam's less held end."""
+    node = 0 if scene.tip(beam) == "start" else -1
+    return _rows([result.shape(beam, k)[node, :2] for k in range(len(result.load_parameter))], 2)

@@ -1,0 +1,191 @@
+"""The two exact models, Reissner's rod and the elastica, as responses."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.exact.elastica import ElasticaState, elastica_under_pin
+from comparisons.exact.outcome import Outcome
+from comparisons.exact.rod import RodPath, rod_under_pin
+from comparisons.exact.tied import TiedPath, rod_with_tied_tip
+from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Watch, unwatched
+from comparisons.models.translate import RodScene, to_rod
+from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
+from comparisons.scene import Scene
+
+POINTS = 401
+"""Points of a deflected axis: the pictures' resolution, not the solution's."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocalStates:
+    """States of a cantilever in its local frame (`RodScene`), one per load parameter; forces are those of pin or tied point.
+
+    Of all points of the path that were visited, `hits` are those of the load parameters.
+    """
+
+    visited: Sequence[Outcome]
+    hits: NDArray[np.int64]
+    force: Array
+    arc_position: Array
+    clamp_moment: Array
+    tip: Array
+    iterations: NDArray[np.int64]
+    shape: Callable[[int], Array]
+    slip_off: float
+
+
+STOPS = {
+    "LOST": "no stable equilibrium is connected with the straight beam",
+    "LOST_CONTACT": "a contact that must persist was released",
+    "SLIPPED_OFF": "a contact that must persist slipped off the beam",
+}
+"""How an exact solution can stop."""
+
+
+def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
+    """Solve `scene` as a Reissner rod."""
+    local = to_rod(scene)
+    beam, hits = local.beam, local.hits
+    stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
+    path: TiedPath | RodPath
+    began = perf_counter()
+    if local.contact is None:
+        path = rod_with_tied_tip(local.path, **stiffness)
+        arc_position = np.full(len(path.force), beam.length)
+    else:
+        path = rod_under_pin(local.path, offset=local.offset, **stiffness)
+        arc_position = path.arc_position
+    seconds = perf_counter() - began
+    states = LocalStates(
+        visited=path.outcome,
+        hits=hits,
+        force=path.force[hits],
+        arc_position=arc_position[hits],
+        clamp_moment=path.clamp_moment[hits],
+        tip=path.tip[hits],
+        iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
+        shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
+        slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
+    )
+    return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
+
+
+def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
+    """Solve `scene` as an elastica, in closed form."""
+    local = to_rod(scene)
+    if local.contact is None:
+        raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
+    if local.offset:
+        raise ModelError(
+            "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
+        )
+    beam = local.beam
+    began = perf_counter()
+    path: list[ElasticaState] = []
+    for x, y in local.points:
+        state = elastica_under_pin(float(x), float(y), EI=beam.EI, length=beam.length)
+        if y > 0.0 and path and path[-1].outcome is Outcome.SLIPPED:
+            state = path[-1]
+        path.append(state)
+    seconds = perf_counter() - began
+    states = LocalStates(
+        visited=tuple(state.outcome for state in path),
+        hits=np.arange(len(path)),
+        force=np.array([state.force for state in path]),
+        arc_position=np.array([state.arc_position for state in path]),
+        clamp_moment=np.array([state.clamp_moment for state in path]),
+        tip=np.array([state.tip for state in path]),
+        iterations=np.zeros(len(path), dtype=np.int64),
+        shape=lambda k: path[k].shape(POINTS),
+        slip_off=next(
+            (t for t, state in zip(scene.times, path, strict=True) if state.outcome is Outcome.SLIPPED),
+            np.nan,
+        ),
+    )
+    return _response("elastica", scene, local, states, unknowns=1, seconds=seconds)
+
+
+def _response(
+    model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
+) -> Response:
+    """Turn local states into the scene's frame; what lies beyond a lost equilibrium is left out."""
+    name, length = local.beam.name, local.beam.length
+    times = np.array(scene.times)
+    stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
+
+    def axis_line(_: str, k: int) -> tuple[Array, Array]:
+        arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
+        return (arc, line[::-1]) if local.from_end else (arc, line)
+
+    def grid(k: int) -> Grid:
+        arc, line = axis_line(name, k)
+        points = np.outer(1.0 - arc / length, local.beam.start) + np.outer(arc / length, local.beam.end)
+        cells = np.stack([np.arange(POINTS - 1), np.arange(1, POINTS)], axis=1)
+        return Grid(
+            points=points, cells={"line": cells}, point_data={"displacement": line - points, "deformed": line}
+        )
+
+    support = SupportHistory(
+        force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
+    )
+    if local.contact is None:
+        at_tip = SupportHistory(force=-support.force, moment=np.zeros(reached))
+        support = replace(support, other_end=at_tip)
+    return Response(
+        model=model,
+        scene=scene.name,
+        status=stop or "COMPLETED",
+        message=(
+            f"{STOPS[stop]} at load parameter {times[reached]:.6g}"
+            if stop
+            else "all load parameters were reached"
+        ),
+        completed=stop is None,
+        load_parameter=times[:reached],
+        contacts=_contacts(scene, local, states, reached),
+        supports={name: support},
+        tips={name: local.position(states.tip[:reached])},
+        newton_iterations=states.iterations[:reached],
+        cutbacks=0,
+        unknowns=unknowns,
+        wall_seconds=seconds,
+        axis_line=axis_line,
+        grid=grid,
+    )
+
+
+def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, int]:
+    """Return why the solution stops, None if it does not, and the number of load parameters before."""
+    closed = False
+    slipped = np.searchsorted(times, states.slip_off) if keep else len(times)
+    for k, state in enumerate(states.visited):
+        before = int(np.searchsorted(states.hits, k))
+        if before > slipped:
+            break
+        if state is Outcome.LOST:
+            return "LOST", before
+        if keep and closed and state is Outcome.OPEN:
+            return "LOST_CONTACT", before
+        closed = closed or state is Outcome.CONTACT
+    return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
+
+
+def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
+    if local.contact is None:
+        return {}
+    outcome = np.array(states.visited, dtype=object)[states.hits[:reached]]
+    closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
+    below = -local.points[:reached, 1] - local.offset
+    history = ContactHistory(
+        force=np.hypot(*states.force[:reached].T),
+        arc_position=np.where(closed, local.arc(states.arc_position[:reached]), np.nan),
+        gap=np.where(closed, 0.0, np.where(slipped, np.nan, below)),
+        slip_off=states.slip_off if reached and states.slip_off <= scene.times[reached - 1] else np.nan,
+        vector=local.vector(states.force[:reached]),
+    )
+    return {local.contact.pair: history}

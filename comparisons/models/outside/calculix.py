@@ -1,0 +1,115 @@
+"""Questions to CalculiX about a clamped strip of the solid's, answered in the strip's frame."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.models.outside.ccx import CalculixError, Printed, run
+from comparisons.models.outside.deck import Point, Slab, pin_deck, slab, tip_load_deck
+
+if TYPE_CHECKING:
+    from fem_reference import Strip
+
+Floats = NDArray[Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Answer:
+    """Histories over the increments.
+
+    Parameters
+    ----------
+    load_parameter
+        Part of the load, or of the pin's way, ``(s,)``.
+    tip
+        Mean displacement of the free end, ``(s, 2)`` [m].
+    force, moment
+        What the clamp exerts on the strip, ``(s, 2)`` [N] and about the clamped point ``(s,)`` [N m].
+    stopped
+        Why CalculiX stopped before the end, nothing if it did not.
+    """
+
+    load_parameter: Floats
+    tip: Floats
+    force: Floats
+    moment: Floats
+    stopped: str = ""
+
+
+def tip_load(strip: "Strip", force: float, seconds: float = 300.0) -> Answer:
+    """Return the answer to a transverse dead load [N] at the free end.
+
+    Raises
+    ------
+    CalculixError
+        If CalculiX is not there or does not reach the whole load.
+    """
+    mesh = slab(strip)
+    return _answer(mesh, run(tip_load_deck(mesh, force), seconds))
+
+
+def pressed(
+    strip: "Strip", start: Point, motion: Point, steps: int, penalty: float, seconds: float = 300.0
+) -> Answer:
+    """Return the answer to a sharp pin moved along the right face, as far as CalculiX comes; see `pin_deck`.
+
+    CalculiX may lose the pin through the face and go on without contact: the answer ends where nothing is pushed any more.
+
+    Raises
+    ------
+    CalculixError
+        If CalculiX is not there, or does not complete one increment.
+    """
+    mesh = slab(strip)
+    deck = pin_deck(mesh, start, motion, steps, penalty)
+    try:
+        printed, stopped = run(deck, seconds), ""
+    except CalculixError as error:
+        if error.printed is None or not error.printed.times:
+            raise
+        printed, stopped = error.printed, error.reason
+    answer = _answer(mesh, printed, stopped)
+    through = np.flatnonzero(np.hypot(*answer.force.T) < mesh.unit)
+    return answer if not through.size else _until(answer, int(through[0]))
+
+
+def _answer(mesh: Slab, printed: Printed, stopped: str = "") -> Answer:
+    """Collect the increments that were printed whole."""
+    ends, held = 2 * mesh.strip.mesh[1] + 1, len(mesh.clamp)
+    wanted = {("displacements", "TIP"): ends, ("displacements", "CLAMP"): held, ("forces", "CLAMP"): held}
+    whole = [
+        [rows for rows in printed.tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
+    ]
+    count = min(map(len, whole))
+    if count == 0:
+        raise CalculixError(stopped or "printed no result", printed)
+    tip, moved, forces = (np.array(tables[:count])[:, :, :2] for tables in whole)
+    forces = forces * mesh.unit
+    x, y = (mesh.clamp + moved).transpose(2, 0, 1)
+    return Answer(
+        load_parameter=np.array(printed.times[:count]),
+        tip=_simpson(mesh.strip.mesh[1]) @ tip,
+        force=forces.sum(axis=1),
+        moment=(x * forces[..., 1] - y * forces[..., 0]).sum(axis=1),
+        stopped=stopped,
+    )
+
+
+def _until(answer: Answer, count: int) -> Answer:
+    return Answer(
+        load_parameter=answer.load_parameter[:count],
+        tip=answer.tip[:count],
+        force=answer.force[:count],
+        moment=answer.moment[:count],
+        stopped="lost the pin through the face",
+    )
+
+
+def _simpson(rows: int) -> Floats:
+    """Weights of the mean over an edge of quadratic elements, ``(2 rows + 1,)``."""
+    weights = np.zeros(2 * rows + 1)
+    for row in range(rows):
+        weights[2 * row : 2 * row + 3] += np.array([1.0, 4.0, 1.0]) / (6 * rows)
+    return weights

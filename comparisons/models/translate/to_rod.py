@@ -1,0 +1,131 @@
+"""A scene as one clamped rod in its local frame: clamp at the origin, beam along +x, a pin pushes to +y."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.models.translate.one_beam import one_beam_under_a_pin, one_beam_with_tied_tip
+from comparisons.scene import BeamSpec, ContactSpec, Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RodScene:
+    """One cantilever under one pin or with its tip tied to a moving point, and the way back to the scene's frame.
+
+    Attributes
+    ----------
+    beam : BeamSpec
+        The cantilever.
+    clamp : {"start", "end"}
+        The beam's clamped end.
+    contact : ContactSpec or None
+        The contact pair, None if the tip is tied.
+    offset : float
+        Distance of the contact surface from the axis.
+    path : ndarray, shape (p, 2)
+        The start of the pin, or of the tied tip, its positions at the scene's load parameters and its corners, in the
+        local frame.
+    hits : ndarray of int, shape (s,)
+        Those points of `path` that belong to the load parameters.
+    origin, axes : ndarray, shape (2,) and (2, 2)
+        The clamp; the local x and y axes as columns.
+    """
+
+    beam: BeamSpec
+    clamp: str
+    contact: ContactSpec | None
+    offset: float
+    path: Array
+    hits: NDArray[np.int64]
+    origin: Array
+    axes: Array
+
+    @property
+    def orientation(self) -> float:
+        """Determinant of the axes: -1 where the local frame is a mirror image."""
+        return float(np.round(np.linalg.det(self.axes)))
+
+    @property
+    def from_end(self) -> bool:
+        """Whether the clamp is at the beam's end, so that the local x runs from end to start."""
+        return self.clamp == "end"
+
+    @property
+    def points(self) -> Array:
+        """The pin or the tied tip at the scene's load parameters (s, 2)."""
+        return self.path[self.hits]
+
+    def position(self, local: Array) -> Array:
+        """Return points (..., 2) of the local frame in the scene's."""
+        return self.vector(local) + self.origin
+
+    def vector(self, local: Array) -> Array:
+        """Return vectors (..., 2) of the local frame in the scene's."""
+        return np.asarray(local) @ self.axes.T
+
+    def moment(self, local: Array) -> Array:
+        """Return moments of the local frame, anticlockwise positive, in the scene's."""
+        return self.orientation * np.asarray(local)
+
+    def arc(self, local: Array) -> Array:
+        """Return distances from the clamp as distances from the beam's start."""
+        return self.beam.length - np.asarray(local) if self.from_end else np.asarray(local)
+
+
+def to_rod(scene: Scene) -> RodScene:
+    """Return `scene` as the exact models state it.
+
+    Raises
+    ------
+    ModelError
+        Unless the scene is one beam, clamped at one end, under one pin or with a pinned support that moves its other end.
+    """
+    if not (scene.pins or scene.contacts):
+        return _tied(scene)
+    clamp = one_beam_under_a_pin(scene, "the exact models have")
+    pin, contact = scene.pins[0], scene.contacts[0]
+    origin, axes = _frame(
+        scene, clamp.end, mirrored=contact.side == ("left" if clamp.end == "start" else "right")
+    )
+    stations = np.union1d(np.array([0.0, *scene.times]), np.array(pin.corners))
+    return RodScene(
+        beam=scene.beams[0],
+        clamp=clamp.end,
+        contact=contact,
+        offset=scene.offset(contact),
+        path=(np.array([pin.position(float(t)) for t in stations]) - origin) @ axes,
+        hits=np.searchsorted(stations, scene.times),
+        origin=origin,
+        axes=axes,
+    )
+
+
+def _tied(scene: Scene) -> RodScene:
+    clamp, tied = one_beam_with_tied_tip(scene, "the exact models have")
+    origin, axes = _frame(scene, clamp.end, mirrored=False)
+    ux, uy, _ = tied.motion
+    stations = np.array([0.0, *scene.times])
+    tip = np.array([scene.beams[0].length, 0.0])
+    return RodScene(
+        beam=scene.beams[0],
+        clamp=clamp.end,
+        contact=None,
+        offset=0.0,
+        path=tip + np.outer(stations, np.array([ux, uy], dtype=np.float64) @ axes),
+        hits=np.arange(1, len(stations)),
+        origin=origin,
+        axes=axes,
+    )
+
+
+def _frame(scene: Scene, clamp: str, *, mirrored: bool) -> tuple[Array, Array]:
+    """Return the clamp and the axes: from the clamp along the beam, and to the left of that, to the right if mirrored."""
+    beam = scene.beams[0]
+    along = np.array(beam.direction) * (1.0 if clamp == "start" else -1.0)
+    left = np.array([-along[1], along[0]])
+    return np.array(scene.place(f"{beam.name}.{clamp}")), np.stack(
+        [along, -left if mirrored else left], axis=1
+    )

@@ -1,0 +1,176 @@
+"""Checks of a response that need nothing but the response and the scene."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.models.balance import balance_failures
+from comparisons.referee.passing import passages
+from comparisons.response import Array, Deformation, Response
+from comparisons.scene import ContactSpec, Scene
+
+CHECK_FAILED = "CHECK_FAILED"
+UNSTABLE = "UNSTABLE"
+PULL = 1e-9
+"""Largest pulling force of a contact at its release, relative to EI/L^2: round-off."""
+CLOSED = 1e-9
+"""Largest gap of a closed contact, relative to the length: round-off of 2000 elements is below."""
+PENETRATION = 1e-2
+"""Largest penetration of a penalty model, relative to the length."""
+INSIDE = 1e-3
+"""Largest depth of a round pin or thick end in a beam away from its contact, relative to the length: the stated axis is that good."""
+KINK = 0.2
+"""Largest kink of the axis at a contact that excuses a round pin inside the beam [rad]."""
+STRAIN = 0.1
+"""Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
+MOTION = 1e-10
+"""Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
+
+
+def verified(response: Response, scene: Scene) -> Response:
+    """Return `response`, with the status ``CHECK_FAILED`` and the reason if it breaks a check.
+
+    One that stopped claims only what it reached: that its elements bear, and its numbers resolve.
+    """
+    if response.completed:
+        reason = next(failures(response, scene), None)
+        return _labelled(response) if reason is None else _failed(response, reason)
+    reason = next(unresolved(response, scene), None)
+    return (
+        response
+        if reason is None
+        else _failed(response, f"{reason}; then {response.status}: {response.message}")
+    )
+
+
+def _labelled(response: Response) -> Response:
+    """Return a response that went through unstable equilibria as one that is not completed."""
+    if response.index is None or not np.any(response.index > 0):
+        return response
+    unstable = response.index > 0
+    sentence = f"the equilibrium is unstable {_first(unstable, response)} and may be so beyond"
+    return replace(response, status=UNSTABLE, message=sentence, completed=False)
+
+
+def _failed(response: Response, reason: str) -> Response:
+    return replace(response, status=CHECK_FAILED, message=reason, completed=False)
+
+
+def failures(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield one sentence for every check that a completed `response` breaks.
+
+    All load parameters of the scene are reached, everything is finite, contact forces push, closed contacts are closed,
+    open nodes are on their side unless they slipped off, contacts that must persist do, round pins are outside the beam along the whole
+    axis, and the forces and moments of supports, pins and loads on the whole structure are in balance.
+    """
+    if not np.array_equal(response.load_parameter, scene.times):
+        yield f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
+        return
+    for name, values in _numbers(response):
+        if not np.all(np.isfinite(values)):
+            yield f"{name} is not finite"
+            return
+    for contact in scene.contacts:
+        yield from _contact_failures(response, scene, contact)
+    yield from passages(response, scene)
+    yield from balance_failures(response, scene)
+    yield from unresolved(response, scene)
+
+
+def unresolved(response: Response, scene: Scene) -> Iterator[str]:
+    """Yield one sentence for everything that is too large for the elements of a `response`, or too small for its numbers."""
+    deformation = response.deformation
+    if deformation is not None:
+        claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
+        bent = claimed & (deformation.turn > deformation.bearable)
+        if bent.any():
+            most = deformation.turn[claimed].max()
+            limit = f"{deformation.bearable:g} {_first(bent, deformation)}"
+            yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
+        strained = claimed & (deformation.strain > STRAIN)
+        if strained.any():
+            yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, deformation)}"
+    length = max(beam.length for beam in scene.beams)
+    for pin in scene.pins:
+        way = float(np.hypot(*np.diff(pin.points, axis=0).T).sum())
+        if 0.0 < way < MOTION * length:
+            yield f"{pin.name} moves by {way:.2g}, less than {MOTION:g} of the length, which is not resolved"
+
+
+def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
+    for pair, contact in response.contacts.items():
+        closed = contact.force > 0.0
+        yield f"force of {pair}", contact.force
+        yield f"arc position of {pair}", contact.arc_position[closed]
+        yield f"gap of {pair}", contact.gap[closed]
+    for beam, support in response.supports.items():
+        yield f"support force of {beam}", support.force
+        yield f"support moment of {beam}", support.moment
+        if support.other_end is not None:
+            yield f"second support force of {beam}", support.other_end.force
+            yield f"second support moment of {beam}", support.other_end.moment
+    for beam, tip in response.tips.items():
+        yield f"tip of {beam}", tip
+
+
+def _first(failed: NDArray[np.bool_], at: Response | Deformation) -> str:
+    return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
+
+
+def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> Iterator[str]:
+    contact, beam = response.contacts[spec.pair], scene.beam(spec.beam)
+    length = beam.length
+    pulls = contact.force < -PULL * beam.EI / length**2
+    if pulls.any():
+        yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
+    closed = contact.force > 0.0
+    ajar = closed & (np.abs(contact.gap + contact.compliance * contact.force) > CLOSED * length)
+    if ajar.any():
+        yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
+    deep = closed & (contact.gap < -PENETRATION * length)
+    if deep.any():
+        yield f"the penetration of {spec.pair} exceeds {PENETRATION:.0%} of the length {_first(deep, response)}"
+    dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(closed)
+    if spec.keep and dropped.any():
+        yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
+    depth = penetration(response, scene, spec, KINK) + np.minimum(np.nan_to_num(contact.gap), 0.0)
+    inside = depth > INSIDE * length
+    if inside.any():
+        yield (
+            f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact {_first(inside, response)}: "
+            "one contact of a pair is modelled"
+        )
+
+
+def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
+    """Return the largest depth of the stated axis inside a round pin or thick end, at every load parameter; negative or zero if none.
+
+    Places where the distance from the node is least, on the stated side, count. The axis of a shearing beam has a kink of F/GA at a
+    contact, so that a round pin is inside it by half of that angle times the distance from the contact; this much is allowed, up to half
+    of `kink`.
+    """
+    offset, beam, contact = scene.offset(spec), scene.beam(spec.beam), response.contacts[spec.pair]
+    depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
+    if offset == 0.0:
+        return depth
+    for k, t in enumerate(response.load_parameter):
+        owner, dot, _ = spec.node.partition(".")
+        node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
+        arc, place = response.axis_line(spec.beam, k)
+        away, along = node - place, np.gradient(place, arc, axis=0)
+        distance = np.hypot(*away.T)
+        if contact.force[k] > 0.0:
+            half_kink = 0.5 * min(contact.force[k] / beam.GA, kink)
+            distance += half_kink * np.abs(arc - contact.arc_position[k])
+        ahead = np.einsum("mi,mi->m", along, away)
+        least = np.r_[
+            ahead[0] > 0.0,
+            (distance[1:-1] <= distance[:-2]) & (distance[1:-1] <= distance[2:]),
+            ahead[-1] < 0.0,
+        ]
+        facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
+        depth[k] = np.max(offset - distance[least & facing], initial=0.0)
+    return depth

@@ -1,0 +1,149 @@
+"""A response read back from the JSON file that states it."""
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.response import ContactEvent, ContactHistory, Grid, Response, SupportHistory
+from comparisons.scene.rules import MISSING, FieldError
+from comparisons.scene.tables import InputError, read_text
+
+Array = NDArray[np.float64]
+
+
+class ResponseError(InputError):
+    """A JSON file that states no response."""
+
+
+def read_response(path: str) -> Response:
+    """Return the response that the JSON file `path` states, as ``crossval solve --json`` writes it.
+
+    Its grid is left out.
+
+    Raises
+    ------
+    ResponseError
+        One line: file, key and rule.
+    """
+    text = read_text(path, "no such file", ResponseError)
+    try:
+        return restated(json.loads(text))
+    except FieldError as error:
+        raise ResponseError(path, str(error)) from None
+    except (ValueError, RecursionError) as error:
+        raise ResponseError(path, f"must be valid JSON: {error}") from None
+
+
+def restated(data: Any) -> Response:
+    """Return the response that the tables of `comparisons.response.to_json.as_dict` state.
+
+    Raises
+    ------
+    FieldError
+        If a table, a list of numbers or a name is missing or of another shape.
+    """
+    data = _table({"": data}, "")
+    load_parameter = _numbers(data, "load_parameter", (None,))
+    steps = len(load_parameter)
+    axes = {beam: _axis(item, f"axes.{beam}.", steps) for beam, item in _tables(data, "axes").items()}
+    contacts = {
+        pair: _contact(item, f"contacts.{pair}.", steps) for pair, item in _tables(data, "contacts").items()
+    }
+    supports = {
+        beam: _support(item, f"supports.{beam}.", steps) for beam, item in _tables(data, "supports").items()
+    }
+    tips = _table(data, "tips")
+
+    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+        arc, position = axes[beam]
+        return arc, position[k]
+
+    def grid(_: int) -> Grid:
+        raise NotImplementedError("a response read back has no mesh")
+
+    return Response(
+        model=_text(data, "model"),
+        scene=_text(data, "scene"),
+        status=_text(data, "status"),
+        message="read back",
+        completed=data["status"] == "COMPLETED",
+        load_parameter=load_parameter,
+        contacts=contacts,
+        supports=supports,
+        tips={beam: _numbers(tips, beam, (steps, 2), "tips.") for beam in tips},
+        newton_iterations=np.zeros(steps, dtype=np.int64),
+        cutbacks=0,
+        unknowns=0,
+        wall_seconds=0.0,
+        axis_line=axis_line,
+        grid=grid,
+        events=_events(data),
+    )
+
+
+def _table(data: dict[str, Any], key: str) -> dict[str, Any]:
+    found = data.get(key)
+    if not isinstance(found, dict):
+        raise FieldError(key or "file", MISSING, "must be a table, as `crossval solve --json` writes it")
+    return found
+
+
+def _tables(data: dict[str, Any], key: str) -> dict[str, dict[str, Any]]:
+    found = _table(data, key)
+    return {name: _table(found, name) for name in found}
+
+
+def _text(data: dict[str, Any], key: str) -> str:
+    found = data.get(key)
+    if not isinstance(found, str):
+        raise FieldError(key, MISSING, "must be a name")
+    return found
+
+
+def _numbers(data: dict[str, Any], key: str, shape: tuple[int | None, ...], prefix: str = "") -> Array:
+    """Return a list of numbers; null is not a number."""
+    try:
+        found = np.array(data.get(key), dtype=np.float64)
+    except (TypeError, ValueError):
+        found = np.array(0.0)
+    if found.size == 0 and 0 in shape:
+        return np.zeros([size or 0 for size in shape])
+    if found.ndim != len(shape) or any(
+        size not in (None, own) for size, own in zip(shape, found.shape, strict=True)
+    ):
+        wanted = " x ".join("any number" if size is None else str(size) for size in shape)
+        raise FieldError(prefix + key, MISSING, f"must be a list of {wanted} numbers")
+    return found
+
+
+def _axis(data: dict[str, Any], prefix: str, steps: int) -> tuple[Array, Array]:
+    arc = _numbers(data, "arc_length", (None,), prefix)
+    if steps and (len(arc) < 2 or not np.all(np.diff(arc) > 0.0)):
+        raise FieldError(f"{prefix}arc_length", MISSING, "must be two or more increasing numbers")
+    return arc, _numbers(data, "position", (steps, len(arc), 2), prefix)
+
+
+def _contact(data: dict[str, Any], prefix: str, steps: int) -> ContactHistory:
+    force, arc, gap = (_numbers(data, key, (steps,), prefix) for key in ("force", "arc_position", "gap"))
+    vector = None if data.get("vector") is None else _numbers(data, "vector", (steps, 2), prefix)
+    slip = data.get("slip_off")
+    slip_off = float(slip) if isinstance(slip, int | float) else np.nan
+    return ContactHistory(force=force, arc_position=arc, gap=gap, vector=vector, slip_off=slip_off)
+
+
+def _support(data: dict[str, Any], prefix: str, steps: int) -> SupportHistory:
+    other = _support(_table(data, "other_end"), f"{prefix}other_end.", steps) if "other_end" in data else None
+    force, moment = _numbers(data, "force", (steps, 2), prefix), _numbers(data, "moment", (steps,), prefix)
+    return SupportHistory(force=force, moment=moment, other_end=other)
+
+
+def _events(data: dict[str, Any]) -> tuple[ContactEvent, ...] | None:
+    found = data.get("events")
+    if found is None:
+        return None
+    try:
+        return tuple(ContactEvent(**event) for event in found)
+    except TypeError:
+        raise FieldError("events", MISSING, "must be a list of events") from None

@@ -1,0 +1,99 @@
+"""The page of a comparison."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from comparisons.budget import PARTS, Budget, budget_rows
+from comparisons.models.translate import to_rod
+from comparisons.scene import Scene
+from comparisons.show.pages import (
+    Section,
+    definitions,
+    motion_section,
+    picture,
+    provenance,
+    table,
+    tracks,
+    write_page,
+)
+from comparisons.show.table import HEADER, Row, cells
+
+
+def write_comparison_page(
+    scene: Scene,
+    rows: Sequence[Row],
+    budget: Budget | None,
+    files: Sequence[Path],
+    series: Mapping[str, Path],
+    folder: Path,
+    *,
+    reference: str,
+) -> Path:
+    """Write ``report.html`` to `folder`, with what is in `files` there; return its path.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        All runs.
+    budget : Budget or None
+        None if there is none.
+    files : sequence of Path
+        What else the comparison wrote.
+    series : mapping of Path
+        The exported series of VTU files, by the label of the run.
+    reference : str
+        The label of the exact rod.
+    """
+    lead = f"One scene, {len(rows)} runs, each against the {reference} over {scene.load_parameters} load parameters."
+    sections = [_errors(rows, reference), _motion(scene, rows, series, folder, reference)]
+    if budget is not None:
+        sections.append(_budget(budget, folder))
+    if folder / "side-by-side.png" in files:
+        stress = picture(folder / "side-by-side.png", "Beams and solid, von Mises stress.")
+        sections.append(Section(title="Stress", html=stress))
+    sections += provenance([scene], files, folder)
+    return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
+
+
+def _errors(rows: Sequence[Row], reference: str) -> Section:
+    caption = (
+        f"Largest error over all load parameters against the {reference}; forces and moments over their largest, positions "
+        "over the length. Newton iterations and wall seconds of the whole path."
+    )
+    return Section(title="Errors", html=table(caption, HEADER, map(cells, rows)))
+
+
+def _motion(
+    scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path, reference: str
+) -> Section:
+    rod = to_rod(scene)
+    responses = {row.label: row.response for row in rows}
+    pair = None if rod.contact is None else rod.contact.pair
+    return motion_section(
+        "Shapes and histories",
+        scene,
+        responses,
+        tracks(responses, reference, scene=scene, pair=pair, beam=rod.beam.name),
+        focus=reference,
+        vtu={
+            label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtu"
+            for label, path in series.items()
+        },
+    )
+
+
+def _budget(budget: Budget, folder: Path) -> Section:
+    numbers = table(
+        "(TSM - solid) / exact rod; parts are measured by themselves, the rest is over the difference",
+        ("quantity", "load parameter", "difference", *PARTS, "rest"),
+        (
+            (
+                str(row["quantity"]).replace("_", " "),
+                row["load_parameter"],
+                *(f"{part:.1e}" for part in (row["total"], *row["parts"].values(), row["rest_over_total"])),
+            )
+            for row in budget_rows(budget)
+        ),
+    )
+    drawn = picture(folder / "budget.svg", "What the difference of TSM and solid is made of.")
+    return Section(title="Error budget", html=f"{drawn}\n{numbers}\n{definitions(PARTS)}")

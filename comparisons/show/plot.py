@@ -1,0 +1,159 @@
+"""Pictures by matplotlib: the overlay of deflected shapes, and a stand-in for the rendered picture."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparisons.files import replacing
+from comparisons.response import Array, Response
+from comparisons.scene import Scene
+from comparisons.show import palette
+from comparisons.show.stress import Panel, Scale
+
+SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
+EXACT = {"linewidth": 1.0}
+BEAMS: tuple[dict[str, Any], ...] = (
+    {"marker": "o", "markersize": 7.0, "markerfacecolor": "none"},
+    {"marker": "s", "markersize": 4.0, "markerfacecolor": "none"},
+    {"marker": ".", "markersize": 4.0},
+    {"marker": "^", "markersize": 4.0},
+)
+CONTINUOUS = {"linewidth": 3.5}
+"""Exact elements, which have no nodes to mark: their grid is finer than the axis that is drawn."""
+SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Load parameters of the overlay; the nearest ones of the scene are drawn."""
+
+
+def figure(**options: Any) -> Any:
+    """Return a matplotlib figure that needs no display."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    result = Figure(layout="constrained", **options)
+    FigureCanvasAgg(result)
+    return result
+
+
+def save(fig: Any, *paths: Path) -> None:
+    """Write the figure to `paths`, in the formats of their suffixes."""
+    for path in paths:
+        with replacing(path) as temporary:
+            fig.savefig(temporary, dpi=150)
+
+
+def nearest_steps(load_parameter: Array, wanted: Sequence[float] = SHOWN) -> list[int]:
+    """Return the numbers of the load parameters nearest to the `wanted` ones, each once."""
+    return sorted({int(np.argmin(np.abs(load_parameter - t))) for t in wanted})
+
+
+def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
+    """Draw the deflected axes of all responses over each other, as Fig. 8 of the paper, and the last tip enlarged.
+
+    Parameters
+    ----------
+    scene : Scene
+        Gives the pins and their paths.
+    responses : dict of Response
+        By label, in the order of drawing; beams are drawn with the nodes of their elements.
+    paths : Path
+        Files, in the formats of their suffixes.
+    """
+    fig = figure(figsize=(11.0, 5.6))
+    whole, detail = fig.subplots(1, 2, width_ratios=(1.75, 1.0))
+    for axes in (whole, detail):
+        _draw_shapes(axes, scene, responses)
+        axes.set_aspect("equal", adjustable="box")
+        axes.grid(visible=True, linewidth=0.3)
+    length = scene.units.split(",")[1].strip()
+    whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
+    whole.margins(0.06)
+    _zoom_on_tip(whole, detail, scene, responses)
+    whole.legend(loc="best", fontsize="small")
+    save(fig, *paths)
+
+
+def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> None:
+    beam_styles = iter(BEAMS * len(responses))
+    drawn: set[float] = set()
+    for label, response in responses.items():
+        style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
+        for k in nearest_steps(response.load_parameter) if len(response.load_parameter) else []:
+            drawn.add(float(response.load_parameter[k]))
+            for beam in scene.beams:
+                _, line = response.axis_line(beam.name, k)
+                every = (
+                    max(1, (len(line) - 1) // _elements(response, scene, k)) if "marker" in style else None
+                )
+                axes.plot(*line.T, label=label, markevery=every, **{"linewidth": 0.8, **style})
+                label = "_"  # noqa: PLW2901 one entry of the legend per response
+    times = sorted(drawn)
+    for pin in scene.pins:
+        axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label="path of the pin")
+        places = np.array([pin.position(t) for t in times]).reshape(-1, 2)
+        axes.plot(*places.T, linestyle="none", marker="*", markersize=9, color="0.2", label="pin", zorder=5)
+        for t, place in zip(times, places, strict=True):
+            text = f"t = {t:.3g}"
+            axes.annotate(text, place, (6, -10), textcoords="offset points", fontsize="x-small", clip_on=True)
+
+
+def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
+    """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
+    if response.model in ("rod", "elastica"):
+        return EXACT
+    if response.model == "solid":
+        return SOLID
+    reached = len(response.load_parameter)
+    points = len(response.axis_line(scene.beams[0].name, 0)[1]) if reached else 0
+    return CONTINUOUS if reached and _elements(response, scene, 0) >= points else next(beam_styles)
+
+
+def _elements(response: Response, scene: Scene, k: int) -> int:
+    return len(response.grid(k).cells["line"]) // len(scene.beams)
+
+
+def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Response]) -> None:
+    """Show the surroundings of the last tip: the difference between the models is a fraction of the line width."""
+    exact = list(responses.values())[-1]
+    beam = scene.beams[0]
+    x, y = exact.tips[beam.name][-1]
+    half = 0.02 * beam.length
+    detail.set(
+        xlim=(x - half, x + half),
+        ylim=(y - half, y + half),
+        title=f"The framed tip, t = {exact.load_parameter[-1]:.3g}",
+    )
+    detail.ticklabel_format(useOffset=False)
+    detail.locator_params(nbins=5)
+    box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
+    box.rectangle.set_zorder(4)
+
+
+def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
+    """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
+    from matplotlib.collections import PolyCollection
+
+    fig = figure(figsize=(7.0 * len(panels), 6.5))
+    frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+    (x, y), reach = scale.centre, 1.12 * scale.half
+    for axes, panel in zip(frames, panels, strict=True):
+        bodies = PolyCollection(
+            list(panel.points[panel.quads]),
+            array=panel.stress[panel.quads].mean(axis=1),
+            cmap=scale.colours,
+            edgecolors="face",
+            linewidths=0.3,
+        )
+        bodies.set_clim(*scale.stress)
+        axes.add_collection(bodies)
+        axes.plot(*panel.pins.T, linestyle="none", marker="o", color=palette.PIN, markersize=6)
+        for pin, force in zip(panel.pins, panel.forces, strict=True):
+            if force.any():
+                tail = pin - scale.force * force
+                axes.annotate(
+                    "", pin, tail, arrowprops={"arrowstyle": "-|>", "color": palette.PIN, "linewidth": 2}
+                )
+        axes.set(title=panel.title, aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+    fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
+    save(fig, path)

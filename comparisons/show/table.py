@@ -1,0 +1,91 @@
+"""The table of a comparison: one row per run."""
+
+import csv
+import io
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from comparisons.errors import Errors
+from comparisons.response import Response
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One run and its errors; the reference itself has none."""
+
+    label: str
+    response: Response
+    errors: Errors | None
+
+
+HEADER = (
+    "model",
+    "unknowns",
+    "force",
+    "arc position",
+    "clamp moment",
+    "tip",
+    "stable",
+    "iterations",
+    "seconds",
+)
+SHOWN = ("contact_force", "arc_position", "clamp_moment", "tip")
+
+
+def table_text(rows: list[Row], reference: str) -> str:
+    """Return the table as aligned text; errors are the largest over all load parameters."""
+    lines = [HEADER, *(cells(row) for row in rows)]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(HEADER))]
+    first, *rest = (
+        line[0].ljust(widths[0])
+        + "".join(f"  {text:>{width}}" for text, width in zip(line[1:], widths[1:], strict=True))
+        for line in lines
+    )
+    title = (
+        f"Largest error over all load parameters against the {reference}; forces and moments relative to their\n"
+        "largest, positions to the length; Newton iterations and seconds for the whole path"
+    )
+    return "\n".join([title, "", first, "-" * len(first), *rest])
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """Return a run as text under `HEADER`."""
+    shown = ["-" if row.errors is None else f"{getattr(row.errors, name):.1e}" for name in SHOWN]
+    response = row.response
+    label = row.label if response.completed else f"{row.label} ({response.status})"
+    iterations, seconds = str(response.newton_iterations.sum()), f"{response.wall_seconds:.3f}"
+    return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
+
+
+def _stable(response: Response) -> str:
+    """Return yes, no, or a dash where the model states no index."""
+    if response.index is None or not np.any(response.index >= 0):
+        return "-"
+    return "no" if np.any(response.index > 0) else "yes"
+
+
+def table_csv(rows: list[Row]) -> str:
+    """Return the table as CSV text: errors over all load parameters and at the last, empty for the reference."""
+    records = [
+        {
+            "label": row.label,
+            "model": row.response.model,
+            "status": row.response.status,
+            "unknowns": row.response.unknowns,
+            **{
+                f"error_{item.name}": None if row.errors is None else getattr(row.errors, item.name)
+                for item in fields(Errors)
+            },
+            "stable": _stable(row.response),
+            "newton_iterations": int(row.response.newton_iterations.sum()),
+            "cutbacks": row.response.cutbacks,
+            "wall_seconds": row.response.wall_seconds,
+        }
+        for row in rows
+    ]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, records[0], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(records)
+    return text.getvalue()

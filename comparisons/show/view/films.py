@@ -1,0 +1,85 @@
+"""The pictures of a motion: one for every load parameter, in one view and one scale."""
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from comparisons.files import OutputError, replacing
+from comparisons.show.render import render_frames, show_frames
+from comparisons.show.stress import Panel, Scale
+from comparisons.show.view.bodies import panel
+from comparisons.show.view.series import Series
+
+FRAMES = 40
+"""Pictures of a film at most."""
+PACE, REST = 80, 1500
+"""Milliseconds that a GIF shows a picture, and the last one."""
+WIDTH = 700
+"""Pixels of a panel of a GIF."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Film:
+    """Panels side by side at a row of load parameters, and the scale that they share."""
+
+    frames: list[list[Panel]]
+    scale: Scale
+
+
+def film(series: Sequence[Series], label: str) -> Film:
+    """Return the film of the load parameters that all `series` reach, evenly thinned to `FRAMES`, the first and last included.
+
+    Raises
+    ------
+    OutputError
+        If they have no load parameter in common.
+    """
+    shared = sorted(set.intersection(*({*one.load_parameter.tolist()} for one in series)))
+    if not shared:
+        raise OutputError(
+            f"{', '.join(one.title for one in series)}: no load parameter was reached, nothing to draw"
+        )
+    kept = np.unique(np.linspace(0, len(shared) - 1, min(FRAMES, len(shared))).round().astype(int))
+    frames = [[_panel(one, shared[k]) for one in series] for k in kept]
+    return Film(frames=frames, scale=Scale.of([item for panels in frames for item in panels], label))
+
+
+def _panel(series: Series, t: float) -> Panel:
+    k = int(np.flatnonzero(series.load_parameter == t)[0])
+    return panel(series.body(k), series.pins(k), f"{series.title}, t = {t:.3f}")
+
+
+def write(shown: Film, folder: Path) -> tuple[list[Path], str | None]:
+    """Write ``view.png``, the last state, and ``view.gif``, the motion.
+
+    Returns
+    -------
+    list of Path
+        Both files.
+    str or None
+        One sentence if matplotlib had to stand in for pyvista.
+    """
+    from PIL import Image
+
+    files = [folder / "view.png", folder / "view.gif"]
+    with tempfile.TemporaryDirectory() as scratch:
+        pictures, sentence = render_frames(shown.frames, shown.scale, Path(scratch))
+        images = [Image.open(picture).convert("RGB") for picture in pictures]
+    with replacing(files[0]) as temporary:
+        images[-1].save(temporary)
+    wide = WIDTH * len(shown.frames[0])
+    small = [image.resize((wide, image.height * wide // image.width)) for image in images]
+    with replacing(files[1]) as temporary:
+        durations = [PACE] * (len(small) - 1) + [REST]
+        small[0].save(
+            temporary, save_all=True, append_images=small[1:], duration=durations, loop=0, optimize=True
+        )
+    return files, sentence
+
+
+def show(shown: Film) -> bool:
+    """Open a window with a slider over the load parameters, until it is closed; whether that could be done."""
+    return show_frames(shown.frames, shown.scale)

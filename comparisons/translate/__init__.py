@@ -1,7 +1,0 @@
-"""From a scene to what each model solves: the modelling assumptions, side by side."""
-
-from comparisons.translate.to_rod import RodScene, to_rod
-from comparisons.translate.to_solid import to_solid
-from comparisons.translate.to_structure import to_structure
-
-__all__ = ["RodScene", "to_rod", "to_solid", "to_structure"]

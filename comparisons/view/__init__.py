@@ -1,6 +1,0 @@
-"""The motion of a scene: bodies with their axial stress, pins and contact forces, over the load parameters."""
-
-from comparisons.view.films import Film, film, show, write
-from comparisons.view.series import Series, read_series, solved_series
-
-__all__ = ["Film", "Series", "film", "read_series", "show", "solved_series", "write"]

@@ -1,0 +1,112 @@
+"""The same study on a Dask cluster of two workers, one of which is killed."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+
+from comparisons.cases import workers
+from comparisons.cli import main
+from tests.comparisons.cases.conftest import tiny
+from tests.comparisons.cases.test_command import CASES, histories, recorded, table, wait_for
+
+distributed = pytest.importorskip("distributed")
+
+
+@pytest.fixture
+def cluster() -> Iterator[Any]:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+    ) as found:
+        yield found
+
+
+@pytest.mark.slow
+def test_a_cluster_that_loses_a_worker(cluster: Any, tmp_path: Path) -> None:
+    study, here, there = (
+        tiny(tmp_path / "tiny.toml", CASES // 3),
+        tmp_path / "here.sqlite",
+        tmp_path / "there.sqlite",
+    )
+    victim = next(iter(cluster.workers.values())).pid
+    killed = list[int]()
+
+    def kill() -> None:
+        wait_for(lambda: recorded(there) >= 3)
+        killed.append(recorded(there))
+        os.kill(victim, signal.SIGKILL)
+
+    killer = Thread(target=kill)
+    killer.start()
+    status = main(["study", str(study), "--results", str(there), "--cluster", cluster.scheduler_address])
+    killer.join()
+    assert status == 0
+    assert 3 <= killed[0] < CASES
+    assert main(["study", str(study), "--results", str(here), "--workers", "1"]) == 0
+    assert table(there) == table(here)
+    assert histories(there) == histories(here)
+
+
+@pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
+def test_no_cluster_there(
+    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(workers, "CLUSTER_PATIENCE", 0.5)
+    study = tiny(tmp_path / "tiny.toml", 2)
+    status = main(["study", str(study), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
+    assert status == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"crossval: cluster {address}: ")
+
+
+@contextmanager
+def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run a program of Dask beside the test."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", f"distributed.cli.dask_{program}", *arguments, "--dashboard-address", ":0"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    study, file, port = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite", free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
+
+        def kill() -> None:
+            wait_for(lambda: recorded(file) >= 3)
+            scheduler.kill()
+
+        with dask("worker", address, "--nthreads", "1", "--no-nanny"):
+            killer = Thread(target=kill)
+            killer.start()
+            status = main(["study", str(study), "--results", str(file), "--cluster", address])
+            killer.join()
+    assert status == 2
+    assert 3 <= recorded(file) < CASES
+    err = capfd.readouterr().err.splitlines()
+    assert err[-1] == "crossval: cluster: is gone; what has been finished is kept"
+    assert all("cases done" in line for line in err[:-1])

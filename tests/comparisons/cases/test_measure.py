@@ -1,0 +1,129 @@
+"""Cases and what one of them measures."""
+
+import pickle
+import sys
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
+import pytest
+
+from comparisons.cases import Case, Measurement, measure, memory
+from comparisons.cases.memory import with_peak_memory
+from comparisons.models import solve
+from comparisons.models.options import ModelError, Options
+from comparisons.scene import load_scene
+
+KS = replace(load_scene("ks-cantilever"), load_parameters=5)
+PAIR = "pin->cantilever"
+
+
+def case(model: str = "tsm", **options: object) -> Case:
+    return Case(scene=KS, model=model, options=Options(**options))  # type: ignore[arg-type]
+
+
+def same(a: Measurement, b: Measurement) -> bool:
+    return a.to_json() == b.to_json()
+
+
+def test_key_depends_on_everything_that_the_result_does() -> None:
+    base = case(elements=4)
+    others = [
+        case(elements=5),
+        case(elements=4, element="timoshenko"),
+        case("solid"),
+        replace(base, scene=replace(KS, load_parameters=6)),
+        replace(base, scene=replace(KS, contacts=(replace(KS.contacts[0], penalty=1e3),))),
+    ]
+    assert len({base.key, *(other.key for other in others)}) == 1 + len(others)
+    assert pickle.loads(pickle.dumps(base)).key == case(elements=4).key  # noqa: S301 made here
+    assert len({base, case(elements=4)}) == 1
+
+
+def test_key_depends_on_the_mesh_file(tmp_path: Path) -> None:
+    file = tmp_path / "a.msh"
+    file.write_text("one")
+    of_file = Case(scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file=str(file)),)), model="solid")
+    before = of_file.key
+    file.write_text("two")
+    assert of_file.key != before
+
+
+def test_labels() -> None:
+    assert case(element="mixed", elements=10).label == "tsm mixed 10"
+    assert case(element="exact", tolerance=1e-6).label == "tsm exact 1 tolerance 1e-06"
+    assert case(elements=10, branch="stable").label == "tsm mixed 10 stable"
+    assert case("solid", mesh=(50, 2)).label == "solid Q2 50x2"
+    assert case("rod").label == "rod"
+    with pytest.raises(ModelError, match="must be one of"):
+        Case(scene=KS, model="shell")
+
+
+@pytest.mark.parametrize(
+    "one", [case(elements=4), case("solid", mesh=(10, 1)), case("rod")], ids=lambda one: one.model
+)
+def test_measurement_is_the_response(one: Case) -> None:
+    found, response = measure(one, repeats=2), solve(one.scene, one.model, one.options)
+    assert (found.status, found.completed, found.repeats) == ("COMPLETED", True, 2)
+    assert found.verdict == "CERTIFIED"
+    assert 0.0 < found.seconds < 60.0
+    assert found.iterations == response.newton_iterations.sum()
+    assert np.array_equal(found.load_parameter, response.load_parameter)
+    assert np.array_equal(found.force[PAIR], response.contacts[PAIR].force)
+    assert np.array_equal(found.tip["cantilever"], response.tips["cantilever"])
+    assert found.shape_at == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0], abs=1e-15)
+    line = found.shape["cantilever"]
+    assert line.shape == (5, 101, 2)
+    assert line[:, -1] == pytest.approx(found.tip["cantilever"], abs=1e-3)
+    assert line[:, 0] == pytest.approx(np.zeros((5, 2)), abs=1e-3)
+    again = Measurement.from_json(found.to_json())
+    assert same(found, again)
+    assert same(found, pickle.loads(pickle.dumps(found)))  # noqa: S301 made here
+    assert {item.name: type(getattr(found, item.name)) for item in fields(found)} == {
+        item.name: type(getattr(again, item.name)) for item in fields(again)
+    }
+
+
+def test_a_refused_case_is_measured_as_refused() -> None:
+    found = measure(case("tsm", mesh=(2, 1)))
+    assert (found.status, found.completed) == ("REFUSED", False)
+    assert "not an option" in found.message
+    assert same(found, Measurement.from_json(found.to_json()))
+
+
+def test_a_stopped_case_keeps_what_it_reached() -> None:
+    soft = replace(KS, contacts=(replace(KS.contacts[0], penalty=1e-3),))
+    found = measure(Case(scene=soft, model="solid", options=Options(mesh=(10, 1))), repeats=1)
+    assert not found.completed
+    assert found.status != "COMPLETED"
+    assert len(found.load_parameter) < 5
+    assert same(found, Measurement.from_json(found.to_json()))
+
+
+def test_an_empty_history_keeps_its_shape() -> None:
+    found = measure(case(elements=4), repeats=1)
+    tables = ("support_force", "tip", "shape")
+    empty = replace(found, **{name: {"a": getattr(found, name)["cantilever"][:0]} for name in tables})
+    again = Measurement.from_json(empty.to_json())
+    assert all(getattr(again, name)["a"].shape == getattr(empty, name)["a"].shape for name in tables)
+
+
+def test_peak_memory_is_of_the_action_alone() -> None:
+    size = 64 * 2**20
+    keep = np.ones(size // 8)
+    for _ in range(2):
+        total, peak = with_peak_memory(lambda: float(np.ones(size // 8).sum()))
+        assert total == keep.sum()
+        assert 0.9 * size < peak < 1.5 * size
+    assert with_peak_memory(lambda: None)[1] < 0.1 * size
+
+
+def test_peak_memory_without_proc_and_resource(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows: psutil tells how much memory there is."""
+    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
+    monkeypatch.setitem(sys.modules, "resource", None)
+    size = 64 * 2**20
+    kept, rise = with_peak_memory(lambda: np.ones(size // 8))
+    assert 0.9 * size < rise < 1.5 * size
+    assert kept.nbytes == size

@@ -1,0 +1,52 @@
+"""The way of a contact to a beam node at a fixed tolerance."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.claims.paper.approach import NEAREST, Approach, approaches
+from comparisons.claims.paper.critical_area import SCENE, CriticalAreas, Measured
+from comparisons.models.translate import to_structure
+from comparisons.scene import load_scene
+
+
+def ways(element: str, tolerance: float, start: float = 4.2) -> tuple[Approach, ...]:
+    scene = load_scene(SCENE)
+    scene = replace(scene, pins=(replace(scene.pins[0], start=(start, 0.0)),))
+    return approaches(to_structure(scene, element=element), tolerance)
+
+
+def test_mixed_comes_as_near_as_the_search_goes_at_every_tolerance():
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        found = ways("mixed", tolerance)
+        assert [way.node for way in found] == [4.25, 4.5]
+        assert all(way.smallest <= NEAREST for way in found)
+
+
+def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance():
+    """``b^-3`` and ``b^-1``: a tolerance 1e4 times sharper widens it by about 20 and 1e4."""
+    for element, factor in (("euler-bernoulli-simple", 1e4 ** (1 / 3)), ("timoshenko", 1e4)):
+        loose, sharp = (ways(element, tolerance)[0].smallest for tolerance in (1e-7, 1e-11))
+        assert factor / 6 < sharp / loose < 6 * factor
+
+
+def test_the_way_ends_where_the_pin_slips_off():
+    """Section 4.1: the exact rod slips off a pin at 4.2 m at 1.4716026278 m."""
+    last = ways("mixed", 1e-10)[-1]
+    assert 1.8 * last.load_parameter[-1] == pytest.approx(1.4716026278, rel=2e-5)
+    assert np.all(np.diff(last.load_parameter) > 0)
+    assert np.all(np.diff(last.ratio) < 0)
+
+
+def test_contact_inside_the_last_element_meets_only_the_tip():
+    assert [way.node for way in ways("timoshenko", 1e-8, start=4.4)] == [4.5]
+
+
+def test_no_equilibrium_is_a_whole_element():
+    measured = Measured(
+        element="timoshenko", start=4.05, tolerance=1e-9, node=4.25,
+        displacement=np.zeros(0), ratio=np.zeros(0), smallest=np.nan,
+    )  # fmt: skip
+    found = CriticalAreas(tolerances=(1e-9,), measured=(measured,), floors=())
+    assert found.areas("timoshenko", 1e-9) == pytest.approx([1.0])

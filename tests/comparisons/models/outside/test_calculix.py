@@ -1,0 +1,188 @@
+"""CalculiX is asked what the solid is asked, and answers the same; where it does not, the reason is named."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fem_reference
+from comparisons.claims.solid.peers import contact_forces, dead_load, peers, press
+from comparisons.cli import main
+from comparisons.models.outside.calculix import _answer, tip_load
+from comparisons.models.outside.ccx import CalculixError, Printed, parse, run
+from comparisons.models.outside.deck import slab, tip_load_deck
+from comparisons.models.translate import to_solid
+from comparisons.scene import load_scene
+
+needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
+PROBLEM = to_solid(load_scene("ks-face"))
+STRIP = PROBLEM.strips[0]
+FORCE = STRIP.bending_stiffness / STRIP.length**2
+DAT = """
+ displacements (vx,vy,vz) for set TIP and time  0.5000000E+00
+
+         7  1.000000E-01 -2.000000-101  0.000000E+00
+
+ forces (fx,fy,fz) for set CLAMP and time  0.5000000E+00
+
+         1 -1.000000E+00  2.000000E+00  0.000000E+00
+         2 -1.000000E+00  2.0000"""
+
+
+def fake(folder: Path, monkeypatch: pytest.MonkeyPatch, script: str) -> None:
+    """Put a ``ccx`` of our own first on the path."""
+    program = folder / "ccx"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
+
+
+def test_without_calculix_the_study_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["study", "peers", "--out", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err == "crossval: CalculiX is needed: there is no program ccx on the path (Debian: calculix-ccx)\n"
+
+
+def test_a_stop_is_named_with_the_end_of_the_output(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(tmp_path, monkeypatch, "echo ' increment 1'; echo ' *ERROR: no'; echo '        luck'; exit 201")
+    with pytest.raises(CalculixError, match=r"^CalculiX stopped: \*ERROR: no luck$"):
+        run("")
+    assert main(["study", "peers", "--out", str(tmp_path / "out")]) == 3
+    assert capsys.readouterr().err == "crossval: CalculiX stopped: *ERROR: no luck\n"
+    fake(tmp_path, monkeypatch, "echo no reason given")
+    with pytest.raises(CalculixError, match=r"^CalculiX stopped: no reason given$"):
+        run("")
+    fake(tmp_path, monkeypatch, "exec sleep 20")
+    with pytest.raises(CalculixError, match=r"did not finish within 0\.1 s"):
+        run("", seconds=0.1)
+
+
+def test_what_is_printed_is_read_and_what_is_cut_off_is_not() -> None:
+    printed = parse(DAT)
+    assert printed.times == [0.5]
+    assert printed.tables == {
+        ("displacements", "TIP"): [[[0.1, -2e-101, 0.0]]],
+        ("forces", "CLAMP"): [[[-1.0, 2.0, 0.0]]],
+    }
+    assert parse("") == Printed(times=[], tables={})
+    with pytest.raises(CalculixError, match="printed no result"):
+        _answer(slab(STRIP), printed)
+
+
+def test_slab_has_every_node_once_and_bears_the_whole_load() -> None:
+    mesh = slab(replace(STRIP, mesh=(5, 3)))
+    there = mesh.numbers > 0
+    assert sorted(mesh.numbers[there]) == list(range(1, there.sum() + 1))
+    assert set(mesh.bricks.ravel()) == set(mesh.numbers[there])
+    deck = tip_load_deck(mesh, 3 * mesh.unit)
+    loads = deck.split("*CLOAD\n")[1].split("\n*")[0].splitlines()
+    assert sum(float(row.split(",")[2]) for row in loads) == pytest.approx(3)
+    numbers = [part for row in deck.splitlines() if row[:1].isdigit() for part in row.split(",")]
+    assert max(map(len, numbers)) <= 20
+    with pytest.raises(ValueError, match="has no strip"):
+        slab(replace(STRIP, material="biot-linear"))
+
+
+BRICK = """*NODE, NSET=ALL
+{nodes}
+*ELEMENT, TYPE=C3D20R, ELSET=BRICK
+1,{first},
+{rest}
+*NSET, NSET=START
+1,4,5,8,12,16,17,20
+*NSET, NSET=END
+2,3,6,7,10,14,18,19
+*NSET, NSET=RIGHT
+1,2,5,6,9,13,17,18
+*NSET, NSET=BELOW
+1,2,3,4,9,10,11,12
+*MATERIAL, NAME=ELASTIC
+*ELASTIC
+1000.,.3
+*SOLID SECTION, ELSET=BRICK, MATERIAL=ELASTIC
+*BOUNDARY
+START,1,1
+RIGHT,2,2
+BELOW,3,3
+*STEP, NLGEOM
+*STATIC
+.5,1.
+*BOUNDARY
+END,1,1,.3
+*NODE PRINT, NSET=START
+RF
+*END STEP
+"""
+
+
+@needs_ccx
+def test_elastic_is_the_law_of_st_venant_and_kirchhoff() -> None:
+    """A unit brick stretched to 1.3 bears ``1.3 E e`` with Green's strain e; by Hooke's law it would bear .3 E."""
+    corners = np.array(
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    )
+    ring = np.array([0, 1, 2, 3])
+    bars = [(ring, np.roll(ring, -1)), (ring + 4, np.roll(ring, -1) + 4), (ring, ring + 4)]
+    nodes = np.concatenate([corners, *((corners[a] + corners[b]) / 2 for a, b in bars)])
+    deck = BRICK.format(
+        nodes="\n".join(f"{n},{x},{y},{z}" for n, (x, y, z) in enumerate(nodes, start=1)),
+        first=",".join(map(str, range(1, 11))),
+        rest=",".join(map(str, range(11, 21))),
+    )
+    forces = np.array(run(deck).tables["forces", "START"][-1])
+    assert forces[:, 0].sum() == pytest.approx(-1.3 * 1000 * (1.3**2 - 1) / 2, rel=1e-6)
+
+
+@needs_ccx
+@pytest.mark.parametrize(("clamp", "bar"), [("rod", 5e-6), ("full", 1e-3)])
+def test_tip_load(clamp: str, bar: float) -> None:
+    """1.2e-6 and 3.5e-4 measured on 50x2, bar 1e-3; the full clamp's corners are singular."""
+    strip = replace(STRIP, clamp=clamp)
+    u, reaction = dead_load(strip, FORCE)
+    answer = tip_load(strip, FORCE)
+    assert answer.load_parameter[-1] == 1
+    assert np.hypot(*(answer.tip[-1] - u)) <= bar * np.hypot(*u)
+    np.testing.assert_allclose(answer.force[-1], reaction, rtol=0, atol=2e-5 * FORCE)
+    assert answer.moment[-1] == pytest.approx(-FORCE * (STRIP.length + u[0]), rel=bar)
+
+
+@needs_ccx
+def test_pin_on_the_face_up_to_a_tenth() -> None:
+    """5e-5 of the force, whatever the step; 1e-5 with the same contact stiffness."""
+    start, end = PROBLEM.pins[0].path
+    way = tuple(a + 0.1 * (b - a) for a, b in zip(start, end, strict=True))
+    problem = replace(PROBLEM, pins=(replace(PROBLEM.pins[0], path=(start, way)),))
+    coarse, fine = (np.hypot(*press(problem, steps, 20.0).force.T) for steps in (10, 20))
+    assert (coarse.size, fine.size) == (10, 20)
+    np.testing.assert_allclose(coarse, fine[1::2], rtol=1e-6)
+    np.testing.assert_allclose(coarse, contact_forces(problem, 10, 10), rtol=1e-4)
+    soft = replace(problem, contacts=(replace(problem.contacts[0], penalty=20.0),))
+    result = fem_reference.solve(soft, np.arange(1, 11) / 10)
+    np.testing.assert_allclose(coarse, result.contacts["pin->cantilever"].force, rtol=1e-5)
+
+
+@needs_ccx
+@pytest.mark.slow
+def test_study_is_within_its_bars() -> None:
+    told: list[str] = []
+    rows = peers(told.append)
+    tips = [row for row in rows if row["case"].startswith("tip load")]
+    assert len(tips) == 8
+    assert all(row["difference"] <= 1e-3 for row in tips)
+    pins = [row for row in rows if row not in tips]
+    reached = {row["step"]: row["reached"] for row in pins}
+    assert list(reached) == [0.02, 0.01, 0.005, 0.0025]
+    assert min(reached.values()) >= 0.02
+    assert max(reached.values()) >= 0.5
+    for row in pins:
+        assert row["message"] or row["calculix"]
+        assert row["largest"] <= 1e-3
+    assert len(told) == 12

@@ -1,0 +1,141 @@
+"""What pages hold: the numbers of the other files, whole markup, nothing from elsewhere."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from comparisons.cli import main
+from comparisons.errors import error_histories, errors
+from comparisons.models import solve
+from comparisons.scene import load_scene
+from comparisons.show.pages import Section, motion_section, page, picture, table, tracks
+from comparisons.show.palette import MODELS, colour
+from tests.comparisons.show.pages.markup import block, check_alone
+
+KS = replace(load_scene("ks-cantilever"), load_parameters=4)
+
+
+def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Path) -> None:
+    html = (compared / "report.html").read_text()
+    summary = json.loads((compared / "summary.json").read_text())
+    assert "report.html" in summary["files"]
+    (data,) = block(html).values()
+    runs = {run["label"]: run for run in summary["runs"]}
+    force, arc, moment = data["tracks"]
+    assert set(force["values"]) == set(runs) == {run["label"] for run in data["runs"]}
+    for label, run in runs.items():
+        assert data["load_parameter"] == run["load_parameter"]
+        assert force["values"][label] == run["contacts"]["pin->cantilever"]["force"]
+        assert arc["values"][label] == run["contacts"]["pin->cantilever"]["arc_position"]
+        assert moment["values"][label] == run["supports"]["cantilever"]["moment"]
+        if run["errors"]:
+            stated = [run["errors"][name] for name in ("contact_force", "arc_position", "clamp_moment")]
+            assert [max(track["errors"][label]) for track in data["tracks"]] == stated
+    for drawn in data["runs"]:
+        tips = [lines[0][-1] for lines in drawn["lines"]]
+        assert np.allclose(tips, runs[drawn["label"]]["tips"]["cantilever"], rtol=0.0, atol=1e-5)
+        assert {len(lines[0]) for lines in drawn["lines"]} == {61}
+        assert drawn["colour"] in {colour(drawn["label"]), "var(--ink)", "var(--grey)"}
+    assert len({(run["colour"], run["dash"], run["width"]) for run in data["runs"]}) == len(runs)
+    assert len({run["dash"] for run in data["runs"]}) == len(runs) - 1, "the solid is the wide one"
+
+
+def test_the_page_of_a_comparison_is_alone(compared: Path) -> None:
+    html = (compared / "report.html").read_text()
+    check_alone(html, compared)
+    for title in (
+        "Errors",
+        "Shapes and histories",
+        "Error budget",
+        "Stress",
+        "Input",
+        "Versions and machine",
+        "Files",
+    ):
+        assert f">{title}</h2>" in html
+    assert html.count('href="tsm/tsm.pvd"') == html.count('href="solid/solid.pvd"') == 1
+    (data,) = block(html).values()
+    for pattern in data["vtu"].values():
+        assert all((compared / pattern.replace("{}", f"{k:04d}")).is_file() for k in range(1, 11))
+
+
+@pytest.mark.slow
+def test_the_page_of_ks_is_small(tmp_path: Path) -> None:
+    assert main(["compare", "ks-cantilever", "--out", str(tmp_path)]) == 0
+    assert 3e5 < (tmp_path / "report.html").stat().st_size < 3e6
+
+
+def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
+    sections = [
+        Section(title="A & B <x>", html=table("<c>", ("<h>", "n"), [("<r>", 0.123456), ("s", None)])),
+        Section(title="data", html="", data={"text": "</script><b>", "nan": np.array([np.nan, 1.0])}),
+    ]
+    html = page("<t>", "a < b", sections)
+    check_alone(html, Path())
+    assert '<section id="a-b-x"' in html
+    assert "<td>0.123</td>" in html
+    assert "<td>-</td>" in html
+    assert block(html) == {"data": {"text": "</script><b>", "nan": [None, 1.0]}}
+
+
+def test_sections_of_one_title_are_refused() -> None:
+    with pytest.raises(ValueError, match="different titles"):
+        page("t", "", [Section(title="Same", html=""), Section(title="same!", html="")])
+
+
+def test_a_picture_is_part_of_the_page(tmp_path: Path) -> None:
+    (tmp_path / "a.svg").write_text("<svg/>")
+    assert 'src="data:image/svg+xml;base64,PHN2Zy8+"' in picture(tmp_path / "a.svg", "what")
+
+
+def test_a_run_that_stopped_is_shown_as_far_as_it_came() -> None:
+    rod, beams = solve(KS, "rod"), solve(KS, "tsm")
+    cut = replace(beams, load_parameter=beams.load_parameter[:2])
+    responses = {"TSM mixed": cut, "exact rod": rod}
+    made = tracks(responses, "exact rod", scene=KS, pair="pin->cantilever", beam="cantilever")
+    data = motion_section("t", KS, responses, made, focus="exact rod").data
+    assert [len(run["lines"]) for run in data["runs"]] == [2, 4]
+    whole = error_histories(beams, rod, pair="pin->cantilever", beam="cantilever", length=1.0)
+    assert np.array_equal(made[0].errors["TSM mixed"], whole["contact_force"][:2])
+    stated = errors(beams, rod, pair="pin->cantilever", beam="cantilever", length=1.0)
+    assert stated.contact_force == whole["contact_force"].max()
+
+
+def test_nothing_reached_is_said() -> None:
+    beams = solve(KS, "tsm")
+    none = replace(beams, load_parameter=beams.load_parameter[:0])
+    section = motion_section("t", KS, {"TSM mixed": none}, [], focus="TSM mixed")
+    assert "No run reached" in section.html
+    assert section.data is None
+
+
+def test_colours_stay_apart_for_the_colour_blind() -> None:
+    """Full protanopia, deuteranopia and tritanopia by Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291."""
+    machado = np.array(
+        [
+            np.eye(3),
+            [
+                [0.152286, 1.052583, -0.204868],
+                [0.114503, 0.786281, 0.099216],
+                [-0.003882, -0.048116, 1.051998],
+            ],
+            [
+                [0.367322, 0.860646, -0.227968],
+                [0.280085, 0.672501, 0.047413],
+                [-0.011820, 0.042940, 0.968881],
+            ],
+            [
+                [1.255528, -0.076749, -0.178779],
+                [-0.078411, 0.930809, 0.147602],
+                [0.004733, 0.691367, 0.303900],
+            ],
+        ]
+    )
+    rgb = np.array([[int(code[i : i + 2], 16) for i in (1, 3, 5)] for code in MODELS.values()]) / 255.0
+    seen = np.clip(np.einsum("kij,mj->kmi", machado, rgb), 0.0, 1.0)
+    apart = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
+    apart[:, np.arange(len(rgb)), np.arange(len(rgb))] = np.inf
+    assert apart.min() > 0.1, apart.min(axis=(1, 2))
