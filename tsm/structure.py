@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import Literal
 
-from tsm.elements import ELEMENTS
+from tsm.elements import ELEMENTS, MIXED
 
 Point = tuple[float, float]
 End = Literal["start", "end"]
@@ -114,7 +114,7 @@ class Beam:
     end: Point
     section: Section
     elements: int = 20
-    element: str = "mixed"
+    element: str = MIXED.name
     nodes: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:

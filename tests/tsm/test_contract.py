@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,8 +42,8 @@ def _soft_law(law: ContactLaw) -> ContactLaw:
 
 MIXED = CLOSED_FORM["mixed"]
 ADDED: dict[str, tsm.elements.ElementType] = {
-    "rigid in shear": replace(MIXED, sheared=False),
-    "soft contact": replace(MIXED, contact=_soft_law(MIXED.contact)),
+    "rigid in shear": replace(MIXED, name="rigid in shear", sheared=False),
+    "soft contact": replace(MIXED, name="soft contact", contact=_soft_law(MIXED.contact)),
 }
 WITH_UNKNOWNS = [*ADDED, "mixed", "mixed-no-bow"]
 
@@ -117,3 +122,32 @@ def test_a_softer_contact_carries_less() -> None:
         tsm.solve(pressed(name), [1.0]).contacts["p0->b"].force[0] for name in ("soft contact", "mixed")
     )
     assert 0.8 * hard < soft < 0.999 * hard
+
+
+USE = """
+import tsm
+beam = tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=tsm.Section(EA=2e3, GA=100.0, EI=1.0), elements=4, element="new")
+structure = tsm.Structure(
+    beams=(beam,),
+    supports=(tsm.Support(beam="b", end="start"),),
+    pins=(tsm.Pin(name="p0", path=((0.6, 0.0), (0.58, 0.12 * 0.36))),),
+    contacts=(tsm.ContactPair(node="p0", beam="b", side="right"),),
+)
+for result in (tsm.solve(structure, [1.0]), tsm.solve_batch([structure], [1.0])[0]):
+    print(float(result.contacts["p0->b"].force[0]))
+"""
+
+
+def test_a_new_element_is_one_file(tmp_path: Path) -> None:
+    package = shutil.copytree(Path(tsm.__file__).parent, tmp_path / "tsm")
+    (package / "elements" / "kinds" / "unsheared.py").write_text(
+        "from dataclasses import replace\n"
+        "from tsm.elements.kinds.mixed import MIXED\n"
+        "ELEMENTS = (replace(MIXED, name='new', sheared=False),)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    run = subprocess.run(
+        [sys.executable, "-c", USE], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+    )
+    registered = tsm.solve(pressed("rigid in shear"), [1.0]).contacts["p0->b"].force[0]
+    assert [float(force) for force in run.stdout.split()] == pytest.approx([registered] * 2, rel=1e-9)

@@ -1,0 +1,104 @@
+"""What an element type states about itself: the contract that solver, batch, accuracy, extremes and pictures ask."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tsm.elements.beam import Coefficients
+from tsm.elements.contact_law import ContactLaw
+from tsm.elements.properties import Properties
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElementType(ABC):
+    """One way to write the element force equation.
+
+    Attributes
+    ----------
+    name : str
+        Key of `tsm.ELEMENTS`.
+    source : str
+        Where the equations stand.
+    sheared : bool
+        Whether the beam deforms in shear. Otherwise its shear number is zero, whatever the section.
+    variant : bool
+        Whether the element is kept to be compared with another one only: with misprints, or without a term. Matrices of
+        extreme cases leave it out.
+    colour, marker : str
+        How figures draw its answers: a colour in hexadecimal digits, a marker of matplotlib.
+    """
+
+    name: str
+    source: str
+    sheared: bool = True
+    variant: bool = False
+    colour: str = "#666666"
+    marker: str = "v"
+
+    @property
+    @abstractmethod
+    def meshed(self) -> bool:
+        """Whether the error falls with the number of elements."""
+
+    @property
+    @abstractmethod
+    def contact_unknowns(self) -> int:
+        """Number of unknowns that a closed contact adds to the system."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Integrated(ElementType):
+    """An element whose equations are integrated. Contacts cut it: force (2), arc position and the section's angle are unknowns."""
+
+    @property
+    def meshed(self) -> bool:
+        """Whether the error falls with the number of elements: one is as good as many."""
+        return False
+
+    @property
+    def contact_unknowns(self) -> int:
+        """Number of unknowns that a closed contact adds to the system."""
+        return 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedForm(ElementType):
+    """An element whose force follows from its nodes' displacements in closed form.
+
+    Attributes
+    ----------
+    coefficients : callable
+        Coefficients of the beam's energy from its constants, see `beam.Coefficients`.
+    contact : ContactLaw
+        What a contact inside the element does.
+    order : int
+        Order of the errors of forces and shapes in the element's length.
+    bearable_turn : float
+        Angle between its ends up to which the element is an approximation [rad]: there its first neglected term leaves a fifth of the
+        force.
+    shear_floor : (float, int)
+        Factor and power of the shear strain F/GA that give the error that no number of elements removes. Measured on KS, F/GA 1e-3 to
+        3e-2.
+    """
+
+    coefficients: Callable[[Properties], Coefficients]
+    contact: ContactLaw
+    order: int = 2
+    bearable_turn: float = 1.0
+    shear_floor: tuple[float, int] = (1.0, 2)
+
+    @property
+    def meshed(self) -> bool:
+        """Whether the error falls with the number of elements."""
+        return True
+
+    @property
+    def contact_unknowns(self) -> int:
+        """Number of unknowns that a closed contact adds to the system."""
+        return self.contact.unknowns
+
+    def constants(self, p: Properties) -> Properties:
+        """Return the section's constants as this element has them."""
+        return p if self.sheared else p._replace(Phi=0.0 * p.Phi)
