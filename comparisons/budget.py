@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.models import solve
+from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.translate import to_rod, to_solid
 from comparisons.response import Array
@@ -84,10 +84,10 @@ def error_budget(scene: Scene) -> Budget:
         raise ModelError("the budget is that of a contact, the scene has none")
     short = replace(scene, load_parameters=STEPS)
     problem = to_solid(short)
-    rod = _response(short, "rod", Options())
+    rod = _response(short, ROD.name, Options())
     if not all(np.all(np.isfinite(values) & (values != 0)) for values in rod.values()):
         raise ModelError("the budget is relative to the exact rod, which is not in contact all the time")
-    coarse, fine = (_response(short, "tsm", Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
+    coarse, fine = (_response(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
     solid, finer = _solid(problem), _solid(_refined(problem))
     augmented, careful = _solid(_augmented(problem)), _solid(problem, careful=True)
     biot = _with(problem, BIOT)

@@ -6,10 +6,12 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import tsm
+from comparisons import models
 from comparisons.budget import Budget, error_budget
 from comparisons.errors import errors
 from comparisons.files import alone_in, writable_folder, write_text
-from comparisons.models import certified, solve
+from comparisons.models import Model, certified, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.translate import to_rod
@@ -25,6 +27,7 @@ from comparisons.show.render import render_panels
 from comparisons.show.stress import beam_panel, solid_panel
 from comparisons.show.table import Row, table_csv
 from comparisons.version import versions
+from tsm.elements import TIMOSHENKO, ElementType
 
 Report = Callable[[str], None]
 Watching = Callable[[str], AbstractContextManager[Watch]]
@@ -39,23 +42,38 @@ class Run:
     options: Options
 
 
-def _tsm(element: str, elements: int) -> Run:
-    label = f"TSM {element}, {elements} element{'s' if elements > 1 else ''}"
-    return Run(label=label, model="tsm", options=Options(element=element, elements=elements))
+def run_of(model: Model, options: Options) -> Run:
+    """Return the run of a model with its label."""
+    return Run(label=model.run_label(options), model=model.name, options=options)
 
 
-PAPER = tuple(_tsm("timoshenko", elements) for elements in (10, 20, 50))
+def _beams(kind: ElementType, elements: int) -> Run:
+    return run_of(models.TSM, Options(element=kind.name, elements=elements))
+
+
+RUNS = tuple(
+    run_of(model, options)
+    for model in sorted(models.MODELS.values(), key=lambda model: (not model.meshed) * (1 + model.rod))
+    for options in model.compared()
+)
+"""The runs of a comparison: the settings that every model states, models with a mesh first, the exact rod last."""
+PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
 """The paper's element."""
-MIXED = _tsm("mixed", 20)
+MIXED = _beams(tsm.elements.MIXED, 20)
 """The beams that are exported and rendered."""
-SOLID = Run(label="solid", model="solid", options=Options())
-ROD = Run(label="exact rod", model="rod", options=Options())
-ELASTICA = Run(label="elastica", model="elastica", options=Options())
-COARSE_MIXED, EXACT = _tsm("mixed", 10), _tsm("exact", 1)
-RUNS = (*PAPER, COARSE_MIXED, MIXED, EXACT, SOLID, ELASTICA, ROD)
-DRAWN = (SOLID, EXACT, *PAPER, COARSE_MIXED, ROD)
-"""The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
+SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, models.ROD, models.ELASTICA))
 
+
+def _layer(run: Run) -> int:
+    """Place of a run when axes are drawn over each other: the solid first, then beams without nodes, beams, exact answers."""
+    model = models.MODELS[run.model]
+    if model.continuum or not model.meshed:
+        return 0 if model.continuum else 3
+    return 1 if model.reference is not None and run.options.element == model.reference.element else 2
+
+
+DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=_layer))
+"""The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 
 APART = 0.5
 """Difference of force or moment over the largest, or of the tip over the length, beyond which two answers are different equilibria."""

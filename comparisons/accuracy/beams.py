@@ -9,10 +9,11 @@ import numpy as np
 from comparisons.accuracy.answer import Discretised
 from comparisons.accuracy.pilot import SAFETY, pilot
 from comparisons.accuracy.quantities import difference
-from comparisons.models import solve
+from comparisons.models import TSM, solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec, Scene
+from tsm.elements import ClosedForm
 
 NEWTON = 1e-10
 """Tolerance of Newton's method, in forces over ``EI/L^2`` (`tsm.Settings`)."""
@@ -35,7 +36,7 @@ def exact_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
     """
     tolerance, said = 1e-9, []
     while True:
-        response = solve(scene, "tsm", Options(element="exact", tolerance=tolerance))
+        response = solve(scene, TSM.name, replace(TSM.reference, tolerance=tolerance))
         size = _size(response, scene, quantity)
         estimate = (response.integration_error + NEWTON) / size if size else np.inf
         said.append(
@@ -73,22 +74,20 @@ def _largest(histories: list[Array]) -> float:
     return max((float(np.abs(values).max(initial=0.0)) for values in histories), default=0.0)
 
 
-def graded_to(scene: Scene, accuracy: float, quantity: str, element: str) -> Discretised:
+def graded_to(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> Discretised:
     """Solve with elements in closed form, refined where the solution is curved and where forces act.
 
     A mesh and the one with every element halved are compared at a few load parameters; their difference gives the error of the former.
     Where it is too large, the next mesh has as many elements as the order promises, with the density
     ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))``, the largest over the load parameters: equal shares of the error of the order p.
     """
-    from tsm.elements import CLOSED_FORM
-
-    order = CLOSED_FORM[element].order
+    order, element = kind.order, kind.name
     short, said = pilot(scene), []
     mesh = _with(scene, {beam.name: _equal(FIRST) for beam in scene.beams})
     for _ in range(ROUNDS):
         coarse, fine = (_solve(short, one, element) for one in (mesh, _halved(mesh)))
         apart = difference(coarse, fine, scene, quantity)
-        stuck = _shear_limit(fine, scene, CLOSED_FORM[element].shear_floor)
+        stuck = _shear_limit(fine, scene, kind.shear_floor)
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
         total = _count(mesh)
         said.append(f"{element}, {total} elements: estimate {estimate:.1e} of {quantity}")
@@ -112,7 +111,7 @@ def graded_to(scene: Scene, accuracy: float, quantity: str, element: str) -> Dis
 
 
 def _solve(scene: Scene, mesh: Scene, element: str) -> Response:
-    return solve(replace(mesh, load_parameters=scene.load_parameters), "tsm", Options(element=element))
+    return solve(replace(mesh, load_parameters=scene.load_parameters), TSM.name, Options(element=element))
 
 
 def _shear_limit(response: Response, scene: Scene, floor: tuple[float, int]) -> float:

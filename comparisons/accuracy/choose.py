@@ -7,8 +7,10 @@ from comparisons.accuracy.beams import exact_to, graded_to
 from comparisons.accuracy.require import Requirement, required
 from comparisons.accuracy.solid import solid_to
 from comparisons.accuracy.theory import beam_theory
+from comparisons.models import TSM
 from comparisons.models.options import QUANTITIES, ModelError
 from comparisons.scene import Scene
+from tsm.elements import MIXED, ClosedForm
 
 
 def solve_to(
@@ -47,10 +49,10 @@ def solve_to(
     found, said = _discretised(needed, accuracy, quantity, free=element is None)
     return Answer(
         found=found,
-        model=needed.model,
+        model=needed.model.name,
         accuracy=accuracy,
         quantity=quantity,
-        theory=beam_theory(found.response, found.scene) if needed.model == "tsm" else None,
+        theory=beam_theory(found.response, found.scene) if not needed.model.continuum else None,
         decisions=(*needed.decisions, *said),
         seconds=perf_counter() - began,
     )
@@ -59,14 +61,16 @@ def solve_to(
 def _discretised(
     needed: Requirement, accuracy: float, quantity: str, *, free: bool
 ) -> tuple[Discretised, tuple[str, ...]]:
-    if needed.model == "solid":
+    if needed.model.continuum:
         found = solid_to(needed.scene, accuracy, quantity)
         return found, found.decisions
-    if needed.element != "exact":
-        found = graded_to(needed.scene, accuracy, quantity, needed.element)
+    kind = TSM.element(needed.options)
+    if isinstance(kind, ClosedForm):
+        found = graded_to(needed.scene, accuracy, quantity, kind)
         return found, found.decisions
     found = exact_to(needed.scene, accuracy, quantity)
     if found.response.status != "INACCURATE" or not free:
         return found, found.decisions
-    other = graded_to(needed.scene, accuracy, quantity, "mixed")
-    return other, (*found.decisions, "exact stopped: INACCURATE; mixed instead", *other.decisions)
+    other = graded_to(needed.scene, accuracy, quantity, MIXED)
+    instead = f"{kind.name} stopped: INACCURATE; {MIXED.name} instead"
+    return other, (*found.decisions, instead, *other.decisions)

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from comparisons.models.options import ModelError
-from comparisons.models.translate import to_rod, to_solid, to_structure
+from comparisons.models import MODELS, ROD, SOLID, TSM, Model
+from comparisons.models.options import ModelError, Options
 from comparisons.scene import Scene
 
 STOCKY = 0.1
@@ -18,17 +18,17 @@ class Requirement:
     ----------
     scene : Scene
         Without the bodies that carry nothing.
-    model : str
-        ``tsm`` or ``solid``.
-    element : str
-        Type of the TSM elements.
+    model : Model
+        One with a mesh.
+    options : Options
+        The type of its elements, where it has types.
     decisions : tuple of str
         Why.
     """
 
     scene: Scene
-    model: str
-    element: str
+    model: Model
+    options: Options
     decisions: tuple[str, ...]
 
 
@@ -45,42 +45,43 @@ def required(
     loaded, said = without_idle(scene)
     if model is None:
         model, reason = (
-            _model(loaded, quantity) if element is None else ("tsm", f"{element} elements asked for")
+            _model(loaded, quantity) if element is None else (TSM.name, f"{element} elements asked for")
         )
         said = (*said, f"{model}: {reason}")
-    if model == "solid":
-        if element is not None:
-            raise ModelError(f"solid: element = {element}: not an option of this model")
-        to_solid(loaded)
-        if quantity == "stress" and len(loaded.beams) > 1:
-            raise ModelError("quantity = stress: is that of one beam, the scene has more")
-        return Requirement(scene=loaded, model=model, element="", decisions=said)
-    if model != "tsm":
-        raise ModelError(f"model = {model}: has no resolution to choose; tsm and solid have")
-    if quantity == "stress":
-        raise ModelError("quantity = stress: beams have section forces; --model solid has stresses")
-    to_structure(loaded, element=element)
-    return Requirement(scene=loaded, model=model, element=element or "exact", decisions=said)
+    chosen = MODELS.get(model)
+    if chosen is None or not chosen.refinable:
+        refinable = " and ".join(name for name, other in MODELS.items() if other.refinable)
+        raise ModelError(f"model = {model}: has no resolution to choose; {refinable} have")
+    if element is not None and "element" not in chosen.options:
+        raise ModelError(f"{model}: element = {element}: not an option of this model")
+    if quantity == "stress" and not chosen.continuum:
+        raise ModelError(f"quantity = stress: beams have section forces; --model {SOLID.name} has stresses")
+    refused = chosen.refusal(loaded)
+    if refused is not None:
+        raise ModelError(refused)
+    if quantity == "stress" and len(loaded.beams) > 1:
+        raise ModelError("quantity = stress: is that of one beam, the scene has more")
+    options = Options(element=element) if element is not None else chosen.reference or Options()
+    TSM.element(options)
+    return Requirement(scene=loaded, model=chosen, options=options, decisions=said)
 
 
 def _model(scene: Scene, quantity: str) -> tuple[str, str]:
     if quantity == "stress":
-        return "solid", "stresses through the thickness are asked for"
+        return SOLID.name, "stresses through the thickness are asked for"
     stocky = [beam for beam in scene.beams if beam.height is not None and beam.height > STOCKY * beam.length]
     if stocky:
         beam = stocky[0]
         what = f'beam "{beam.name}" is stocky, h/L = {(beam.height or 0.0) / beam.length:.3g} > {STOCKY:g}'
-        try:
-            to_solid(scene)
-        except ModelError as error:
-            return "tsm", f"{what}, but {error}"
-        return "solid", what
-    try:
-        to_rod(scene)
-    except ModelError:
+        refused = SOLID.refusal(scene)
+        return (SOLID.name, what) if refused is None else (TSM.name, f"{what}, but {refused}")
+    if ROD.refusal(scene) is not None:
         count = len(scene.beams)
-        return "tsm", f"{count} slender beam{'s' if count > 1 else ''}, {len(scene.contacts)} contact pairs"
-    return "tsm", "one clamped slender beam: the exact rod suffices, which one exact element is"
+        return (
+            TSM.name,
+            f"{count} slender beam{'s' if count > 1 else ''}, {len(scene.contacts)} contact pairs",
+        )
+    return TSM.name, "one clamped slender beam: the exact rod suffices, which one exact element is"
 
 
 def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:

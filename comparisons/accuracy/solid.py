@@ -7,7 +7,7 @@ import numpy as np
 from comparisons.accuracy.answer import Discretised
 from comparisons.accuracy.pilot import SAFETY, pilot
 from comparisons.accuracy.quantities import difference
-from comparisons.models import solve
+from comparisons.models import SOLID, solve
 from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene
@@ -28,7 +28,7 @@ def solid_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
     short, estimate, mesh = pilot(scene), np.inf, MESHES[0]
     for mesh in MESHES:
         here = _meshed(short, mesh)
-        response = solve(here, "solid", Options())
+        response = solve(here, SOLID.name, Options())
         if before is not None:
             estimate = SAFETY * difference(before, response, scene, quantity) / (2**ORDER - 1)
             said.append(f"solid, {mesh[0]}x{mesh[1]}: estimate {estimate:.1e} of {quantity}")
@@ -38,7 +38,7 @@ def solid_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
             said.append(f"solid, {mesh[0]}x{mesh[1]}: {response.status}")
         before = response
     chosen = _meshed(scene, mesh)
-    response = solve(chosen, "solid", Options())
+    response = solve(chosen, SOLID.name, Options())
     shown = " + ".join("x".join(map(str, beam.mesh)) for beam in chosen.beams)
     return Discretised(
         response=response,

@@ -5,7 +5,8 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.models import MODELS
+from comparisons.models.options import ModelError, Options
 from comparisons.scene import Scene, to_toml
 from comparisons.version import version
 
@@ -37,8 +38,8 @@ class Case:
     options: Options = field(default_factory=Options)
 
     def __post_init__(self) -> None:
-        if self.model not in OPTIONS:
-            raise ModelError(f"model = {self.model}: must be one of {', '.join(OPTIONS)}")
+        if self.model not in MODELS:
+            raise ModelError(f"model = {self.model}: must be one of {', '.join(MODELS)}")
 
     @property
     def key(self) -> str:
@@ -55,28 +56,9 @@ class Case:
     @property
     def label(self) -> str:
         """Short text for people: ``tsm mixed 10``, ``solid Q2 50x2``."""
-        parts = {"tsm": self._beams, "solid": self._solid}.get(self.model, str)()
+        setting = MODELS[self.model].setting(self.scene, self.options)
         branch = "" if self.options.branch is None else f" {self.options.branch}"
-        return f"{self.model} {parts}".rstrip() + branch
-
-    def _beams(self) -> str:
-        element = self.options.element or "mixed"
-        counts = {
-            self.options.elements or (1 if element == "exact" else beam.elements) for beam in self.scene.beams
-        }
-        tolerance = "" if self.options.tolerance is None else f" tolerance {self.options.tolerance:g}"
-        return f"{element} {'+'.join(map(str, sorted(counts)))}{tolerance}"
-
-    def _solid(self) -> str:
-        meshes = {self.options.mesh or beam.solid_mesh_file or beam.mesh for beam in self.scene.beams}
-        names = sorted(mesh if isinstance(mesh, str) else f"{mesh[0]}x{mesh[1]}" for mesh in meshes)
-        orders = sorted({beam.solid_element for beam in self.scene.beams})
-        given = "".join(
-            f" {name} {value:g}"
-            for name in ("penalty", "penetration")
-            for value in sorted({getattr(item, name) for item in self.scene.contacts} - {None})
-        )
-        return f"{'+'.join(orders)} {'+'.join(names)}{given}"
+        return f"{self.model} {setting}".rstrip() + branch
 
 
 def _digest(mesh_file: str | None) -> str | None:

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from comparisons.cases.case import Case
 from comparisons.cases.memory import with_peak_memory
-from comparisons.models import certified, solve
+from comparisons.models import MODELS, certified, solve
 from comparisons.models.options import ModelError
 from comparisons.output import plain
 from comparisons.response import Array, Response
@@ -26,8 +26,6 @@ TAILS = {"support_force": (2,), "other_end_force": (2,), "tip": (2,), "shape": (
 """Shape of one row of the tables that are not of numbers, which an empty table has lost in JSON."""
 SHAPES_AT = (0.2, 0.4, 0.6, 0.8)
 """Load parameters, besides the last, whose axes are kept where the case has them."""
-EXACT = ("comparisons.models.exact",)
-LIBRARIES = {"tsm": ("tsm",), "solid": ("fem_reference", "skfem"), "rod": EXACT, "elastica": EXACT}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +104,7 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
     A solution that stops is measured like any other, a scene that the model refuses has the status ``REFUSED``: nothing is raised
     for either.
     """
-    for library in LIBRARIES[case.model]:
+    for library in MODELS[case.model].libraries:
         import_module(library)
     try:
         (response, first), peak = with_peak_memory(lambda: _timed(case))

@@ -10,7 +10,8 @@ from typing import Any
 from comparisons.cases import settings
 from comparisons.cases.case import Case
 from comparisons.cases.ranges import values
-from comparisons.models.options import BRANCHES, OPTIONS, Options
+from comparisons.models import MODELS
+from comparisons.models.options import BRANCHES, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, Rule, RuleError
@@ -177,12 +178,12 @@ assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
 
 
 def _case(scene: Scene, chosen: dict[settings.Path, object]) -> Case:
-    model = _checked("model", chosen[("model",)], rules.choice(*OPTIONS))
+    model = _checked("model", chosen[("model",)], rules.choice(*MODELS))
     options = {}
     for key, rule in OPTION_RULES.items():
         if (key,) in chosen:
             value = chosen[(key,)]
-            if key not in OPTIONS[model]:
+            if key not in MODELS[model].options:
                 raise FieldError(key, value, f'is no option of model = "{model}"')
             options[key] = _checked(key, value, rule)
     changes = {path: value for path, value in chosen.items() if len(path) > 1}

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 
 from comparisons.accuracy.quantities import difference
 from comparisons.claims.junit import JUnitCase, junit_text
-from comparisons.models.options import ModelError, Options
-from comparisons.models.registry import COARSE, certified, solve
+from comparisons.models import MODELS, certified, references, solve
+from comparisons.models.options import Options
+from comparisons.models.registry import COARSE
 from comparisons.response import Response
 from comparisons.scene import Scene
-
-REFERENCES = (("rod", Options()), ("tsm", Options(element="exact")))
-"""What errors are measured against: the first that can state the scene."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,10 +111,6 @@ def gate(
 
 def _reference(scene: Scene, against: str | None) -> Response:
     if against is not None:
-        return solve(scene, against, Options(element="exact") if against == "tsm" else Options())
-    for model, options in REFERENCES:
-        try:
-            return solve(scene, model, options)
-        except ModelError:
-            continue
-    raise ModelError("no model without a mesh can state the scene")
+        return solve(scene, against, MODELS[against].reference or Options())
+    model, options = references(scene)[0]
+    return solve(scene, model.name, options)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
 from comparisons.files import writable_file, write_text
-from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.models import MODELS, TSM
+from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def add_to(commands: "Commands") -> None:
         "answer", metavar="RESPONSE.json|SCENE", help="what solve --json wrote, or a scene to solve and judge"
     )
     parser.add_argument("--scene", metavar="SCENE", help="of a response, where it is not a built-in one")
-    parser.add_argument("--model", choices=OPTIONS, help="of a scene: the model that answers (tsm)")
+    parser.add_argument("--model", choices=MODELS, help="of a scene: the model that answers (tsm)")
     parser.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
     parser.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
     parser.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
@@ -70,7 +71,7 @@ def run(given: "argparse.Namespace") -> int:
 
         scene = load_scene(given.answer)
         options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
-        response = solve(scene, given.model or "tsm", options)
+        response = solve(scene, given.model or TSM.name, options)
     every = range(len(response.load_parameter)) if given.all else None
     found = certify(response, scene, at=every, allowance=given.allowance)
     text = to_text({"scene": scene.name, "model": response.model, **found.as_dict()})

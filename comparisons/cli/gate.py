@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
-from comparisons.models.options import OPTIONS, QUANTITIES, Options
+from comparisons.models import MODELS, TSM
+from comparisons.models.options import QUANTITIES, Options
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -34,8 +35,8 @@ def add_to(commands: "Commands") -> None:
         metavar="QUANTITY=X",
         help="a bound, any number of them: " + ", ".join(QUANTITIES),
     )
-    gate.add_argument("--model", choices=OPTIONS, default="tsm", help="the model that is measured (tsm)")
-    gate.add_argument("--against", choices=OPTIONS, help="the model that it is measured against")
+    gate.add_argument("--model", choices=MODELS, default=TSM.name, help="the model that is measured (tsm)")
+    gate.add_argument("--against", choices=MODELS, help="the model that it is measured against")
     gate.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
     gate.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
     gate.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")

@@ -8,7 +8,8 @@ from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.models.options import BRANCHES, OPTIONS, QUANTITIES, ModelError, Options
+from comparisons.models import MODELS, TSM
+from comparisons.models.options import BRANCHES, QUANTITIES, ModelError, Options
 from comparisons.scene import built_in_scenes, load_scene
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def add_to(commands: "Commands") -> None:
 
     solve = commands.add_parser("solve", help="solve a scene with one model", epilog=EPILOG)
     solve.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    solve.add_argument("--model", choices=OPTIONS, help="left to the scene with --accuracy, else needed")
+    solve.add_argument("--model", choices=MODELS, help="left to the scene with --accuracy, else needed")
     solve.add_argument(
         "--accuracy",
         type=values.part,
@@ -77,7 +78,7 @@ def run(given: "argparse.Namespace") -> int:
     if given.vtk is not None:
         from comparisons.show.export import check_series
 
-        check_series(writable_folder(given.vtk), given.model or "tsm", scene)
+        check_series(writable_folder(given.vtk), given.model or TSM.name, scene)
     from comparisons.models import certified, solve
     from comparisons.response.to_json import as_json, summary
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
 from comparisons.files import OutputError, writable_folder
+from comparisons.models import SOLID, TSM
 from comparisons.models.options import ModelError, Options
 from comparisons.scene import load_scene
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from comparisons.scene import Scene
     from comparisons.show.view import Series
 
-BEAMS = Options(element="mixed", elements=20)
+BEAMS = Options(elements=20)
 
 
 def add_to(commands: "Commands") -> None:
@@ -79,11 +80,14 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
     from comparisons.models import solve
 
     found = []
-    for title, model, options in (("TSM", "tsm", BEAMS), ("solid", "solid", Options(mesh=given.mesh))):
+    for title, model, options in (
+        (TSM.label, TSM.name, BEAMS),
+        (SOLID.label, SOLID.name, Options(mesh=given.mesh)),
+    ):
         try:
             found.append((title, solve(scene, model, options)))
         except ModelError as error:
-            if model == "tsm":
+            if model == TSM.name:
                 raise
             report(f"{title}: left out, {error}")
     return found

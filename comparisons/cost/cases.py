@@ -5,14 +5,12 @@ from dataclasses import replace
 from math import log
 
 from comparisons.cases import Case
+from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import Options
+from comparisons.models.solid import REFINED
 from comparisons.scene import Scene
+from tsm.elements import EXACT, MIXED_NO_BOW, PAPER, ElementType
 
-PAPER = ("timoshenko", "euler-bernoulli-simple", "euler-bernoulli-cantilever", "mixed-no-bow")
-MIXED = (2, 3, 5, 10, 20, 40, 80, 160)
-REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
-"""Meshes refined alike in both directions: along them an order can be fitted."""
-COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LIMIT = REFINED[1:]
 """The meshes that the solid's limit is extrapolated from."""
 PENALTIES = (1e-4, 1e-2, 1e2)
@@ -22,7 +20,7 @@ QUICK_LIMIT = ((25, 1), (50, 2), (100, 4))
 
 
 def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
-    """Return the cases of the sweep, each once; elastica and solid are among them whether or not they can state the scene.
+    """Return the cases of the sweep, each once: the settings of every model, whether or not it can state the scene.
 
     Parameters
     ----------
@@ -33,8 +31,8 @@ def sweep_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
     """
     steps = load_steps(scene)
     some = (steps[0], *steps[-2:]) if quick else steps
-    found = [*_beams(scene, some, quick=quick), *_solids(scene, some, quick=quick)]
-    return list(dict.fromkeys([*found, Case(scene=scene, model="elastica")]))
+    found = [case for model in MODELS.values() for case in _settings(model, scene, some, quick=quick)]
+    return list(dict.fromkeys(found))
 
 
 def load_steps(scene: Scene) -> tuple[int, ...]:
@@ -50,28 +48,25 @@ def limit_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
     return [_solid(exact, mesh) for mesh in (QUICK_LIMIT if quick else LIMIT)]
 
 
-def _beams(scene: Scene, steps: Sequence[int], *, quick: bool) -> Iterator[Case]:
+def _settings(model: Model, scene: Scene, steps: Sequence[int], *, quick: bool) -> Iterator[Case]:
+    """Yield the resolutions of a model with several numbers of load steps, and variants of one resolution with all of them."""
+    if not model.meshed:
+        if model.reference is None:  # the exact rod is among the references
+            yield Case(scene=scene, model=model.name)
+        return
+    plain = with_order(scene, "Q2") if model.continuum else scene
     for count in steps:
-        stepped = replace(scene, load_parameters=count)
-        for n in (1,) if quick else (1, 2, 4):
-            yield _tsm(stepped, "exact", n)
-        for n in MIXED[:6] if quick else MIXED:
-            yield _tsm(stepped, "mixed", n)
-        for n in (10, 20, 50) if quick else (5, 10, 20, 50, 100):
-            yield _tsm(stepped, "timoshenko", n)
-    if not quick:
-        yield _tsm(scene, "exact", 1, tolerance=1e-3)
-        yield from (_tsm(scene, element, n) for element in PAPER[1:] for n in (5, 10, 20, 40))
-
-
-def _solids(scene: Scene, steps: Sequence[int], *, quick: bool) -> Iterator[Case]:
-    q2 = with_order(scene, "Q2")
-    for count in steps:
-        stepped = replace(q2, load_parameters=count)
-        meshes = (*COARSE, *REFINED[: 2 if quick else 3])
-        yield from (_solid(stepped, mesh) for mesh in meshes)
-    yield from limit_cases(scene, quick=quick)
-    yield from _solid_variants(scene, quick=quick)
+        stepped = replace(plain, load_parameters=count)
+        yield from (
+            Case(scene=stepped, model=model.name, options=options)
+            for options in model.resolutions(quick=quick)
+        )
+    if model is TSM and not quick:
+        yield _beam(scene, EXACT, 1, tolerance=1e-3)
+        yield from (_beam(scene, kind, n) for kind in (*PAPER[1:], MIXED_NO_BOW) for n in (5, 10, 20, 40))
+    if model is SOLID:
+        yield from limit_cases(scene, quick=quick)
+        yield from _solid_variants(scene, quick=quick)
 
 
 def _solid_variants(scene: Scene, *, quick: bool) -> Iterator[Case]:
@@ -93,16 +88,13 @@ def _line_stiffness(scene: Scene) -> float:
     return float(f"{beam.youngs_modulus * width:.2g}")
 
 
-def _tsm(scene: Scene, element: str, elements: int, tolerance: float | None = None) -> Case:
-    return Case(
-        scene=scene,
-        model="tsm",
-        options=Options(element=element, elements=elements, tolerance=tolerance),
-    )
+def _beam(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
+    options = Options(element=kind.name, elements=elements, tolerance=tolerance)
+    return Case(scene=scene, model=TSM.name, options=options)
 
 
 def _solid(scene: Scene, mesh: tuple[int, int]) -> Case:
-    return Case(scene=scene, model="solid", options=Options(mesh=mesh))
+    return Case(scene=scene, model=SOLID.name, options=Options(mesh=mesh))
 
 
 def with_order(scene: Scene, order: str) -> Scene:
@@ -120,26 +112,26 @@ def with_contact(scene: Scene, *, penalty: float | None = None, penetration: flo
     )
 
 
+def meshed() -> tuple[str, ...]:
+    """Names of the models that have a Pareto front: those with a mesh."""
+    return tuple(model.name for model in MODELS.values() if model.meshed)
+
+
 def family(case: Case) -> str:
     """Name of the cases that differ from this one in resolution, load steps and contact only."""
-    if case.model == "tsm":
-        return f"TSM {case.options.element or 'mixed'}"
-    if case.model == "solid":
-        return f"solid {'+'.join(sorted({beam.solid_element for beam in case.scene.beams}))}"
-    return case.model
+    return MODELS[case.model].family(case.scene, case.options)
 
 
 def resolution(case: Case) -> float:
     """Number of elements along a beam, nan of an exact model."""
-    along = case.options.elements if case.model == "tsm" else (case.options.mesh or (None,))[0]
-    return float("nan") if along is None else float(along)
+    return MODELS[case.model].resolution(case.options)
 
 
 def refined(case: Case, cases: Iterable[Case]) -> list[Case]:
     """Return those of `cases` that differ from `case` in resolution only, a solid's alike in both directions."""
     found = []
     for other in cases:
-        alike = case.model != "solid" or other.options.mesh in REFINED
+        alike = other.options.mesh is None or other.options.mesh in REFINED
         same_scene = (other.scene, other.model) == (case.scene, case.model)
         options = replace(other.options, elements=case.options.elements, mesh=case.options.mesh)
         if alike and same_scene and options == case.options:

@@ -5,7 +5,7 @@ from math import isfinite
 from typing import Any
 
 from comparisons.cases import Case
-from comparisons.cost.cases import family, refined, resolution
+from comparisons.cost.cases import family, meshed, refined, resolution
 from comparisons.cost.fits import Fit, convergence, power_law
 from comparisons.cost.points import Point, Trade
 from comparisons.output import Row
@@ -21,7 +21,7 @@ def orders(trade: Trade, quantity: str) -> Iterator[Row]:
 
     An exponent is None where its asymptotic range has fewer than three points.
     """
-    points = {point.case: point for point in trade.of_model("tsm", "path") + trade.of_model("solid", "path")}
+    points = {point.case: point for model in meshed() for point in trade.of_model(model, "path")}
     seen: set[Case] = set()
     for case in points:
         members = refined(case, points)

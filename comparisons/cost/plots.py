@@ -6,25 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.cost.cases import family
-from comparisons.cost.points import COSTS, OnFront, Trade, front
+from comparisons.cost.cases import family, meshed
+from comparisons.cost.points import COSTS, OnFront, Point, Trade, front
 from comparisons.cost.tables import short
+from comparisons.models import MODELS, ROD, SOLID
 from comparisons.show import palette
 from comparisons.show.plot import figure, save
 
-MARKERS = {
-    "TSM exact": "*",
-    "TSM mixed": "D",
-    "TSM mixed-no-bow": "v",
-    "TSM timoshenko": "^",
-    "TSM euler-bernoulli-simple": "o",
-    "TSM euler-bernoulli-cantilever": "s",
-    "solid Q2": "h",
-    "solid Q2-full": "P",
-    "solid Q1": "X",
-    "elastica": "d",
-}
-FRONTS = {"tsm": palette.GREEN, "solid": palette.SKY}
 AXES = {
     "seconds": "processor seconds of one thread, scene to checked answer",
     "iterations": "Newton iterations of the whole path",
@@ -57,7 +45,7 @@ def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) 
         axes.set(xscale="log", yscale="log", xlabel=AXES[cost])
         axes.margins(x=0.3, y=0.06)
         axes.grid(visible=True, linewidth=0.3)
-    for model in FRONTS:
+    for model in meshed():
         _draw_front(right, trade, model, quantity, scope, cost)
     left.set(ylabel=_title(trade, quantity, scope), title=f"against the {trade.reference.name}")
     right.set_title("against what each model converges to, Pareto fronts")
@@ -73,12 +61,13 @@ def _title(trade: Trade, quantity: str, scope: str) -> str:
 
 def _draw(axes: Any, trade: Trade, quantity: str, scope: str, cost: str, *, own: bool) -> None:
     """Draw every completed setting, the families in the order of the legend; what is uncertain bounds errors from below."""
-    shown = [point for model in ("tsm", "solid", "elastica") for point in trade.of_model(model, scope)]
-    for name, marker in MARKERS.items():
-        color = palette.colour(name)
+    shown = [point for model in _drawn() for point in trade.of_model(model, scope)]
+    for name in _families(shown):
+        style = palette.style(name)
+        color, marker = style.colour, style.marker
         for point in (one for one in shown if family(one.case) == name):
             error = (point.own_errors if own else point.errors)[scope][quantity]
-            floor = trade.uncertainty(point.case.model if own else "rod", scope, quantity)
+            floor = trade.uncertainty(point.case.model if own else ROD.name, scope, quantity)
             spent = getattr(point.measured, cost)
             if not (np.isfinite(error) and spent > 0):
                 continue
@@ -87,6 +76,15 @@ def _draw(axes: Any, trade: Trade, quantity: str, scope: str, cost: str, *, own:
                 spent, max(error, floor), color=color, marker=marker, linestyle="none", label=name,
                 markersize=9 if marker == "*" else 6, markerfacecolor=color if full else "none", alpha=0.85,
             )  # fmt: skip
+
+
+def _families(points: Sequence[Point]) -> list[str]:
+    """Return the families in the order of the styles of their models."""
+    order = [words for model in MODELS.values() for words in model.styles()]
+    return sorted(
+        {family(point.case) for point in points},
+        key=lambda name: max(k for k, words in enumerate(order) if name.startswith(words)),
+    )
 
 
 def _legend(axes: Any) -> tuple[list[Any], list[str]]:
@@ -100,26 +98,31 @@ def _legend(axes: Any) -> tuple[list[Any], list[str]]:
 
 
 def _mark_uncertainty(axes: Any, trade: Trade, quantity: str, scope: str) -> None:
-    doubt = trade.uncertainty("solid", scope, quantity)
+    doubt = trade.uncertainty(SOLID.name, scope, quantity)
     if np.isfinite(doubt) and doubt > 0.0:
-        axes.axhline(doubt, color=FRONTS["solid"], linewidth=0.9, linestyle=":")
+        axes.axhline(doubt, color=SOLID.colour, linewidth=0.9, linestyle=":")
         axes.annotate(
             "the solid's limit is known to this", (1.0, doubt), (-4, -4), color="0.3", ha="right", va="top",
             xycoords=("axes fraction", "data"), textcoords="offset points", fontsize="x-small",
         )  # fmt: skip
 
 
+def _drawn() -> list[str]:
+    """Return the models whose settings have an error: all but the exact rod."""
+    return [model.name for model in MODELS.values() if model.meshed or not model.rod]
+
+
 def _draw_front(axes: Any, trade: Trade, model: str, quantity: str, scope: str, cost: str) -> None:
     points = front(trade, model, scope, quantity, cost)
     axes.plot(
         *([getattr(point, name) for point in points] for name in ("cost", "error")),
-        color=FRONTS[model], linewidth=1.6, drawstyle="steps-post", zorder=1,
+        color=MODELS[model].colour, linewidth=1.6, drawstyle="steps-post", zorder=1,
     )  # fmt: skip
     low, high = np.log(axes.get_ylim())
     last = -np.inf
     for one in reversed(_distinct(points)):
         height = float((np.log(one.error) - low) / (high - low))
-        if model == "solid":
+        if MODELS[model].continuum:
             last = max(height, last + APART)
             _label_at_edge(axes, one, last)
         elif height > last + APART:

@@ -7,6 +7,7 @@ from math import isfinite, nan
 from comparisons.cases import Case, Measurement
 from comparisons.cost.fits import pareto
 from comparisons.cost.references import Errors, Reference
+from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 
 TARGETS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-5)
@@ -58,7 +59,7 @@ class Trade:
 
     def uncertainty(self, model: str, scope: str, quantity: str) -> float:
         """Return how well that is known what a model converges to; nan if it is not."""
-        known = self.limit if model == "solid" else self.reference
+        known = self.limit if MODELS[model].continuum else self.reference
         return nan if known is None else known.uncertainty[scope][quantity]
 
     @property
@@ -118,8 +119,8 @@ def _ratio(slow: Point | None, fast: Point | None) -> float:
 
 def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Cheapest:
     """Return the cheapest settings of TSM and of the solid with an error of at most `target`."""
-    beams, solids = trade.of_model("tsm", scope), trade.of_model("solid", scope)
-    untold = not trade.uncertainty("solid", scope, quantity) <= target
+    beams, solids = trade.of_model(TSM.name, scope), trade.of_model(SOLID.name, scope)
+    untold = not trade.uncertainty(SOLID.name, scope, quantity) <= target
     return Cheapest(
         scope=scope,
         quantity=quantity,

@@ -15,9 +15,10 @@ from comparisons.cost.answers import (
     uncertainty,
 )
 from comparisons.cost.cases import family, limit_cases, refined, resolution
-from comparisons.models.options import ModelError, Options
-from comparisons.models.translate import to_rod
+from comparisons.models import ROD, TSM
+from comparisons.models.options import Options
 from comparisons.scene import Scene
+from tsm.elements import EXACT, MIXED
 
 Errors = Mapping[str, Mapping[str, float]]
 """Numbers by scope and quantity."""
@@ -63,17 +64,13 @@ class Reference:
 
 def reference_cases(scene: Scene) -> list[Case]:
     """Return the cases that the reference is chosen from: the rod where it can state the scene, and exact elements."""
-    found = [_exact(scene, elements) for elements in (1, 2)]
-    try:
-        to_rod(scene)
-    except ModelError:
-        return found
-    return [Case(scene=scene, model="rod"), *found]
+    rod = [Case(scene=scene, model=ROD.name)] if ROD.refusal(scene) is None else []
+    return [*rod, *(_exact(scene, elements) for elements in (1, 2))]
 
 
 def _exact(scene: Scene, elements: int) -> Case:
-    options = Options(element="exact", elements=elements, tolerance=1e-12)
-    return Case(scene=scene, model="tsm", options=options)
+    options = Options(element=EXACT.name, elements=elements, tolerance=1e-12)
+    return Case(scene=scene, model=TSM.name, options=options)
 
 
 def best_reference(scene: Scene, measured: Measured) -> Reference:
@@ -87,7 +84,7 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
         If none of them completed.
     """
     exact, finer = (measured[_exact(scene, elements)] for elements in (1, 2))
-    rod = measured.get(Case(scene=scene, model="rod"))
+    rod = measured.get(Case(scene=scene, model=ROD.name))
     if rod is not None and rod.completed:
         return _rod(scene, rod, exact)
     if exact.completed and finer.completed:
@@ -123,7 +120,7 @@ def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: st
 
 
 def _of_mixed(scene: Scene, measured: Measured) -> Reference:
-    sample = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=1))
+    sample = Case(scene=scene, model=TSM.name, options=Options(element=MIXED.name, elements=1))
     completed = [case for case in refined(sample, measured) if measured[case].completed]
     # a constant ratio of refinement: every mesh has twice the elements of the one before
     halved = {resolution(completed[-1]) / 2**k for k in range(3)} if completed else set()

@@ -11,7 +11,7 @@ from comparisons.cases.run import Progress, Tally, run
 from comparisons.cases.store import Store
 from comparisons.cases.workers import Workers
 from comparisons.cost.answers import QUANTITIES, SCOPES
-from comparisons.cost.cases import sweep_cases
+from comparisons.cost.cases import meshed, sweep_cases
 from comparisons.cost.orders import orders
 from comparisons.cost.plots import plot_all
 from comparisons.cost.points import COSTS, Point, Trade, front
@@ -19,6 +19,7 @@ from comparisons.cost.references import Measured, best_reference, reference_case
 from comparisons.cost.report import write_trade_page
 from comparisons.cost.tables import cheapest_rows, setting_rows
 from comparisons.files import writable_folder
+from comparisons.models import MODELS
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.scene import Scene, to_toml
 
@@ -92,7 +93,13 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     points = []
     for case in cases:
         errors = reference.errors(measured[case])
-        own = errors if case.model != "solid" else UNKNOWN if limit is None else limit.errors(measured[case])
+        own = (
+            errors
+            if not MODELS[case.model].continuum
+            else UNKNOWN
+            if limit is None
+            else limit.errors(measured[case])
+        )
         points.append(Point(case=case, measured=measured[case], errors=errors, own_errors=own))
     return Trade(scene=scene, points=points, reference=reference, limit=limit)
 
@@ -135,7 +142,7 @@ def _fronts(trade: Trade) -> list[Row]:
             "spent": one.cost,
             "own_error": one.error,
         }
-        for model in ("tsm", "solid")
+        for model in meshed()
         for scope in SCOPES
         for quantity in QUANTITIES
         for cost in COSTS

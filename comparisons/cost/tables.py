@@ -6,6 +6,7 @@ from math import isfinite
 from comparisons.cost.answers import QUANTITIES, SCOPES
 from comparisons.cost.cases import family
 from comparisons.cost.points import TARGETS, Cheapest, Point, Trade, cheapest
+from comparisons.models import MODELS, SOLID, TSM
 from comparisons.output import Row, tabulated
 
 
@@ -16,7 +17,7 @@ def setting_rows(trade: Trade) -> list[Row]:
 
 def _setting(point: Point) -> Row:
     case, measured = point.case, point.measured
-    contact = case.scene.contacts[0] if case.scene.contacts and case.model == "solid" else None
+    contact = case.scene.contacts[0] if case.scene.contacts and MODELS[case.model].continuum else None
     mesh = case.options.mesh
     errors = {
         f"{against}_{scope}_{quantity}": table[scope][quantity]
@@ -65,10 +66,10 @@ def cheapest_rows(trade: Trade) -> list[Row]:
             "scope": one.scope,
             "quantity": one.quantity,
             "target": one.target,
-            **_named("tsm", one.tsm),
-            **_named("solid", one.solid),
+            **_named(TSM.name, one.tsm),
+            **_named(SOLID.name, one.solid),
             "ratio": one.ratio,
-            "limit_uncertainty": trade.uncertainty("solid", one.scope, one.quantity),
+            "limit_uncertainty": trade.uncertainty(SOLID.name, one.scope, one.quantity),
             **_named("solid_against_reference", one.solid_against_reference),
             "ratio_against_reference": one.ratio_against_reference,
         }

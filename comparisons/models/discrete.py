@@ -2,13 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from comparisons.models.base import Model
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch, unwatched
+from comparisons.models.solid import SOLID
 from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.tsm import TSM
 from comparisons.response import (
     Array,
     ContactEvent,
@@ -21,22 +24,26 @@ from comparisons.response import (
 )
 from comparisons.scene import Scene, SupportSpec
 
+if TYPE_CHECKING:
+    from tsm.elements import ElementType
 
-def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Response:
+
+def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch = unwatched) -> Response:
     """Solve `scene` by the tangent stiffness method.
 
     Raises
     ------
     ModelError
-        If a tolerance is given and the elements are not exact.
+        If a tolerance is given and the elements have a mesh.
     """
     import tsm
 
-    structure = to_structure(scene, elements=options.elements, element=options.element)
+    structure = to_structure(scene, elements=options.elements, element=kind.name)
     settings = tsm.Settings(branch=options.branch or "stop")
     if options.tolerance is not None:
-        if options.element != "exact":
-            raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = exact")
+        if kind.meshed:
+            integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
+            raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = {integrated}")
         settings = replace(settings, accuracy=options.tolerance)
     try:
         result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
@@ -46,7 +53,7 @@ def solve_tsm(scene: Scene, options: Options, watch: Watch = unwatched) -> Respo
     def grid(k: int) -> Grid:
         return _beam_grid(scene, result, k)
 
-    response = _response("tsm", scene, result, result.axis_line, grid)
+    response = _response(TSM, scene, result, result.axis_line, grid)
     return replace(
         response,
         tips={beam.name: _tip(scene, result, beam.name) for beam in scene.beams},
@@ -158,7 +165,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         }
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
 
-    response = _response("solid", scene, result, axis_line, grid)
+    response = _response(SOLID, scene, result, axis_line, grid)
     contacts = {
         contact.name: replace(
             response.contacts[contact.name],
@@ -183,7 +190,7 @@ def _half_turns(response: Response, beam: str) -> Array:
 
 
 def _response(
-    model: str,
+    model: Model,
     scene: Scene,
     result: Any,
     axis_line: Callable[[str, int], tuple[Array, Array]],
@@ -199,7 +206,8 @@ def _response(
         for pair, history in result.contacts.items()
     }
     return Response(
-        model=model,
+        model=model.name,
+        continuum=model.continuum,
         scene=scene.name,
         status=result.status.name,
         message=result.message,

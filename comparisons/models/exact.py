@@ -13,6 +13,7 @@ from comparisons.exact.rod import RodPath, rod_under_pin
 from comparisons.exact.tied import TiedPath, rod_with_tied_tip
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
+from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.translate import RodScene, to_rod
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene
@@ -72,11 +73,17 @@ def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
         slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
     )
-    return _response("rod", scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
+    return _response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
 
-def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
-    """Solve `scene` as an elastica, in closed form."""
+def elastica_scene(scene: Scene) -> RodScene:
+    """Return `scene` as the elastica states it.
+
+    Raises
+    ------
+    ModelError
+        Unless a pin on the axis pushes one cantilever.
+    """
     local = to_rod(scene)
     if local.contact is None:
         raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
@@ -84,6 +91,12 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
         raise ModelError(
             "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
         )
+    return local
+
+
+def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
+    """Solve `scene` as an elastica, in closed form."""
+    local = elastica_scene(scene)
     beam = local.beam
     began = perf_counter()
     path: list[ElasticaState] = []
@@ -107,7 +120,7 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
             np.nan,
         ),
     )
-    return _response("elastica", scene, local, states, unknowns=1, seconds=seconds)
+    return _response(ELASTICA.name, scene, local, states, unknowns=1, seconds=seconds)
 
 
 def _response(

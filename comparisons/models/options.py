@@ -37,13 +37,6 @@ class Options:
     branch: Branch | None = None
 
 
-OPTIONS: dict[str, tuple[str, ...]] = {
-    "tsm": ("elements", "element", "tolerance", "branch"),
-    "solid": ("mesh", "branch"),
-    "rod": (),
-    "elastica": (),
-}
-"""The options of each model."""
 QUANTITIES = {
     "force": "contact forces, of a scene without contact the support forces, over the largest",
     "arc": "arc positions of the contacts over the length",

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from typing import TYPE_CHECKING, Literal
 
-from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from comparisons.models.base import Model
     from comparisons.response import Response
     from comparisons.scene import Scene
 
@@ -20,35 +20,10 @@ COARSE = 5e-2
 """Distance from the exact equilibrium that a coarse mesh may leave: an answer further away is refused."""
 
 
-def _tsm(scene: Scene, options: Options, watch: Watch) -> Response:
-    from comparisons.models.discrete import solve_tsm
-
-    return solve_tsm(scene, options, watch)
-
-
-def _solid(scene: Scene, options: Options, watch: Watch) -> Response:
-    from comparisons.models.discrete import solve_solid
-
-    return solve_solid(scene, options, watch)
-
-
-def _rod(scene: Scene, options: Options, watch: Watch) -> Response:
-    from comparisons.models.exact import solve_rod
-
-    return solve_rod(scene, options, watch)
-
-
-def _elastica(scene: Scene, options: Options, watch: Watch) -> Response:
-    from comparisons.models.exact import solve_elastica
-
-    return solve_elastica(scene, options, watch)
-
-
-MODELS: dict[str, Callable[[Scene, Options, Watch], Response]] = {
-    "tsm": _tsm,
-    "solid": _solid,
-    "rod": _rod,
-    "elastica": _elastica,
+FILES = ("tsm", "solid", "rod")
+"""The modules of this package that state models, as ``MODELS``; a new model is one more."""
+MODELS: dict[str, Model] = {
+    model.name: model for file in FILES for model in import_module(f"comparisons.models.{file}").MODELS
 }
 
 
@@ -66,12 +41,21 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(f"model = {model}: must be one of {', '.join(MODELS)}")
     given = options or Options()
     for option, value in vars(given).items():
-        if value is not None and option not in OPTIONS[model]:
+        if value is not None and option not in MODELS[model].options:
             raise ModelError(f"{model}: {option} = {value}: not an option of this model")
     try:
-        return verified(MODELS[model](scene, given, watch), scene)
+        return verified(MODELS[model].solve(scene, given, watch), scene)
     except ValueError as error:
         raise ModelError(f"{model}: {error}") from error
+
+
+def references(scene: Scene) -> tuple[tuple[Model, Options], ...]:
+    """Return the models without an error of a mesh that can state `scene`, with the options for that, the independent rod first."""
+    return tuple(
+        (model, model.reference)
+        for model in sorted(MODELS.values(), key=lambda model: model.meshed)
+        if model.reference is not None and model.refusal(scene) is None
+    )
 
 
 def certified(

@@ -88,7 +88,7 @@ def default_allowance(response: Response, scene: Scene) -> float:
     The disturbance of a support or a contact fades over the height (Saint-Venant's principle), so that a rod leaves out
     a part of the deflection of that order.
     """
-    if response.model != "solid":
+    if not response.continuum:
         return ALLOWED
     heights = [
         sqrt(12.0 * beam.cross_section[1] / beam.cross_section[0]) / beam.length for beam in scene.beams

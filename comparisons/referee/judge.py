@@ -58,7 +58,7 @@ def _ruled(
         return Verdict.NOT_AN_EQUILIBRIUM, f"supports and contacts are off by {apart.place:.2g} L"
     if not size <= allowed:
         return Verdict.NOT_AN_EQUILIBRIUM, f"{name} off by {size:.2g}, allowed {allowed:.2g}"
-    loose = "" if response.model == "solid" else unbalanced(scene, given)
+    loose = "" if response.continuum else unbalanced(scene, given)
     if loose:
         return Verdict.NOT_AN_EQUILIBRIUM, loose
     broken = next(inadmissible(scene, exact), "")

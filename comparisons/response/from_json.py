@@ -69,6 +69,7 @@ def restated(data: Any) -> Response:
         status=_text(data, "status"),
         message="read back",
         completed=data["status"] == "COMPLETED",
+        continuum=data.get("continuum") is True,
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,

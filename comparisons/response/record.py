@@ -164,6 +164,8 @@ class Response:
         How the run ended: a name and its sentence.
     completed : bool
         Whether the model says that it went through.
+    continuum : bool
+        Whether the model is a two-dimensional body and not a rod.
     load_parameter : ndarray, shape (s,)
         The accepted load parameters of the scene.
     contacts : dict of ContactHistory
@@ -213,6 +215,7 @@ class Response:
     axis_line: Callable[[str, int], tuple[Array, Array]] = field(repr=False)
     grid: Callable[[int], Grid] = field(repr=False)
     events: tuple[ContactEvent, ...] | None = None
+    continuum: bool = False
     integration_error: float = 0.0
     deformation: Deformation | None = None
     index: NDArray[np.int64] | None = None

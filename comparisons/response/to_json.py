@@ -38,6 +38,7 @@ def as_dict(response: Response) -> dict[str, Any]:
     return {
         "status": response.status,
         "model": response.model,
+        "continuum": response.continuum,
         "scene": response.scene,
         "load_parameter": response.load_parameter,
         "contacts": {

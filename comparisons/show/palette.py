@@ -3,6 +3,8 @@
 Elements of one model differ by markers and dashes, which also tell the models apart in grey.
 """
 
+from comparisons.models import MODELS, Style
+
 BLACK = "#000000"
 ORANGE = "#E69F00"
 SKY = "#56B4E9"
@@ -13,34 +15,33 @@ VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
 GREY = "#444444"
 
-MODELS = {
-    "exact rod": BLACK,
-    "elastica": GREY,
-    "TSM exact": PURPLE,
-    "TSM mixed": GREEN,
-    "TSM timoshenko": BLUE,
-    "TSM euler-bernoulli-simple": VERMILION,
-    "TSM euler-bernoulli-cantilever": ORANGE,
-    "solid": SKY,
-}
-"""By the words that the labels of a model begin with."""
 PIN = VERMILION
 
 
-def colour(label: str) -> str:
-    """Return the colour of a run, by its label.
+def _styles() -> dict[str, Style]:
+    found = {words: style for model in MODELS.values() for words, style in model.styles().items()}
+    return dict(sorted(found.items(), key=lambda item: -len(item[0])))
+
+
+def style(label: str) -> Style:
+    """Return how a run is drawn, by its label: what its model states for the longest words that the label begins with.
 
     Raises
     ------
     ValueError
-        If the label begins with no model's name.
+        If the label begins with no model's words.
 
     Examples
     --------
-    >>> colour("TSM mixed, 20 elements") == colour("TSM mixed-no-bow") == GREEN
+    >>> style("TSM mixed, 20 elements").colour == GREEN
     True
     """
-    for name, value in MODELS.items():
-        if label.startswith(name):
-            return value
-    raise ValueError(f"label = {label}: must begin with one of {', '.join(MODELS)}")
+    for words, found in _styles().items():
+        if label.startswith(words):
+            return found
+    raise ValueError(f"label = {label}: must begin with one of {', '.join(_styles())}")
+
+
+def colour(label: str) -> str:
+    """Return the colour of a run, by its label."""
+    return style(label).colour

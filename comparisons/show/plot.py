@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.files import replacing
+from comparisons.models import MODELS
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
@@ -100,9 +101,10 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
 
 def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
     """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
-    if response.model in ("rod", "elastica"):
+    model = MODELS[response.model]
+    if not model.meshed:
         return EXACT
-    if response.model == "solid":
+    if model.continuum:
         return SOLID
     reached = len(response.load_parameter)
     points = len(response.axis_line(scene.beams[0].name, 0)[1]) if reached else 0

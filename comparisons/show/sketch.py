@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.models.options import ModelError
-from comparisons.models.translate import to_rod, to_solid, to_structure
+from comparisons.models import MODELS
 from comparisons.scene import BeamSpec, Scene
 from comparisons.show import palette
 from comparisons.show.plot import figure, save
@@ -22,13 +21,9 @@ def stated(scene: Scene) -> Iterator[str]:
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     yield f"{scene.name}: {', '.join(parts)}, {scene.load_parameters} load parameters, in {scene.units}"
-    for model, translate in (("tsm", to_structure), ("solid", to_solid), ("rod", to_rod)):
-        try:
-            translate(scene)
-        except ModelError as error:
-            yield f"  {model}: no, {error}"
-        else:
-            yield f"  {model}: yes"
+    for model in MODELS.values():
+        refused = model.refusal(scene)
+        yield f"  {model.name}: yes" if refused is None else f"  {model.name}: no, {refused}"
 
 
 def draw(scene: Scene, path: Path) -> None:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from comparisons.models import TSM
 from comparisons.models import discrete as discrete_models
-from comparisons.models.discrete import solve_tsm
 from comparisons.models.options import Options
+from comparisons.models.progress import unwatched
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.test_certify import BEAM, PORTAL
@@ -156,7 +157,7 @@ FAULTS: dict[str, tuple[Callable[[pytest.MonkeyPatch], None], Scene, Verdict]] =
 
 def certificate(scene: Scene, *, completed: bool = True) -> Certificate:
     """Solve without the checks of responses, which refuse some of the faults themselves."""
-    response = solve_tsm(scene, Options(elements=10, element="mixed"))
+    response = TSM.solve(scene, Options(elements=10, element="mixed"), unwatched)
     assert response.completed is completed, response.message
     return certify(response, scene)
 

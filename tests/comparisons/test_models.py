@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from comparisons.models import MODELS, solve
-from comparisons.models.options import OPTIONS, ModelError, Options
+from comparisons.models.options import ModelError, Options
 from comparisons.response.to_json import as_json
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 
@@ -37,10 +37,6 @@ def moved(scene: Scene, *, mirrored: bool, from_end: bool) -> Scene:
     pin = PinSpec(name="pin", path=tuple(place(point) for point in scene.pins[0].points))
     side = "right" if mirrored == from_end else "left"
     return replace(scene, beams=(new,), pins=(pin,), contacts=(replace(scene.contacts[0], side=side),))
-
-
-def test_options_are_listed_for_every_model() -> None:
-    assert list(OPTIONS) == list(MODELS)
 
 
 @pytest.mark.parametrize("from_end", [False, True])

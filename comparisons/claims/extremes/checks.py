@@ -8,18 +8,14 @@ import numpy as np
 from comparisons.accuracy.quantities import difference
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
-from comparisons.claims.extremes.allowance import (
-    FLOOR,
-    LARGEST,
-    Allowance,
-    allowance,
-    bending,
-    element_lengths,
-)
+from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance, bending
 from comparisons.claims.extremes.units import in_units_of
 from comparisons.exact.end_loads import tip_under_moment
+from comparisons.models import MODELS, TSM
+from comparisons.models.theory import FLOOR, chord_term, element_lengths, ordinal
 from comparisons.response import Array
 from comparisons.scene import BeamSpec
+from tsm.elements import ClosedForm
 
 COMPARED = ("force", "arc", "moment", "tip")
 """Quantities whose largest relative difference is the error."""
@@ -82,13 +78,14 @@ class Against:
     def finding(self, case: Case, own: Measurement, results: Results) -> Finding | None:
         """Return the error of `own`, measured on `case`; infinite where it went further than its reference.
 
-        The elastica is another beam, which may go further; None if the reference has nothing to compare it with, or is too soft to be.
+        A model of another rod, the elastica, may go further; None if the reference has nothing to compare it with, or is too soft to be.
         """
         other, beam = results[self.case], self.case.scene.beams[0]
         allowed = self.allowed or allowance(case, bending(beam, other))
-        if case.model == "elastica" and (allowed.error > LARGEST or not len(other.load_parameter)):
+        another = not MODELS[case.model].rod
+        if another and (allowed.error > LARGEST or not len(other.load_parameter)):
             return None
-        if case.model != "elastica" and len(own.load_parameter) > len(other.load_parameter):
+        if not another and len(own.load_parameter) > len(other.load_parameter):
             return Finding(
                 against=self.name,
                 error=np.inf,
@@ -161,14 +158,12 @@ class Circle:
             for t in own.load_parameter
         ]
         error = float(np.hypot(*(own.tip[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
-        element = case.options.element
-        turn = load.moment * element_lengths(case)[0] * beam.length / beam.EI * own.load_parameter
-        if element == "exact":
-            term, why = 0.0 * turn, "accuracy of the integration"
-        elif element == "mixed":
-            term, why = turn**4 / 1920, "fourth order of the element"
-        else:
-            term, why = turn**2 / 24, "second order of the element"
+        longest = element_lengths(case.scene, case.options)[0]
+        turn = load.moment * longest * beam.length / beam.EI * own.load_parameter
+        kind = TSM.element(case.options)
+        term, why = 0.0 * turn, "accuracy of the integration"
+        if isinstance(kind, ClosedForm):
+            term, why = chord_term(turn, kind.order), f"{ordinal(kind.order)} order of the element"
         distance = np.hypot(*np.array(exact).reshape(-1, 2).T) / beam.length
         allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
         return Finding(against="circle", error=error, allowed=allowed, why=why)

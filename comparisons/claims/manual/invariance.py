@@ -16,6 +16,7 @@ from comparisons.claims.manual.models import (
 )
 from comparisons.claims.manual.record import Answer, Curve, Picture, Problem, Quantity, StoppedError, Trial
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
+from comparisons.models import SOLID
 from comparisons.models.translate import to_solid, to_structure
 from comparisons.response import Array
 from comparisons.scene import Scene
@@ -58,7 +59,7 @@ def _work_over_energy(scene: Scene, model: Model, panels: int = 20) -> Callable[
     def measure() -> Answer:
         gauss, weights = np.polynomial.legendre.leggauss(4)
         t = np.append(((np.arange(panels)[:, None] + (1.0 + gauss) / 2.0) / panels).ravel(), 1.0)
-        run = _solid if model.key == "solid" else _beam
+        run = _solid if model.key == SOLID.name else _beam
         force, energy, line = run(scene, model, t)
         start, end = np.array(scene.pins[0].points)
         work = float(np.tile(weights / 2.0 / panels, panels) @ (force[:-1] @ (end - start)))
@@ -95,7 +96,7 @@ ANGLE, SHIFT = 0.7, (2.0, -3.0)
 SAME = {
     "tsm exact": (1e-10, "round-off"),
     "tsm mixed": (1e-10, "round-off"),
-    "solid": (1e-8, "round-off, which the penalty amplifies"),
+    SOLID.name: (1e-8, "round-off, which the penalty amplifies"),
 }
 CHANGES = (
     Quantity(name="largest change of F, over the largest", exact=0.0, scale=1.0),

@@ -5,11 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from comparisons import models as registry
 from comparisons.claims.manual.record import Answer, Curve, StoppedError, Trial
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
+from tsm import elements as kinds
 
 FOURTH = "fourth order: half as many elements leave 16 times as much"
 SECOND = "second order: half as many elements leave 4 times as much"
@@ -39,15 +41,23 @@ class Model:
     options: Options = field(default_factory=Options)
 
 
-EXACT = Model(name="tsm exact", setting="1 element a beam", key="tsm", options=Options(element="exact"))
-ROD = Model(name="rod", setting="", key="rod")
-ELASTICA = Model(name="elastica", setting="", key="elastica")
+EXACT = Model(
+    name="tsm exact",
+    setting="1 element a beam",
+    key=registry.TSM.name,
+    options=Options(element=kinds.EXACT.name),
+)
+ROD = Model(name=registry.ROD.name, setting="", key=registry.ROD.name)
+ELASTICA = Model(name=registry.ELASTICA.name, setting="", key=registry.ELASTICA.name)
 
 
 def mixed(elements: int) -> Model:
     """Return the element with the contact force as unknown."""
     return Model(
-        name="tsm mixed", setting=f"{elements} elements a beam", key="tsm", options=Options(elements=elements)
+        name="tsm mixed",
+        setting=f"{elements} elements a beam",
+        key=registry.TSM.name,
+        options=Options(elements=elements),
     )
 
 
@@ -56,14 +66,19 @@ def paper(elements: int) -> Model:
     return Model(
         name="tsm timoshenko",
         setting=f"{elements} elements a beam",
-        key="tsm",
-        options=Options(elements=elements, element="timoshenko"),
+        key=registry.TSM.name,
+        options=Options(elements=elements, element=kinds.TIMOSHENKO.name),
     )
 
 
 def solid(nx: int, ny: int) -> Model:
     """Return the solid with a mesh."""
-    return Model(name="solid", setting=f"{nx}x{ny} elements", key="solid", options=Options(mesh=(nx, ny)))
+    return Model(
+        name=registry.SOLID.name,
+        setting=f"{nx}x{ny} elements",
+        key=registry.SOLID.name,
+        options=Options(mesh=(nx, ny)),
+    )
 
 
 def answered(scene: Scene, model: Model) -> Response:

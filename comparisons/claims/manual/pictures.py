@@ -5,6 +5,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from comparisons import models as registry
 from comparisons.claims.manual.record import Curve, Picture
 from comparisons.show import palette
 from comparisons.show.plot import SOLID, figure, save
@@ -12,12 +13,12 @@ from comparisons.show.plot import SOLID, figure, save
 STYLES: dict[str, dict[str, Any]] = {
     "undeformed": {"color": "0.6", "linewidth": 1.0, "linestyle": "--"},
     "path of the pin": {"color": "0.6", "linewidth": 0.8, "linestyle": ":"},
-    "solid": {**SOLID, "color": palette.colour("solid"), "linewidth": 9.0},
+    registry.SOLID.name: {**SOLID, "color": palette.colour(registry.SOLID.name), "linewidth": 9.0},
     "tsm timoshenko": {"color": palette.colour("TSM timoshenko"), "linewidth": 6.0},
     "tsm mixed": {"color": palette.colour("TSM mixed"), "linewidth": 4.0},
     "tsm exact": {"color": palette.colour("TSM exact"), "linewidth": 2.2},
-    "rod": {"color": palette.colour("exact rod"), "linewidth": 1.2},
-    "elastica": {"color": palette.colour("elastica"), "linewidth": 1.2},
+    registry.ROD.name: {"color": palette.colour("exact rod"), "linewidth": 1.2},
+    registry.ELASTICA.name: {"color": palette.colour(registry.ELASTICA.name), "linewidth": 1.2},
     "exact answer": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
     "exact order": {"color": palette.GREY, "linewidth": 0.8, "linestyle": (0, (4, 3))},
 }

@@ -10,7 +10,7 @@ import numpy as np
 from comparisons.claims.paper.critical_area import SCENE, STARTS
 from comparisons.claims.paper.formulations import FORMULATIONS, Formulation
 from comparisons.exact.rod import rod_under_pin
-from comparisons.models import solve
+from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.models.translate import to_rod
 from comparisons.response import Array, Response
@@ -97,8 +97,8 @@ def cantilever_shapes(*, quick: bool, report: Report) -> Lifts:
 def _lift(scene: Scene, start: float, tried: tuple[Formulation, ...]) -> tuple[Lift, Response, Response]:
     pair = scene.contacts[0].pair
     travel = scene.pins[0].points[1][1]
-    runs = {elements: solve(scene, "tsm", Options(elements=elements)) for elements in ELEMENTS}
-    beams, rod = runs[ELEMENTS[0]], solve(scene, "rod")
+    runs = {elements: solve(scene, TSM.name, Options(elements=elements)) for elements in ELEMENTS}
+    beams, rod = runs[ELEMENTS[0]], solve(scene, ROD.name)
     local = to_rod(scene)
     exact = rod_under_pin(
         local.path[[0, -1]],
@@ -123,7 +123,7 @@ def _lift(scene: Scene, start: float, tried: tuple[Formulation, ...]) -> tuple[L
 
 def _reached(scene: Scene, element: str) -> float:
     """Load parameter up to which the contact was followed: that of its slip-off where it came to it."""
-    response = solve(scene, "tsm", Options(element=element))
+    response = solve(scene, TSM.name, Options(element=element))
     contact = response.contacts[scene.contacts[0].pair]
     if np.isfinite(contact.slip_off):
         return contact.slip_off

@@ -10,12 +10,13 @@ from comparisons.claims.paper.critical_area import PRINTED, PRINTED_SHEAR_PSI, R
 from comparisons.claims.paper.critical_area_plot import nearest_tolerance
 from comparisons.claims.paper.turned_frame import NAME as TURNED
 from comparisons.claims.paper.verdict import Judgement, claim, holds, in_size, over_readings, percent
+from tsm import elements
 
 SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
-    "euler-bernoulli-simple",
-    "euler-bernoulli-cantilever",
-    "timoshenko",
-    "mixed",
+    elements.EULER_BERNOULLI_SIMPLE.name,
+    elements.EULER_BERNOULLI_CANTILEVER.name,
+    elements.TIMOSHENKO.name,
+    elements.MIXED.name,
 )
 MOVES = 0.5
 """A median critical area beyond half the element means that the tolerance is below the round-off everywhere in it."""

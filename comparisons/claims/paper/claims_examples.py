@@ -7,6 +7,7 @@ from comparisons.claims.paper.double_beam import LOWER, TIP, UPPER, Attempt, Dou
 from comparisons.claims.paper.ks_shapes import Run8, Shapes
 from comparisons.claims.paper.verdict import Judgement, Verdict, claim, holds, over_readings, percent
 from comparisons.compare import PAPER, SOLID
+from tsm.elements import TIMOSHENKO
 
 KS = "ks-cantilever"
 ALIKE = 0.01
@@ -35,7 +36,7 @@ def followed(found: Lifts) -> Judgement:
     """Judge whether the beam follows the control node from all starting positions."""
     coarse, fine = (max(lift.slip_off_error(elements) for lift in found.lifts) for elements in ELEMENTS)
     paper = sum(
-        np.isclose(lift.reached["timoshenko"], lift.rod_slip_off, rtol=SLIP_OFF) for lift in found.lifts
+        np.isclose(lift.reached[TIMOSHENKO.name], lift.rod_slip_off, rtol=SLIP_OFF) for lift in found.lifts
     )
     return holds(
         coarse < SLIP_OFF,
@@ -180,7 +181,7 @@ def leaves(found: DoubleBeam) -> Judgement:
 
 
 def _attempts(found: DoubleBeam) -> list[Attempt]:
-    return [attempt for attempt in found.attempts if attempt.element == "timoshenko"]
+    return [attempt for attempt in found.attempts if attempt.element == TIMOSHENKO.name]
 
 
 def _attempts_text(found: DoubleBeam) -> str:

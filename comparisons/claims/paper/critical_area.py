@@ -17,6 +17,7 @@ from comparisons.claims.paper.formulations import FORMULATIONS
 from comparisons.models.translate import to_structure
 from comparisons.response import Array
 from comparisons.scene import load_scene
+from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, TIMOSHENKO
 
 Report = Callable[[str], None]
 
@@ -24,9 +25,9 @@ SCENE = "cantilever-critical-area"
 STARTS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 """The paper's starting positions of the pin [m]."""
 PRINTED = {
-    "euler-bernoulli-simple": (0.07749, 0.12952),
-    "euler-bernoulli-cantilever": (0.02164, 0.03865),
-    "timoshenko": (0.00067, 0.00501),
+    EULER_BERNOULLI_SIMPLE.name: (0.07749, 0.12952),
+    EULER_BERNOULLI_CANTILEVER.name: (0.02164, 0.03865),
+    TIMOSHENKO.name: (0.00067, 0.00501),
 }
 """The ranges of the critical area in [P] section 4.1."""
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
@@ -44,7 +45,7 @@ _ENDS: tuple[Literal["start"], Literal["end"]] = ("start", "end")
 _FLOOR_CASES = (
     *((formulation.element, end, PSI) for formulation in FORMULATIONS for end in _ENDS),
     *((turned_frame.NAME, end, PSI) for end in _ENDS),
-    ("timoshenko", _ENDS[1], PRINTED_SHEAR_PSI),
+    (TIMOSHENKO.name, _ENDS[1], PRINTED_SHEAR_PSI),
 )
 
 

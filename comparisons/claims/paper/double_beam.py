@@ -8,10 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from comparisons.exact.coupled import CoupledPath, coupled_rods
 from comparisons.exact.rod import rod_under_pin
-from comparisons.models import solve
+from comparisons.models import TSM, solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
+from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, TIMOSHENKO
 
 Report = Callable[[str], None]
 
@@ -161,9 +162,9 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
     """Solve the scene; `quick` keeps the scene's load parameters and tries only the paper's Timoshenko element."""
     scene = load_scene(SCENE)
     report("mixed, 10 + 10 elements")
-    own = solve(scene, "tsm")
+    own = solve(scene, TSM.name)
     finer = scene if quick else replace(scene, load_parameters=FINER * scene.load_parameters)
-    response = own if quick else solve(finer, "tsm")
+    response = own if quick else solve(finer, TSM.name)
     travel = abs(scene.pins[0].points[1][1])
     depth = travel * response.load_parameter
     report("exact rods")
@@ -191,10 +192,10 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
         )
         for event in response.events or ()
     )
-    elements = ("timoshenko",) if quick else (
-        "timoshenko",
-        "euler-bernoulli-simple",
-        "euler-bernoulli-cantilever",
+    elements = (TIMOSHENKO.name,) if quick else (
+        TIMOSHENKO.name,
+        EULER_BERNOULLI_SIMPLE.name,
+        EULER_BERNOULLI_CANTILEVER.name,
     )  # fmt: skip
     report("the paper's elements")
     attempts = tuple(_attempt(scene, element, place) for element in elements for place in TRIED)
@@ -292,7 +293,7 @@ def _stages(depth: Array, events: dict[str, float]) -> tuple[Stage, ...]:
 
 def _attempt(scene: Scene, element: str, place: float) -> Attempt:
     pin = replace(scene.pins[0], start=(place, scene.pins[0].points[0][1]))
-    response = solve(replace(scene, pins=(pin,)), "tsm", Options(element=element))
+    response = solve(replace(scene, pins=(pin,)), TSM.name, Options(element=element))
     travel = abs(pin.points[1][1])
     events = response.events or ()
     reached = float(response.load_parameter[-1]) if len(response.load_parameter) else 0.0

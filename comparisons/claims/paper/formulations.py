@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from comparisons.show import palette
+from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, MIXED, TIMOSHENKO
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,14 +28,14 @@ class Formulation:
 
 
 FORMULATIONS = (
-    Formulation(element="euler-bernoulli-simple", label="Euler-Bernoulli, simple", marker="o"),
+    Formulation(element=EULER_BERNOULLI_SIMPLE.name, label="Euler-Bernoulli, simple", marker="o"),
     Formulation(
-        element="euler-bernoulli-cantilever",
+        element=EULER_BERNOULLI_CANTILEVER.name,
         label="Euler-Bernoulli, cantilever",
         marker="s",
         linestyle=(0, (5, 2)),
     ),
-    Formulation(element="timoshenko", label="Timoshenko", marker="^"),
-    Formulation(element="mixed", label="mixed", marker="D", linestyle=(0, (1, 1))),
+    Formulation(element=TIMOSHENKO.name, label="Timoshenko", marker="^"),
+    Formulation(element=MIXED.name, label=MIXED.name, marker="D", linestyle=(0, (1, 1))),
 )
 """The paper's three, then the one whose contact force is an unknown."""

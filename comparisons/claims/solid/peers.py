@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from comparisons.models import ROD
 from comparisons.models.outside.calculix import Answer, pressed, tip_load
 from comparisons.models.translate import to_solid
 from comparisons.output import Report, Row
@@ -39,7 +40,7 @@ def peers(report: Report) -> list[Row]:
     problem = to_solid(load_scene("ks-face"))
     strip = problem.strips[0]
     rows: list[Row] = []
-    for clamp in ("rod", "full"):
+    for clamp in (ROD.name, "full"):
         for load in LOADS:
             for mesh in MESHES:
                 rows.append(_tip_row(replace(strip, clamp=clamp, mesh=mesh), load))

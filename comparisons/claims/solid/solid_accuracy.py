@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.claims.solid.peers import peers
-from comparisons.models import solve
+from comparisons.models import ROD, solve
 from comparisons.models.translate import to_solid
 from comparisons.output import Report, Row
 from comparisons.response import Array
@@ -44,7 +44,7 @@ def locking(report: Report) -> list[Row]:
                 shear_modulus=beam.youngs_modulus / (2 * (1 + nu)),
             )
             exact = (
-                solve(replace(scene, beams=(stiff,)), "rod")
+                solve(replace(scene, beams=(stiff,)), ROD.name)
                 .contacts[scene.contacts[0].pair]
                 .force[STEPS // 2 - 1]
             )
@@ -65,7 +65,7 @@ def thin_beams(report: Report) -> list[Row]:
     rows: list[Row] = []
     for slenderness in (0.02, 0.01, 0.005):
         scene = _slender(slenderness, 0.3)
-        rod = solve(scene, "rod").contacts[scene.contacts[0].pair]
+        rod = solve(scene, ROD.name).contacts[scene.contacts[0].pair]
         force, arc = _history(_biot(scene, (100, 2)))
         differences = {
             "contact_force": float(np.abs(force / rod.force - 1.0)[LATE].max()),

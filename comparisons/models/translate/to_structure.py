@@ -7,6 +7,7 @@ from comparisons.scene import BeamSpec, Scene, SupportSpec
 
 if TYPE_CHECKING:
     from tsm import Beam, Structure, Support
+    from tsm.elements import ElementType
 
 
 def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> "Structure":
@@ -19,19 +20,21 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     elements : int, optional
         Elements of every beam, in place of the scene's, or of one if they are exact.
     element : str, optional
-        Key of `tsm.ELEMENTS`, ``"mixed"`` if not given.
+        Key of `tsm.ELEMENTS`, `mixed` if not given.
 
     Raises
     ------
     ModelError
         If there is no such element.
     """
-    from tsm import ELEMENTS, ContactPair, Load, Pin, Structure
+    from tsm import ContactPair, Load, Pin, Structure
+    from tsm.elements import ELEMENTS, MIXED
 
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
+    kind = MIXED if element is None else ELEMENTS[element]
     return Structure(
-        beams=tuple(_beam(beam, elements, element or "mixed") for beam in scene.beams),
+        beams=tuple(_beam(beam, elements, kind) for beam in scene.beams),
         supports=tuple(_support(support) for support in scene.all_supports),
         loads=tuple(
             Load(
@@ -65,17 +68,18 @@ def _support(spec: SupportSpec) -> "Support":
     )
 
 
-def _beam(spec: BeamSpec, elements: int | None, element: str) -> "Beam":
+def _beam(spec: BeamSpec, elements: int | None, kind: "ElementType") -> "Beam":
     from tsm import Beam, Section
 
     section = Section(EA=spec.EA, GA=spec.GA, EI=spec.EI)
-    nodes = () if elements or element == "exact" else spec.nodes
+    nodes = spec.nodes if kind.meshed and not elements else ()
+    count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
     return Beam(
         name=spec.name,
         start=spec.start,
         end=spec.end,
         section=section,
-        elements=elements or (1 if element == "exact" else len(nodes) + 1 if nodes else spec.elements),
-        element=element,
+        elements=count,
+        element=kind.name,
         nodes=nodes,
     )

@@ -20,8 +20,6 @@ DIGITS = 5
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
 """Of the lines of runs: they tell them apart without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
-SOLID, EXACT, OTHER = 6.0, 1.2, 2.0
-"""Widths of lines."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -149,22 +147,16 @@ def motion_section(
 
 def _ordered(labels: Sequence[str]) -> list[str]:
     """Return the labels once, in the order of drawing: the wide solid below, the exact answers on top."""
-    return sorted(dict.fromkeys(labels), key=lambda label: -_width(label))
-
-
-def _width(label: str) -> float:
-    model = palette.colour(label)
-    return SOLID if model == palette.SKY else EXACT if model in {palette.BLACK, palette.GREY} else OTHER
+    return sorted(dict.fromkeys(labels), key=lambda label: -palette.style(label).width)
 
 
 def _line_style(label: str, number: int) -> dict[str, Any]:
     """Colour, dashes and width; the page has its own black and grey, which are light on a dark screen."""
-    colour, width = palette.colour(label), _width(label)
-    unbroken = width == SOLID or colour == palette.BLACK
+    style = palette.style(label)
     return {
-        "colour": INKS.get(colour, colour),
-        "dash": "none" if unbroken else DASHES[number % len(DASHES)],
-        "width": width,
+        "colour": INKS.get(style.colour, style.colour),
+        "dash": "none" if style.unbroken else DASHES[number % len(DASHES)],
+        "width": style.width,
     }
 
 

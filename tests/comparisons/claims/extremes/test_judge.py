@@ -10,16 +10,18 @@ import pytest
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure
 from comparisons.cases.store import ERROR, WORKER_LOST
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, Bending, allowance
+from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance
 from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
 from comparisons.claims.extremes.checks import Against, Circle, Energy
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod
 from comparisons.claims.extremes.scenes import cantilever, cycles, half_circle, rolled_up, sheared
 from comparisons.models.options import Options
+from comparisons.models.theory import Bending
 from comparisons.models.verify import CHECK_FAILED
+from tsm.elements import ELEMENTS
 
 SCENE = half_circle(cantilever())
-CASE = beam_case(SCENE, "mixed", 10)
+CASE = beam_case(SCENE, ELEMENTS["mixed"], 10)
 CELL = Cell(axis="elements", row="mixed", column="10", case=CASE, checks=(against_rod(CASE),))
 ROD = exact_rod(SCENE)
 Change = Callable[[Measurement], Measurement]
@@ -105,7 +107,7 @@ def test_a_stop_at_the_start_claims_nothing() -> None:
 
 
 def test_units_cancel() -> None:
-    other = beam_case(half_circle(cantilever(length=1e3, youngs_modulus=1e9)), "mixed", 10)
+    other = beam_case(half_circle(cantilever(length=1e3, youngs_modulus=1e9)), ELEMENTS["mixed"], 10)
     same = Against(case=CASE, name="itself", allowed=Allowance(error=1e-9, why="units"))
     found = judge(measured(other), Cell(axis="units", row="mixed", column="", case=other, checks=(same,)))
     assert found.verdict is Verdict.RIGHT
@@ -128,7 +130,7 @@ def test_energy_of_exact_answers(scene: object, model: str) -> None:
 @pytest.mark.parametrize(("element", "elements"), [("mixed", 20), ("timoshenko", 40)])
 def test_roll_up_is_a_circle(element: str, elements: int) -> None:
     """The first neglected term is the error, to a tenth: nothing much larger would pass."""
-    case = beam_case(rolled_up(cantilever(), 1), element, elements)
+    case = beam_case(rolled_up(cantilever(), 1), ELEMENTS[element], elements)
     found = Circle().finding(case, measured(case), {})
     assert 0.9 * found.allowed < found.error < found.allowed < 1e-3
 
@@ -139,11 +141,13 @@ def test_round_off_is_allowed_where_a_stiffness_multiplies_it() -> None:
     scene = half_circle(cantilever(nodes=nodes))
     assert 1 - nodes[-1] < 1e-6
     assert nodes[0] > 0.5
-    mixed, paper = (allowance(beam_case(scene, element, None), BENT) for element in ("mixed", "timoshenko"))
+    mixed, paper = (
+        allowance(beam_case(scene, ELEMENTS[element], None), BENT) for element in ("mixed", "timoshenko")
+    )
     assert mixed.why == "fourth order of the element"
     assert mixed.error == pytest.approx(2 * (4.0 * nodes[0]) ** 4 / 1920, rel=1e-2)
     assert paper.error == LARGEST
-    case = beam_case(scene, "mixed", None)
+    case = beam_case(scene, ELEMENTS["mixed"], None)
     cell = Cell(axis="ratio", row="mixed", column="1e6", case=case, checks=(against_rod(case),))
     assert judge(measured(case), cell).verdict is Verdict.RIGHT
     assert judge(off(measured(case), 0.19), cell).verdict is Verdict.WRONG
@@ -154,7 +158,9 @@ BENT = Bending(force=8.0, curvature=4.0, turn=2.5, nearest=0.6)
 
 
 def allowed(element: str, elements: int) -> float:
-    return allowance(beam_case(half_circle(cantilever(slenderness=1e4)), element, elements), BENT).error
+    return allowance(
+        beam_case(half_circle(cantilever(slenderness=1e4)), ELEMENTS[element], elements), BENT
+    ).error
 
 
 def test_allowed_errors_fall_with_the_order_of_the_element() -> None:
@@ -164,7 +170,7 @@ def test_allowed_errors_fall_with_the_order_of_the_element() -> None:
 
 
 def test_no_theory_allows_more_than_the_cap() -> None:
-    most = allowance(beam_case(half_circle(sheared(25.0)), "mixed", 20), BENT)
+    most = allowance(beam_case(half_circle(sheared(25.0)), ELEMENTS["mixed"], 20), BENT)
     assert most.error == LARGEST
     assert "third power of the shear strain" in most.why
 

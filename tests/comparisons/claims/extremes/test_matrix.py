@@ -16,9 +16,10 @@ from comparisons.claims.extremes.allowance import Allowance
 from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
 from comparisons.claims.extremes.checks import Against, Finding
-from comparisons.claims.extremes.rows import ELEMENTS, against_rod, beam_case, exact_rod
+from comparisons.claims.extremes.rows import KINDS, against_rod, beam_case, exact_rod
 from comparisons.claims.extremes.scenes import cantilever, half_circle
 from comparisons.cli import main
+from tsm.elements import ELEMENTS
 
 NAMES = [axis.name for axis in AXES]
 
@@ -30,7 +31,7 @@ def test_every_place_is_there_once(quick: bool) -> None:
     assert max(Counter((cell.axis, cell.row, cell.column) for cell in cells).values()) == 1
     assert all(cell.checks for cell in cells)
     models = {cell.case.options.element or cell.case.model for cell in cells}
-    assert models == {*ELEMENTS, "solid", "rod", "elastica"}
+    assert models == {*(kind.name for kind in KINDS), "solid", "rod", "elastica"}
 
 
 def test_quick_is_a_part() -> None:
@@ -79,7 +80,7 @@ def test_element_lengths_differ_by_the_ratio() -> None:
 
 
 def judgement(verdict: Verdict, error: float, column: str, status: str = "COMPLETED") -> Judgement:
-    case = beam_case(half_circle(cantilever()), "mixed", 10)
+    case = beam_case(half_circle(cantilever()), ELEMENTS["mixed"], 10)
     finding = Finding(against="exact rod", error=error, allowed=1e-3, why="h < 1 & h > 0")
     return Judgement(
         cell=Cell(axis="elements", row="mixed", column=column, case=case, checks=(against_rod(case),)),
@@ -161,7 +162,7 @@ def two_cells(allowed: Allowance | None) -> list[Cell]:
             axis="elements",
             row=element,
             column="5",
-            case=beam_case(scene, element, 5),
+            case=beam_case(scene, ELEMENTS[element], 5),
             checks=(Against(case=exact_rod(scene), allowed=None if element == "exact" else allowed),),
         )
         for element in ("exact", "timoshenko")

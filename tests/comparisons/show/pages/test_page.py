@@ -9,10 +9,10 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.errors import error_histories, errors
-from comparisons.models import solve
+from comparisons.models import MODELS, solve
 from comparisons.scene import load_scene
 from comparisons.show.pages import Section, motion_section, page, picture, table, tracks
-from comparisons.show.palette import MODELS, colour
+from comparisons.show.palette import colour
 from tests.comparisons.show.pages.markup import block, check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=4)
@@ -134,7 +134,9 @@ def test_colours_stay_apart_for_the_colour_blind() -> None:
             ],
         ]
     )
-    rgb = np.array([[int(code[i : i + 2], 16) for i in (1, 3, 5)] for code in MODELS.values()]) / 255.0
+    codes = sorted({style.colour for model in MODELS.values() for style in model.styles().values()})
+    assert len(codes) == 8
+    rgb = np.array([[int(code[i : i + 2], 16) for i in (1, 3, 5)] for code in codes]) / 255.0
     seen = np.clip(np.einsum("kij,mj->kmi", machado, rgb), 0.0, 1.0)
     apart = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
     apart[:, np.arange(len(rgb)), np.arange(len(rgb))] = np.inf

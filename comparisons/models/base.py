@@ -1,0 +1,134 @@
+"""What a model states about itself: the contract that comparison, report, studies, cost, extremes and pictures ask."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import nan
+from typing import TYPE_CHECKING, ClassVar
+
+from comparisons.models.options import Options
+
+if TYPE_CHECKING:
+    from comparisons.models.progress import Watch
+    from comparisons.models.theory import Bending
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Style:
+    """How figures draw the answers of a model.
+
+    Parameters
+    ----------
+    colour : str
+        In hexadecimal digits.
+    marker : str
+        Marker of matplotlib in diagrams of costs, and of nodes.
+    width : float
+        Width of a deflected axis on a page [px].
+    unbroken : bool
+        Whether a line on a page has no dashes.
+    """
+
+    colour: str
+    marker: str = "d"
+    width: float = 2.0
+    unbroken: bool = False
+
+
+class Model(ABC):
+    """A way to solve scenes.
+
+    Attributes
+    ----------
+    name : str
+        Key of `comparisons.models.MODELS`: on the command line, in files and in tables.
+    label : str
+        Words for people.
+    options : tuple of str
+        Fields of `Options` that belong to the model.
+    libraries : tuple of str
+        Modules that a solution imports: they are loaded before it is timed.
+    meshed : bool
+        Whether a finer resolution makes it more accurate. A model without a mesh can be a reference.
+    continuum : bool
+        Whether it is a two-dimensional body, which converges to a limit of its own, and not a rod.
+    refinable : bool
+        Whether `crossval solve --accuracy` can choose its resolution.
+    rod : bool
+        Whether it has the stretch and the shear of Reissner's rod.
+    """
+
+    name: ClassVar[str]
+    label: ClassVar[str]
+    options: ClassVar[tuple[str, ...]] = ()
+    libraries: ClassVar[tuple[str, ...]] = ()
+    meshed: ClassVar[bool] = True
+    refinable: ClassVar[bool] = False
+    continuum: ClassVar[bool] = False
+    rod: ClassVar[bool] = True
+
+    @property
+    def reference(self) -> Options | None:
+        """Options at which the answer has no error of a mesh, so that others are measured against it; None if there are none."""
+        return None
+
+    @abstractmethod
+    def refusal(self, scene: Scene) -> str | None:
+        """Return why the model cannot state `scene`, in one line; None if it can."""
+
+    @abstractmethod
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
+        """Return the response to `scene`, not yet checked.
+
+        Raises
+        ------
+        ModelError
+            If the model cannot state the scene.
+        """
+
+    @abstractmethod
+    def styles(self) -> dict[str, Style]:
+        """Return how its answers are drawn, by the words that `run_label` and `family` begin with."""
+
+    @property
+    def colour(self) -> str:
+        """Colour of the model as a whole: the colour of its first style."""
+        return next(iter(self.styles().values())).colour
+
+    def run_label(self, options: Options) -> str:  # noqa: ARG002 - others have settings
+        """Return the words for one run, as ``TSM mixed, 20 elements``."""
+        return self.label
+
+    def setting(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - others have settings
+        """Return the setting of one run in short, as ``mixed 20``; empty if there is none."""
+        return ""
+
+    def family(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - others have settings
+        """Return the name of the runs that differ from this one in resolution only."""
+        return self.label
+
+    def resolution(self, options: Options) -> float:  # noqa: ARG002 - others have settings
+        """Return the number of elements along a beam, nan without a mesh or where the scene has it."""
+        return nan
+
+    def compared(self) -> tuple[Options, ...]:
+        """Return the settings that a comparison runs."""
+        return (Options(),)
+
+    def resolutions(self, *, quick: bool) -> Iterable[Options]:  # noqa: ARG002 - others have meshes
+        """Return the settings whose accuracy and cost are measured with several numbers of load steps; fewer if quick."""
+        return (Options(),)
+
+    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+        """Return the parts of the error that its theory allows against Reissner's rod, relative, by reason.
+
+        Without a theory of its own it is held to round-off.
+        """
+        from comparisons.models.theory import ROUND_OFF
+
+        del scene, options, bent
+        return {"round-off": ROUND_OFF}

@@ -1,0 +1,91 @@
+"""Reissner's rod and the elastica, exact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from comparisons.models.base import Model, Style
+from comparisons.models.options import ModelError, Options
+
+if TYPE_CHECKING:
+    from comparisons.models.progress import Watch
+    from comparisons.models.theory import Bending
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+
+
+class Rod(Model):
+    """Reissner's rod, which stretches and shears, under one pin or with a tied tip."""
+
+    name = "rod"
+    label = "exact rod"
+    libraries = ("comparisons.models.exact",)
+    meshed = False
+
+    @property
+    def reference(self) -> Options | None:
+        """The rod as it is."""
+        return Options()
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return what of `scene` the exact models do not have; None if they can state it."""
+        from comparisons.models.translate import to_rod
+
+        try:
+            to_rod(scene)
+        except ModelError as error:
+            return str(error)
+        return None
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
+        """Return the response to `scene`, not yet checked."""
+        from comparisons.models.exact import solve_rod
+
+        return solve_rod(scene, options, watch)
+
+    def styles(self) -> dict[str, Style]:
+        """Return one style."""
+        return {self.label: Style(colour="#000000", width=1.2, unbroken=True)}
+
+
+class Elastica(Rod):
+    """The elastica, which neither stretches nor shears, under one pin on its axis."""
+
+    name = "elastica"
+    label = "elastica"
+    rod = False
+
+    @property
+    def reference(self) -> None:
+        """None: stretch and shear are left out."""
+        return
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return what of `scene` the elastica does not have; None if it can state it."""
+        from comparisons.models.exact import elastica_scene
+
+        try:
+            elastica_scene(scene)
+        except ModelError as error:
+            return str(error)
+        return None
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
+        """Return the response to `scene`, not yet checked."""
+        from comparisons.models.exact import solve_elastica
+
+        return solve_elastica(scene, options, watch)
+
+    def styles(self) -> dict[str, Style]:
+        """Return one style."""
+        return {self.label: Style(colour="#444444", width=1.2)}
+
+    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+        """Return what stretch and shear are worth."""
+        from comparisons.models.theory import elastica_errors
+
+        del options
+        return elastica_errors(scene, bent)
+
+
+ROD, ELASTICA = MODELS = Rod(), Elastica()

@@ -1,0 +1,124 @@
+"""Beams by the tangent stiffness method."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING
+
+from comparisons.models.base import Model, Style
+from comparisons.models.options import ModelError, Options
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from comparisons.models.progress import Watch
+    from comparisons.models.theory import Bending
+    from comparisons.response import Response
+    from comparisons.scene import Scene
+    from tsm.elements import ElementType
+
+
+class Tsm(Model):
+    """Beams by the tangent stiffness method, with any type of element that `tsm.ELEMENTS` has."""
+
+    name = "tsm"
+    label = "TSM"
+    options = ("elements", "element", "tolerance", "branch")
+    libraries = ("tsm",)
+    refinable = True
+
+    def element(self, options: Options) -> ElementType:
+        """Return the type of the elements, `mixed` if none is chosen.
+
+        Raises
+        ------
+        ModelError
+            If there is no such type.
+        """
+        from tsm.elements import ELEMENTS, MIXED
+
+        name = options.element or MIXED.name
+        if name not in ELEMENTS:
+            raise ModelError(f"element = {name}: must be one of {', '.join(ELEMENTS)}")
+        return ELEMENTS[name]
+
+    @property
+    def reference(self) -> Options:
+        """Exact elements."""
+        from tsm.elements import EXACT
+
+        return Options(element=EXACT.name)
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Return None: beams state every scene."""
+        del scene
+        return None
+
+    def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
+        """Return the response to `scene`, not yet checked."""
+        from comparisons.models.discrete import solve_tsm
+
+        return solve_tsm(scene, options, self.element(options), watch)
+
+    def styles(self) -> dict[str, Style]:
+        """Return one style for every type of element."""
+        from tsm.elements import ELEMENTS
+
+        return {
+            f"{self.label} {kind.name}": Style(colour=kind.colour, marker=kind.marker)
+            for kind in ELEMENTS.values()
+        }
+
+    def run_label(self, options: Options) -> str:
+        """Return the words for one run, as ``TSM mixed, 20 elements``."""
+        count = options.elements
+        words = "" if count is None else f", {count} element{'s' if count > 1 else ''}"
+        return f"{self.label} {self.element(options).name}{words}"
+
+    def setting(self, scene: Scene, options: Options) -> str:
+        """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
+        kind = self.element(options)
+        counts = {options.elements or (beam.elements if kind.meshed else 1) for beam in scene.beams}
+        tolerance = "" if options.tolerance is None else f" tolerance {options.tolerance:g}"
+        return f"{kind.name} {'+'.join(map(str, sorted(counts)))}{tolerance}"
+
+    def family(self, scene: Scene, options: Options) -> str:
+        """Return the type of the elements, as ``TSM mixed``."""
+        del scene
+        return f"{self.label} {self.element(options).name}"
+
+    def resolution(self, options: Options) -> float:
+        """Return the number of elements of a beam, nan where the scene has it."""
+        return nan if options.elements is None else float(options.elements)
+
+    def compared(self) -> tuple[Options, ...]:
+        """Return the paper's element, the recommended one, and the exact one."""
+        from tsm.elements import EXACT, MIXED, TIMOSHENKO
+
+        return (
+            *(Options(element=TIMOSHENKO.name, elements=count) for count in (10, 20, 50)),
+            *(Options(element=MIXED.name, elements=count) for count in (10, 20)),
+            Options(element=EXACT.name, elements=1),
+        )
+
+    def resolutions(self, *, quick: bool) -> Iterator[Options]:
+        """Yield numbers of exact elements, of `mixed`, and of the paper's element."""
+        from tsm.elements import EXACT, MIXED, TIMOSHENKO
+
+        counts = {
+            EXACT: (1,) if quick else (1, 2, 4),
+            MIXED: (2, 3, 5, 10, 20, 40) if quick else (2, 3, 5, 10, 20, 40, 80, 160),
+            TIMOSHENKO: (10, 20, 50) if quick else (5, 10, 20, 50, 100),
+        }
+        for kind, meshes in counts.items():
+            yield from (Options(element=kind.name, elements=count) for count in meshes)
+
+    def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
+        """Return the parts of the error that the element's order, contact and shear allow."""
+        from comparisons.models.theory import beam_errors
+
+        return beam_errors(self.element(options), scene, options, bent)
+
+
+TSM = Tsm()
+MODELS = (TSM,)

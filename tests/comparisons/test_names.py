@@ -1,0 +1,49 @@
+"""No module asks for a model or an element by its name: names stand in the registries, scenes, documents and tests."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import tsm
+from comparisons.models import MODELS
+
+ROOT = Path(__file__).parents[2]
+REGISTRIES = (
+    "tsm/elements/kinds/",
+    *(f"comparisons/models/{name}.py" for name in ("registry", "tsm", "solid", "rod")),
+)
+OTHER_WORDS = {
+    "comparisons/scene/records.py": "a material law of the solid is called rod",
+    "fem_reference/strip.py": "a material law of the solid is called rod",
+    "comparisons/version.py": "the package tsm",
+    "comparisons/cli/command.py": "the package tsm",
+    "comparisons/referee/certificate.py": "a key of a certificate in JSON",
+    "comparisons/claims/manual/text.py": "a key of the manual in JSON",
+}
+
+
+def literals(path: Path) -> Iterator[tuple[int, str]]:
+    """Strings of a module, without docstrings and pieces of longer texts."""
+    tree = ast.parse(path.read_text())
+    prose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    pieces = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose | pieces:
+            yield node.lineno, node.value
+
+
+def test_names_of_models_and_elements_stand_in_their_registries_only() -> None:
+    names, found = {*MODELS, *tsm.ELEMENTS}, []
+    for package in ("tsm", "fem_reference", "comparisons"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            place = path.relative_to(ROOT).as_posix()
+            if place.startswith(REGISTRIES) or place in OTHER_WORDS:
+                continue
+            found += [f"{place}:{line}: {text}" for line, text in literals(path) if text in names]
+    assert found == []
+
+
+def test_every_exception_is_needed() -> None:
+    names = {*MODELS, *tsm.ELEMENTS}
+    for place in OTHER_WORDS:
+        assert any(text in names for _, text in literals(ROOT / place)), place
