@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import Curve, averaging, band_slopes, closest
+from fem_reference.curve import ContactCurve, averaging, band_slopes, closest
 from fem_reference.model import build
 
 STEP = 1e-30
@@ -87,7 +87,7 @@ def test_curve_converges_with_fourth_order(spread):
         s = np.linspace(0, 1, n + 1)
         slopes = band_slopes(s)
         offsets, kernel = averaging(spread, 1 / n)
-        curve = Curve(
+        curve = ContactCurve(
             stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"), offsets=offsets, kernel=kernel
         )
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
@@ -197,7 +197,8 @@ def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin, radiu
     r, r1, r2 = at.basis @ pair.carrier.points(u)
     d = r - point
     W, W1 = (
-        np.stack([pair.carrier.pull(at.basis[row], axis).ravel() for axis in np.eye(2)]) for row in range(2)
+        np.stack([pair.carrier.nodal_forces(at.basis[row], axis).ravel() for axis in np.eye(2)])
+        for row in range(2)
     )
     c = W.T @ r1 + W1.T @ d
     of_the_axis = W.T @ W - np.outer(c, c) / (r1 @ r1 + d @ r2)
@@ -253,7 +254,7 @@ def test_a_curve_of_three_stations_at_any_length(problem, length):
 def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
     """Newton's slope nearly vanishes at the start, and its step would leave the foot: Gauss-Newton's does not."""
     s = np.linspace(0, 1, 6)
-    curve = Curve(
+    curve = ContactCurve(
         stations=s,
         slopes=band_slopes(s),
         rows=eye_array(6, format="csr"),

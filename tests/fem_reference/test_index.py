@@ -11,7 +11,7 @@ import fem_reference as fr
 from fem_reference import factor
 from fem_reference.factor import band_of, count_negatives, factorise
 from fem_reference.model import build
-from fem_reference.state import Condition, state
+from fem_reference.state import Condition, build_state
 from fem_reference.tangent import linearise
 
 
@@ -50,7 +50,7 @@ def drawn(rng, strip):
         contacts.append(fr.Contact(node="b.end", strip="a", side="left"))
     model = build(fr.SolidProblem(strips=tuple(strips), pins=tuple(pins), contacts=tuple(contacts)))
     u = np.zeros((model.nodes, 2))
-    for _, part in model.each():
+    for _, part in model.bodies_and_nodes():
         X = model.bodies[0].mesh.nodes
         angle = rng.uniform(-1, 1) * X[:, 0]
         press = rng.choice([0.0, rng.uniform(0, 0.3)])
@@ -62,12 +62,12 @@ def drawn(rng, strip):
         Condition(closed=bool(rng.random() < 0.7), force=float(EI * 10 ** rng.uniform(-1, 2)))
         for _ in contacts
     )
-    return model, state(model, u, 1.0, conditions)
+    return model, build_state(model, u, 1.0, conditions)
 
 
 def dense_index(model, at):
     """Count the negative eigenvalues of the Hessian with springs, over what constraints leave free."""
-    blocks = [body.tangent(at.u[part]).toarray() for body, part in model.each()]
+    blocks = [body.tangent(at.u[part]).toarray() for body, part in model.bodies_and_nodes()]
     sizes = np.cumsum([0, *map(len, blocks)])
     A = np.zeros((sizes[-1], sizes[-1]))
     for block, start in zip(blocks, sizes, strict=False):

@@ -7,7 +7,7 @@ import fem_reference as fr
 from fem_reference.curve import closest
 from fem_reference.line_contact import clearance
 from fem_reference.model import build
-from fem_reference.state import Condition, state
+from fem_reference.state import Condition, build_state
 
 PAIR = "drum->cantilever"
 
@@ -102,7 +102,7 @@ def test_sharp_pin_has_no_line_contact_and_clearance_is_that_of_the_curvature(pr
     x = np.stack([(2 + X[:, 1]) * np.sin(angle), (2 + X[:, 1]) * np.cos(angle)], axis=1)
     for radius in (0.0, 0.5, 1.9):
         placed = with_pin(model, (0.0, 2 - radius), radius=radius)
-        at = state(placed, x - X, 0.0, (Condition(closed=True, force=1.0),))
+        at = build_state(placed, x - X, 0.0, (Condition(closed=True, force=1.0),))
         assert clearance(at.touches[0]) == pytest.approx(1 - radius / 2, abs=1e-4)
 
 

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.body import build_body
-from fem_reference.discretise import discretise
+from fem_reference.body import build_body, discretise
 from fem_reference.sampling import sample
 
 meshio = pytest.importorskip("meshio")

@@ -8,9 +8,9 @@ import fem_reference as fr
 from fem_reference.active_set import equilibrium
 from fem_reference.material import Law
 from fem_reference.model import build
-from fem_reference.newton import moved
+from fem_reference.newton import updated
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, at_rest, imbalance, residual, state
+from fem_reference.state import Condition, at_rest, build_state, imbalance, residual
 from fem_reference.status import Status
 from fem_reference.tangent import linearise
 
@@ -27,7 +27,7 @@ def found(model, at, settings=None):
 
 
 def closed(model, u, force):
-    return state(model, u, 0.0, (Condition(closed=True, force=force),))
+    return build_state(model, u, 0.0, (Condition(closed=True, force=force),))
 
 
 def test_correction_solves_the_full_saddle_point_system(place):
@@ -39,7 +39,7 @@ def test_correction_solves_the_full_saddle_point_system(place):
     R, U = T.T @ residual(model, at).ravel(), T.T @ touch.slopes
     K = model.bodies[0].tangent(at.u).toarray() - touch.force * U @ touch.curvature @ U.T
     full = np.block([[K, -U[:, :1]], [U[:, :1].T, np.array([[1 / model.pairs[0].penalty]])]])
-    expected = np.linalg.solve(full, -np.append(R, touch.mismatch))
+    expected = np.linalg.solve(full, -np.append(R, touch.gap_residual))
     step = linearise(model, at).correction(R)
     np.testing.assert_allclose(
         np.append(step.u, step.forces),
@@ -60,7 +60,7 @@ def test_correction_of_two_strips_solves_the_full_system(strip):
     pin = fr.Pin(name="pin", path=((0.7, 0.04), (0.7, -0.2)), radius=0.01)
     model = build(fr.SolidProblem(strips=(upper, lower), pins=(pin,), contacts=contacts))
     result = fr.solve(model.problem, np.array([0.4, 0.6]))
-    at = state(
+    at = build_state(
         model,
         result.states[-1].u,
         0.62,
@@ -71,7 +71,7 @@ def test_correction_of_two_strips_solves_the_full_system(strip):
     R = T.T @ residual(model, at).ravel()
     K = np.zeros((model.unknowns, model.unknowns))
     start = 0
-    for body, part in model.each():
+    for body, part in model.bodies_and_nodes():
         size = body.expansion.shape[1]
         K[start : start + size, start : start + size] = body.tangent(at.u[part]).toarray()
         start += size
@@ -82,7 +82,7 @@ def test_correction_of_two_strips_solves_the_full_system(strip):
         slopes.append(U[:, 0])
     G, C = np.stack(slopes, 1), np.diag([1 / touch.pair.penalty for touch in at.closed])
     full = np.block([[K, -G], [G.T, C]])
-    expected = np.linalg.solve(full, -np.append(R, [touch.mismatch for touch in at.closed]))
+    expected = np.linalg.solve(full, -np.append(R, [touch.gap_residual for touch in at.closed]))
     step = linearise(model, at).correction(R)
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
     np.testing.assert_allclose(
@@ -101,7 +101,7 @@ def test_residuals_fall_quadratically(place):
     for _ in range(5):
         R = model.expansion.T @ residual(model, at).ravel()
         errors.append(np.abs(R).max() / at.touches[0].force)
-        at = moved(model, at, linearise(model, at).correction(R), 1.0)
+        at = updated(model, at, linearise(model, at).correction(R), 1.0)
     floor = model.round_off / at.touches[0].force
     orders = [np.log(b) / np.log(a) for a, b in pairwise(errors[1:]) if floor < a < 0.1]
     assert orders, errors

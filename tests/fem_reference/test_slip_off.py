@@ -9,7 +9,7 @@ import fem_reference as fr
 from fem_reference.active_set import _rearmed
 from fem_reference.march import _condition_after
 from fem_reference.model import build
-from fem_reference.state import Condition, state
+from fem_reference.state import Condition, build_state
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def touch(problem, with_pin):
 
     def at(point, **condition):
         placed = with_pin(model, point)
-        found = state(placed, np.zeros((model.nodes, 2)), 0.0, (Condition(**condition),))
+        found = build_state(placed, np.zeros((model.nodes, 2)), 0.0, (Condition(**condition),))
         return placed, found.touches[0]
 
     return at

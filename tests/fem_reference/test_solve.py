@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.state import push
+from fem_reference.state import contact_force
 
 EI, GA = 2.1e4 * 0.02**4 / 12, 2.1e4 / 2.6 * 0.02**2 * 5 / 6
 PAIR, STRIP = "pin->cantilever", "cantilever"
@@ -189,7 +189,7 @@ def test_reaction_balances_the_contact_force(ks_face):
         ks_face.states, ks_face.supports[STRIP].force, ks_face.supports[STRIP].moment, strict=True
     ):
         touch, pin = at.touches[0], model.problem.pins[0].position(at.t)
-        p = push(touch)
+        p = contact_force(touch)
         np.testing.assert_allclose(force, -p, rtol=0, atol=1e-8 * touch.force + 1e-12)
         assert moment == pytest.approx(-(pin[0] * p[1] - pin[1] * p[0]), rel=1e-6)
 

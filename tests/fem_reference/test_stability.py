@@ -8,7 +8,7 @@ from scipy.special import ellipk
 
 import fem_reference as fr
 from fem_reference.model import build
-from fem_reference.state import Condition, at_rest, state
+from fem_reference.state import Condition, at_rest, build_state
 from fem_reference.tangent import linearise
 from fem_reference.track import accept, departure, hermite
 
@@ -171,9 +171,9 @@ def test_contact_closed_without_force_has_no_index_where_its_sides_differ(strip)
     u = np.zeros((model.nodes, 2))
     u[:, 0] = -2 * euler(0.02) / (E * B * 0.02) * model.bodies[0].mesh.nodes[:, 0]
     for force, expected in ((1e-3, 0), (1e-13, -1)):
-        at = state(model, u, 0.0, (Condition(closed=True, force=force),))
-        assert linearise(model, at).index(weak=1e-12) == expected
-    opened = state(model, u, 0.0, (Condition(),))
+        at = build_state(model, u, 0.0, (Condition(closed=True, force=force),))
+        assert linearise(model, at).index(force_tolerance=1e-12) == expected
+    opened = build_state(model, u, 0.0, (Condition(),))
     assert linearise(model, opened).index() == 1
 
 
@@ -202,7 +202,7 @@ def test_departure_measures_both_ends_and_corners(strip):
     short, long = departure(accepted[0], accepted[1], 1e-9), departure(accepted[0], accepted[10], 1e-9)
     assert 0 < short < long / 5 < 0.5
     mirrored = states[-1].u * [1, -1]
-    jumped = accept(model, state(model, mirrored, 1.0, ()), settings)
+    jumped = accept(model, build_state(model, mirrored, 1.0, ()), settings)
     assert departure(accepted[9], jumped, 1e-9) > 1
     assert departure(accepted[5], accepted[5], 1e-9) == 0
 
