@@ -17,7 +17,7 @@ the number of points. A taut rod bends in a layer `1/sqrt(n)` at the clamp; the 
 
 A compressed rod buckles sideways within a thousandth of its length, which a long step could pass over. Therefore a step is
 shortened until the prediction along the tangent to the path is small. It is halved unless the first correction is small, every
-later correction is at most half the previous one, and the Hessian at every iterate is that of a stable state.
+later correction is at most half the previous one, and the Hessian at every iterate belongs to a stable state.
 """
 
 from dataclasses import dataclass
@@ -154,7 +154,7 @@ def _equations(z: Array, displacement: Array, rod: _Rod) -> tuple[Array, Array]:
 
 
 def _stable(hessian: Array) -> bool:
-    """Whether a Hessian is that of a stable state; rows are scaled, since EA and EI differ by orders of magnitude."""
+    """Whether a Hessian belongs to a stable state; rows are scaled, since EA and EI differ by orders of magnitude."""
     largest = np.abs(hessian).max(axis=1)
     if not np.all(np.isfinite(hessian)) or largest.min() == 0.0:
         return False
