@@ -1,4 +1,4 @@
-"""Equilibrium at one load parameter: which contacts act is settled around Newton's method."""
+"""Equilibrium at one load parameter by an active-set iteration around Newton's method."""
 
 from dataclasses import replace
 
@@ -11,70 +11,67 @@ from fem_reference.state import Condition, State, Touch, imbalance, with_conditi
 from fem_reference.status import Status
 
 
-@np.errstate(all="ignore")  # what is not finite becomes a status
+@np.errstate(all="ignore")  # values that are not finite become a status
 def equilibrium(model: Model, guess: State, settings: Settings) -> Attempt:
-    """Find the equilibrium at the load parameter of ``guess``, unilateral contact included; never raises.
+    """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
 
-    Newton's method keeps the contacts as they are; at its end those that pull are opened, those that are penetrated are
-    closed, and it goes on, so that an overshoot of a gap does not make it cycle. A set that comes back is cycling.
-    Augmented Lagrangian steps follow once the set is settled.
+    Newton's method converges with a fixed set of closed contacts. Then contacts with tensile force are opened, penetrated
+    open contacts are closed, and Newton's method is repeated, so that gaps of unconverged iterates cause no change. A set
+    that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian steps follow when the set no longer
+    changes.
     """
-    at = with_conditions(guess, tuple(_closing(model, touch) for touch in guess.touches))
-    attempt = Attempt(status=Status.UNDECIDED_CONTACT, state=at, iterations=0)
-    tried, iterations, augmentations = [_set(at)], 0, 0
+    state = with_conditions(guess, tuple(_closed_if_penetrated(model, touch) for touch in guess.touches))
+    tried, iterations, augmentations = [state.contact_set], 0, 0
     while True:
-        attempt = iterate(model, at, settings)
+        attempt = iterate(model, state, settings)
         iterations += attempt.iterations
         attempt = replace(attempt, iterations=iterations)
         if attempt.status is not Status.CONVERGED:
             return attempt
-        at = attempt.state
-        settled = with_conditions(at, tuple(_settled(model, touch) for touch in at.touches))
-        if _set(settled) != _set(at):
+        state = attempt.state
+        revised = with_conditions(state, tuple(_revised(model, touch) for touch in state.touches))
+        if revised.contact_set != state.contact_set:
             changed = next(
-                i for i, touch in enumerate(settled.touches) if touch.closed != at.touches[i].closed
+                i for i, touch in enumerate(revised.touches) if touch.closed != state.touches[i].closed
             )
-            if _set(settled) in tried:
+            if revised.contact_set in tried:
                 return replace(attempt, status=Status.CYCLING, pair=changed)
             if len(tried) > settings.max_contact_changes:
                 return replace(attempt, status=Status.UNDECIDED_CONTACT, pair=changed)
-            at = settled
-            tried.append(_set(at))
+            state = revised
+            tried.append(state.contact_set)
             continue
-        deep = [number for number, touch in enumerate(at.touches) if _too_deep(model, touch)]
+        deep = [number for number, touch in enumerate(state.touches) if _exceeds_penetration(model, touch)]
         if not deep:
-            return _checked(model, attempt, settings)
+            return _verified(model, attempt, settings)
         if augmentations == settings.max_augmentations:
             return replace(attempt, status=Status.AUGMENTATION_LIMIT, pair=deep[0])
         augmentations += 1
-        at = with_conditions(at, tuple(_augmented(touch) for touch in at.touches))
+        state = with_conditions(state, tuple(_augmented(touch) for touch in state.touches))
 
 
-def _set(at: State) -> tuple[bool, ...]:
-    return tuple(touch.closed for touch in at.touches)
-
-
-def _closing(model: Model, touch: Touch) -> Condition:
-    """Close an open contact that is penetrated."""
+def _closed_if_penetrated(model: Model, touch: Touch) -> Condition:
+    """Close an open contact that is penetrated by more than round-off."""
     if touch.closed or not _penetrated(model, touch):
         return touch.condition
     return replace(touch.condition, closed=True)
 
 
-def _settled(model: Model, touch: Touch) -> Condition:
-    """Open a closed contact that pulls, close an open one that is penetrated by more than round-off."""
+def _revised(model: Model, touch: Touch) -> Condition:
+    """Open a closed contact with tensile force; close a penetrated open contact."""
     if touch.closed and touch.force < 0:
         return touch.condition.opened(armed=True)
-    return _closing(model, touch)
+    return _closed_if_penetrated(model, touch)
 
 
 def _penetrated(model: Model, touch: Touch) -> bool:
-    return touch.condition.armed and touch.shown_gap < -model.length_round_off
+    return touch.condition.armed and touch.reported_gap < -model.length_round_off
 
 
-def _too_deep(model: Model, touch: Touch) -> bool:
-    wanted = touch.pair.contact.penetration
-    return touch.closed and wanted is not None and abs(touch.gap) > wanted * _length(model, touch)
+def _exceeds_penetration(model: Model, touch: Touch) -> bool:
+    """Whether another augmented Lagrangian step is needed."""
+    allowed = touch.pair.contact.penetration
+    return touch.closed and allowed is not None and abs(touch.gap) > allowed * _length(model, touch)
 
 
 def _length(model: Model, touch: Touch) -> float:
@@ -82,34 +79,35 @@ def _length(model: Model, touch: Touch) -> float:
 
 
 def _augmented(touch: Touch) -> Condition:
-    wanted = touch.closed and touch.pair.contact.penetration is not None
-    return replace(touch.condition, multiplier=touch.force) if wanted else touch.condition
+    """Set the multiplier to the contact force where the penetration is to be removed."""
+    augmented = touch.closed and touch.pair.contact.penetration is not None
+    return replace(touch.condition, multiplier=touch.force) if augmented else touch.condition
 
 
-def _checked(model: Model, attempt: Attempt, settings: Settings) -> Attempt:
-    """Judge a converged state by what it means."""
-    at = attempt.state
-    for number, touch in enumerate(at.touches):
+def _verified(model: Model, attempt: Attempt, settings: Settings) -> Attempt:
+    """Check slip-off, penetration and global balance of a converged state."""
+    state = attempt.state
+    for number, touch in enumerate(state.touches):
         outside = not touch.projection.inside
-        # Past an end the node may only be on the side it came from; on the other one it has slipped round the end.
+        # Beyond an end a node on the far side of the strip has slipped round the end.
         slipped = touch.condition.armed and touch.gap < -model.length_round_off and touch.pair.contact.keep
         if outside and (touch.closed or slipped):
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > settings.max_penetration * _length(model, touch):
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
-    # A sum over the nodes gathers their round-off like a random walk.
-    floor = np.sqrt(at.u.size) * model.round_off
-    if imbalance(model, at) > settings.balance_tolerance * force_scale(model, at) + floor:
+    # The round-off of a sum over the nodes grows like a random walk.
+    floor = np.sqrt(state.u.size) * model.round_off
+    if imbalance(model, state) > settings.balance_tolerance * force_scale(model, state) + floor:
         return replace(attempt, status=Status.UNBALANCED)
-    armed = tuple(_rearmed(model, touch) for touch in at.touches)
-    return replace(attempt, state=with_conditions(at, armed))
+    conditions = tuple(_rearmed(model, touch) for touch in state.touches)
+    return replace(attempt, state=with_conditions(state, conditions))
 
 
 def _rearmed(model: Model, touch: Touch) -> Condition:
-    """A node beyond an end on the far side has left the strip; it may touch again once it is back on its side."""
+    """Disarm a node that is beyond an end on the far side; arm it again when it has returned to its side."""
     if touch.closed:
         return touch.condition
-    ahead = touch.gap >= -model.length_round_off
+    on_its_side = touch.gap >= -model.length_round_off
     if touch.projection.inside:
-        return replace(touch.condition, armed=touch.condition.armed or ahead)
-    return replace(touch.condition, armed=ahead)
+        return replace(touch.condition, armed=touch.condition.armed or on_its_side)
+    return replace(touch.condition, armed=on_its_side)

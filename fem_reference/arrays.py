@@ -1,14 +1,14 @@
-"""Array types and axis order of the package, stated once.
+"""Array types and the order of array axes in this package.
 
-- Nodal fields: ``(nodes, 2)``; the degree of freedom of component ``i`` at node ``n`` is ``2 n + i``, which is
-  scikit-fem's own numbering of a vector-valued field.
+- Nodal fields: ``(nodes, 2)``. Component ``i`` at node ``n`` is the degree of freedom ``2 n + i``, as in
+  scikit-fem's vector-valued fields.
 - Fields at quadrature points: tensor axes first, then element, then point; a displacement gradient is
   ``(i, j, e, q)`` and a tangent ``(i, j, k, l, e, q)``.
 - Element matrices: element axis first, ``(e, 2 k, 2 k)``, local degree of freedom ``2 a + i``.
-- Displacements are in the frame of their strip, positions of contacts and results in the global one.
+- Displacements are in the frame of their strip; contact positions and results are in the global frame.
 - Only `fem_reference.mesh`, `mesh_file` and `sampling` read scikit-fem's arrays.
 
-Kernels accept complex arrays too, so every derivative can be checked by complex steps.
+Array functions accept complex arrays too, so that tests can check every derivative by complex steps.
 """
 
 from typing import Any, TypeAlias

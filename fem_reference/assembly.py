@@ -1,4 +1,4 @@
-"""Internal force and tangent stiffness of the solid, by batched matrix products."""
+"""Internal force and tangent stiffness of the solid by batched matrix products."""
 
 from dataclasses import dataclass, replace
 
@@ -12,7 +12,7 @@ from fem_reference.mesh import Discretisation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pattern:
-    """Sparsity pattern of a stiffness matrix and the map that fills it.
+    """Sparsity pattern of a stiffness matrix with the map from element matrices to its entries.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class Pattern:
     indices, indptr
         Row indices and column pointers of the compressed columns.
     band
-        Where the entries stand in band storage.
+        Map from the entries to band storage.
     """
 
     scatter: csr_matrix
@@ -36,9 +36,9 @@ class Pattern:
 
 
 def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
-    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, once per model.
+    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``.
 
-    A row of the expansion has at most one entry: a displacement is an unknown, its opposite, or held.
+    A row of the expansion has at most one entry: a displacement is a multiple of one unknown, or zero.
     """
     size = expansion.shape[1]
     entries = expansion.tocoo()
@@ -72,7 +72,7 @@ def element_dofs(mesh: Discretisation) -> Ints:
 def deformation_gradient(mesh: Discretisation, u: Array, gradients: Floats | None = None) -> Array:
     """``F = I + du/dX`` at the quadrature points, ``(2, 2, e, q)``, from nodal displacements ``u`` ``(n, 2)``.
 
-    ``gradients`` other than ``mesh.gradients`` give F at other points.
+    With ``gradients`` such as ``mesh.nodal_gradients``, F is evaluated at their points instead.
     """
     G = mesh.gradients if gradients is None else gradients
     elements, rows, _ = G.shape
@@ -81,7 +81,7 @@ def deformation_gradient(mesh: Discretisation, u: Array, gradients: Floats | Non
 
 
 def internal_force(mesh: Discretisation, P: Array) -> Array:
-    """Nodal internal forces ``(n, 2)``: the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
+    """Internal nodal forces ``(n, 2)``, the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
     elements = len(mesh.cells)
     weighted = (P * mesh.weights).transpose(2, 1, 3, 0).reshape(elements, -1, 2)
     forces = mesh.gradients.transpose(0, 2, 1) @ weighted
@@ -90,9 +90,9 @@ def internal_force(mesh: Discretisation, P: Array) -> Array:
 
 
 def element_tangents(mesh: Discretisation, A: Array, out: Array | None = None) -> Array:
-    """Element stiffnesses ``(e, 2 k, 2 k)``: the integral of ``dN/dX . A . dN/dX``, ``A`` ``(2, 2, 2, 2, e, q)``.
+    """Element stiffnesses ``(e, 2 k, 2 k)``, the integral of ``dN/dX . A . dN/dX``, from ``A`` ``(2, 2, 2, 2, e, q)``.
 
-    A's major symmetry leaves three of the four blocks of components to compute. ``out`` is filled if given.
+    A has major symmetry, so that three of the four blocks of components are computed. ``out`` receives the result.
     """
     elements, rows, shapes = mesh.gradients.shape
     G = mesh.gradients.reshape(elements, 2, rows // 2, shapes)
@@ -113,7 +113,7 @@ def element_tangents(mesh: Discretisation, A: Array, out: Array | None = None) -
 
 
 def batches(mesh: Discretisation) -> tuple[Discretisation, ...]:
-    """Split the elements so that what is computed for a batch of them stays in the processor's cache."""
+    """Split the elements into batches whose arrays fit into the processor's cache."""
     count = -(-len(mesh.cells) // _BATCH)
     return tuple(
         replace(mesh, cells=cells, gradients=gradients, weights=weights)

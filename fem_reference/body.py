@@ -1,4 +1,4 @@
-"""A strip as a discrete solid: its elements, law and clamp, in its own frame."""
+"""A strip as a discrete solid in the strip's frame: elements, material law and clamp."""
 
 from dataclasses import dataclass
 
@@ -14,30 +14,29 @@ from fem_reference.assembly import (
     internal_force,
     pattern,
 )
-from fem_reference.discretise import discretise
 from fem_reference.material import Law, elastic_law
-from fem_reference.mesh import Discretisation
+from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """Everything about a strip that stays constant during a solution.
+    """Constant data of a strip during a solution.
 
     Parameters
     ----------
     strip
-        What is modelled.
+        Input data of the strip.
     mesh
-        Its discretisation.
+        Discretisation of the strip.
     batches
-        The same, a batch of elements at a time.
+        The discretisation split into batches of elements.
     law
-        Its material law.
+        Material law.
     expansion
-        Displacements from unknowns, ``(2 n, m)``: what the clamp leaves free, in order along the strip.
+        Matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`.
     stiffness
-        Pattern of the stiffness over the unknowns.
+        Sparsity pattern of the stiffness over the unknowns.
     round_off
         Round-off of a nodal force [N], see `force_round_off`.
     """
@@ -52,7 +51,7 @@ class Body:
 
     @property
     def force_scale(self) -> float:
-        """``E I / L^2`` [N]: a force that bends the strip, whatever the load."""
+        """Scale ``E I / L^2`` of a bending force, independent of the load [N]."""
         return self.strip.bending_stiffness / self.strip.length**2
 
     @property
@@ -62,7 +61,7 @@ class Body:
 
     @property
     def free_end(self) -> int:
-        """Number of the free end's section: -1 or 0."""
+        """Index of the free end's section: -1 or 0."""
         return -1 if self.strip.clamped == ("start",) else 0
 
     @property
@@ -72,7 +71,7 @@ class Body:
         return np.asarray(ends.mean(axis=0))
 
     def internal_force(self, u: Array) -> Array:
-        """Internal forces, ``(n, 2)``, of nodal displacements ``u`` ``(n, 2)``."""
+        """Internal nodal forces ``(n, 2)`` [N] from nodal displacements ``u`` ``(n, 2)``."""
         return internal_force(self.mesh, self.law.stress(deformation_gradient(self.mesh, u)))
 
     def tangent(self, u: Array) -> csc_matrix:
@@ -91,8 +90,17 @@ class Body:
         return float((W * self.mesh.weights).sum())
 
 
+def discretise(strip: Strip) -> Discretisation:
+    """Return the mesh of a strip, structured or from the user's file."""
+    if strip.mesh_file is None:
+        return structured_mesh(strip)
+    from fem_reference.mesh_file import read_mesh
+
+    return read_mesh(strip)
+
+
 def build_body(strip: Strip) -> Body:
-    """Discretise a strip."""
+    """Discretise a strip and its clamp."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
@@ -108,11 +116,11 @@ def build_body(strip: Strip) -> Body:
 
 
 def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
-    """Round-off of a nodal force [N]: 4 machine epsilons times M b L times the elements' aspect ratio.
+    """Round-off of a nodal force [N]: ``4 eps M b L`` times the largest aspect ratio of an element.
 
-    M is the law's modulus of uniaxial strain, E and more. Displacements of order L are differenced over an element's
-    short side; the stress M eps L / short acts on b times its long side. Up to twice that was measured on strips from
-    L/h = 50 to 2000.
+    M is the modulus of uniaxial strain, at least E, and eps the machine epsilon. The strain is a difference of
+    displacements of order L over the element's short side, so that its round-off is ``eps L / short``. The stress ``M eps L /
+    short`` acts on the width b times the long side. The factor 4 is twice the round-off measured for L/h = 50 to 2000.
     """
     sides = np.ptp(mesh.nodes[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
@@ -121,10 +129,10 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
-    """Displacements ``(2 n, m)`` that the clamp leaves free.
+    """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamp admits.
 
-    Where the edge has no node at its middle, the rod's clamp holds what the two nodes beside it interpolate there: with
-    three bilinear elements over the height, their transverse displacements are opposite.
+    If the edge has no node at its middle, the rod's clamp sets the transverse displacement interpolated there from the
+    two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite.
     """
     n, edge = len(mesh.nodes), mesh.edges[strip.clamped[0]]
     y = mesh.nodes[edge, 1] - mesh.nodes[edge[[0, -1]], 1].mean()

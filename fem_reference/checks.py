@@ -1,4 +1,4 @@
-"""Bad input costs one line: owner, field, value and the rule it breaks."""
+"""Checks of input data. An error message is one line with owner, field, value and rule."""
 
 from math import isfinite
 
@@ -6,7 +6,7 @@ Point = tuple[float, float]
 
 
 def require(condition: bool, owner: str, field: str, value: object, rule: str) -> None:
-    """Raise a ``ValueError`` that names the value and the rule unless ``condition`` holds."""
+    """Raise a ``ValueError`` with the value and the rule unless ``condition`` holds."""
     if not condition:
         raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
 

@@ -1,24 +1,25 @@
-r"""Contact of a node, a pin or another strip's end, with a curve carried by a strip.
+r"""Contact of a node, which is a pin or another strip's end, with the contact curve of a strip.
 
-At the closest point, ``(r - x_c) . r' = 0``, the gap is ``g = s n . (x_c - r) - R`` with the curve's left normal n, side s
-and the pin's radius R. A penalty ``eps g^2 / 2`` is, with the contact force ``lam = -eps g`` kept as a variable,
+The closest point satisfies ``(r - x_c) . r' = 0``. The gap there is ``g = s n . (x_c - r) - R`` with the left normal n of
+the curve, the side s and the radius R of the pin. The contact force ``lam = -eps g`` is an unknown of its own; the penalty
+energy ``eps g^2 / 2`` becomes
 
     Pi = -lam g - lam^2 / (2 eps).
 
 With ``W = d(r - x_c)/du`` at a fixed zeta, ``W' = dr'/du``, unit tangent t, ``rho = |r'|``, ``d = n . (r - x_c)``,
-``k = n . r''`` and ``D = rho^2 + d k``, elimination of zeta by its own stationarity gives both derivatives of the gap,
-hence force and symmetric tangent on both strips:
+``k = n . r''`` and ``D = rho^2 + d k``, elimination of zeta by the stationarity condition gives the derivatives of the gap
+and thus the force and the symmetric tangent on both strips:
 
     dg/du   = -s W^T n
     d2g/du2 = -s (k W^T t t^T W - rho (W^T t n^T W' + W'^T n t^T W) - d W'^T n n^T W') / D.
 
-Neither depends on R. The second holds at ``d = 0`` too, since nothing is divided by the gap. Eliminating lam as well would leave
-the tangent of the penalty alone, for a pin of any radius ::
+Neither depends on R. Nothing is divided by the gap, so that the second derivative holds at ``d = 0`` too. Elimination of lam
+gives the tangent of the penalty method for a pin of any radius ::
 
     eps (dg/du dg/du^T + g d2g/du2) = eps (W^T W - c c^T / D - R d2g/du2),    c = W^T r' + W'^T (r - x_c).
 
-Keeping lam spares Newton's method the force ``eps g`` of an iterate that is not yet in place, and the round-off of a stiff
-eps. An augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term, lam_0 being the force found before.
+With lam as an unknown, an iterate with a large gap has no spurious force ``eps g``, and a stiff eps causes no round-off. An
+augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term; lam_0 is the previous contact force.
 """
 
 from dataclasses import dataclass
@@ -28,22 +29,22 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from fem_reference.arrays import Array, Floats
-from fem_reference.curve import Curve, Projection, project
+from fem_reference.curve import ContactCurve, Projection, project
 from fem_reference.problem import Contact, Pin
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Carrier:
-    """Points whose positions are weighted means of a strip's nodes.
+    """Points whose positions are weighted means of the nodes of a strip.
 
     Parameters
     ----------
     reference
         Undeformed positions relative to the model's origin, in the global frame's directions, ``(m, 2)`` [m].
     rows
-        Weights of all nodes of the model, ``(m, n)``.
+        Weights ``(m, n)`` of all nodes of the model.
     frame
-        Rotation ``(2, 2)`` from the strip's frame, in which displacements are given, to the global one.
+        Rotation ``(2, 2)`` from the strip's frame, the frame of the displacements, to the global frame.
     """
 
     reference: Floats
@@ -51,38 +52,38 @@ class Carrier:
     frame: Floats
 
     def points(self, u: Array) -> Array:
-        """Positions ``(m, 2)`` with the nodal displacements ``u`` ``(n, 2)``."""
-        moved: Array = self.reference + (self.rows @ u) @ self.frame.T
-        return moved
+        """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
+        positions: Array = self.reference + (self.rows @ u) @ self.frame.T
+        return positions
 
-    def pull(self, weights: Array, vector: Array) -> Array:
-        """Nodal vectors ``(n, 2)`` of ``vector`` acting on the weighted sum ``weights`` ``(m,)`` of the points."""
-        pulled: Array = np.multiply.outer(self.rows.T @ weights, vector @ self.frame)
-        return pulled
+    def nodal_forces(self, weights: Array, force: Array) -> Array:
+        """Nodal forces ``(n, 2)`` of a global ``force`` ``(2,)`` that acts on the points with ``weights`` ``(m,)``."""
+        forces: Array = np.multiply.outer(self.rows.T @ weights, force @ self.frame)
+        return forces
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pair:
-    """A contact ready to be evaluated.
+    """A contact between a node and the curve of a strip in the discrete model.
 
     Parameters
     ----------
     contact
-        What was asked for.
+        Input data of the contact.
     curve, carrier
-        The touched curve and the positions of its points.
+        Curve of the touched strip and its points.
     node
-        The pin, or the carrier of the touching end.
+        The pin, or the point at the end of another strip.
     penalty
         Contact stiffness eps [N/m].
     strips
-        Numbers of the strips that take part: the touched one, and that of the touching end.
+        Indices of the touched strip and, if the node is an end, of the strip with this end.
     origin
-        The model's origin, which positions are relative to, ``(2,)`` [m]: no digits are lost far from that of the scene.
+        Origin of all positions ``(2,)`` [m], at the first strip, so that a distant scene loses no digits.
     """
 
     contact: Contact
-    curve: Curve
+    curve: ContactCurve
     carrier: Carrier
     node: Pin | Carrier
     penalty: float
@@ -91,12 +92,12 @@ class Pair:
 
     @property
     def name(self) -> str:
-        """Name of the pair."""
+        """Name of the contact."""
         return self.contact.name
 
     @property
     def radius(self) -> float:
-        """Radius of the pin, zero for an end [m]."""
+        """Radius of the pin; zero for an end [m]."""
         return self.node.radius if isinstance(self.node, Pin) else 0.0
 
     def position(self, u: Array, t: float) -> Array:
@@ -107,14 +108,14 @@ class Pair:
         return end
 
     def project(self, u: Array, t: float) -> Projection:
-        """Project the node on the curve deformed by ``u`` ``(n, 2)``."""
+        """Project the node on the curve at the nodal displacements ``u`` ``(n, 2)``."""
         return project(self.curve, self.carrier.points(u), self.position(u, t))
 
-    def gap(self, at: Projection) -> Any:
+    def gap(self, projection: Projection) -> Any:
         """``g = s n . (x_c - r) - R``, negative in penetration [m]."""
-        return self.contact.sign * at.distance - self.radius
+        return self.contact.sign * projection.distance - self.radius
 
-    def gap_derivatives(self, at: Projection) -> tuple[Array, Array]:
+    def gap_derivatives(self, projection: Projection) -> tuple[Array, Array]:
         """First and second derivative of the gap with respect to the nodal displacements.
 
         Returns
@@ -124,13 +125,18 @@ class Pair:
         H : (3, 3)
             ``d2g/du2 = U H U^T`` [1/m]; the first row and column vanish.
         """
-        s, d = self.contact.sign, -at.distance
-        first, second = self._relative(at, -s * at.normal), self._relative(at, at.tangent)
-        U = np.stack([first, second, self.carrier.pull(at.basis[1], at.normal)], axis=-1)
-        H = np.array([[0.0, 0.0, 0.0], [0.0, at.bend, -at.stretch], [0.0, -at.stretch, -d]])
-        return U.reshape(-1, 3), -s * H / (at.stretch**2 + d * at.bend)
+        s, d = self.contact.sign, -projection.distance
+        first = self._relative_forces(projection, -s * projection.normal)
+        second = self._relative_forces(projection, projection.tangent)
+        U = np.stack(
+            [first, second, self.carrier.nodal_forces(projection.basis[1], projection.normal)], axis=-1
+        )
+        H = np.array(
+            [[0.0, 0.0, 0.0], [0.0, projection.bend, -projection.stretch], [0.0, -projection.stretch, -d]]
+        )
+        return U.reshape(-1, 3), -s * H / (projection.stretch**2 + d * projection.bend)
 
-    def _relative(self, at: Projection, vector: Array) -> Array:
-        """``W^T vector``: on the curve, and with the opposite sign on the touching end."""
-        pulled = self.carrier.pull(at.basis[0], vector)
-        return pulled if isinstance(self.node, Pin) else pulled - self.node.pull(np.ones(1), vector)
+    def _relative_forces(self, projection: Projection, force: Array) -> Array:
+        """Nodal forces ``W^T force`` ``(n, 2)``: ``force`` on the curve and, if the node is an end, ``-force`` on it."""
+        forces = self.carrier.nodal_forces(projection.basis[0], force)
+        return forces if isinstance(self.node, Pin) else forces - self.node.nodal_forces(np.ones(1), force)

@@ -1,9 +1,9 @@
-"""The curve that a contact acts on, and the closest point on it.
+"""The smooth curve that represents a strip in contact, and the closest point on it.
 
-The curve is an average along the cubic spline through section or face positions ``X_k`` over their undeformed axial
-coordinates, ``r(zeta) = sum_q w_q sum_k B_k(zeta + d_q) X_k``: twice continuously differentiable, unlike the elements' edges.
-Without the average the contact's own dent, and the kink of the axis by shear, turn the normal by up to
-``F / (G A_e)`` according to where in an element the contact sits.
+A cubic spline passes through the section means or the face nodes ``X_k`` over their undeformed axial coordinates. The
+curve is a moving average of this spline, ``r(zeta) = sum_q w_q sum_k B_k(zeta + d_q) X_k``. It is twice continuously
+differentiable, whereas the edges of the elements have kinks. Without the average, the local indentation and the shear kink
+of the axis rotate the normal by up to ``F / (G A_e)``, depending on the position of the contact within an element.
 """
 
 from dataclasses import dataclass
@@ -19,22 +19,24 @@ from fem_reference.problem import Contact
 from fem_reference.strip import Strip
 
 _PROJECTION_STEPS = 40
+_HALF_BAND, _WINDOW = 45, 256
+"""Half bandwidth and window size of `band_slopes`, in stations."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Curve:
-    """A twice continuously differentiable curve along points carried by nodes.
+class ContactCurve:
+    """A twice continuously differentiable curve through points that move with the nodes.
 
     Parameters
     ----------
     stations
         Undeformed axial coordinates of the points, increasing, ``(m,)`` [m].
     slopes
-        Slopes of the cardinal splines at the stations as a band, `band_slopes`, ``(m, 2 b + 1)`` [1/m].
+        Slopes of the cardinal splines at the stations in band storage ``(m, 2 b + 1)``, see `band_slopes` [1/m].
     rows
-        Weights of the nodes in the points, ``(m, n)``.
+        Weights ``(m, n)`` of the nodes in the points.
     offsets, kernel
-        Distances ``(q,)`` [m] and weights ``(q,)`` of the points that are averaged.
+        Offsets ``(q,)`` [m] and weights ``(q,)`` of the points in the moving average.
     """
 
     stations: Floats
@@ -44,7 +46,7 @@ class Curve:
     kernel: Floats
 
     def basis(self, zeta: Any) -> Array:  # a float, or complex for a complex step
-        """Values and first two derivatives of the averaged cardinal splines at ``zeta``, ``(3, m)``."""
+        """Averaged cardinal splines and their first two derivatives at ``zeta``, ``(3, m)``."""
         s, points = self.stations, zeta + self.offsets
         k, hermite = self._pieces(points)
         weighted = hermite * self.kernel
@@ -52,22 +54,22 @@ class Curve:
         ones = np.eye(count)
         left, right = ones[k - first], ones[k - first + 1]
         values, slopes = (weighted[:, n] @ left + weighted[:, n + 1] @ right for n in (0, 2))
-        reach = self.slopes.shape[1]
-        half = reach // 2
-        shifted = np.zeros((count, count + reach))
-        shifted[:, :reach] = self.slopes[first : first + count]
-        # Every row begins one place further to the right than the one before.
-        rows = shifted.ravel()[:-count].reshape(count, count + reach - 1)
+        bandwidth = self.slopes.shape[1]
+        half = bandwidth // 2
+        shifted = np.zeros((count, count + bandwidth))
+        shifted[:, :bandwidth] = self.slopes[first : first + count]
+        # In this view of the padded array each row begins one column further to the right.
+        rows = shifted.ravel()[:-count].reshape(count, count + bandwidth - 1)
         padded = np.zeros((3, s.size + 2 * half), dtype=hermite.dtype)
-        padded[:, first : first + count + reach - 1] = slopes @ rows
+        padded[:, first : first + count + bandwidth - 1] = slopes @ rows
         padded[:, half + first : half + first + count] += values
         return padded[:, half : half + s.size]
 
     def _pieces(self, zeta: Array) -> tuple[Ints, Array]:
-        """Pieces of the spline that hold the points ``zeta`` ``(q,)``, and Hermite's polynomials there, ``(3, 4, q)``.
+        """Spline intervals that contain the points ``zeta`` ``(q,)``, and Hermite's polynomials there, ``(3, 4, q)``.
 
-        Rows value, first, second derivative; columns X_k, X_k+1, slope k, slope k+1. Beyond the ends they go on along their
-        tangents.
+        Rows: value, first and second derivative. Columns: factors of ``X_k``, ``X_k+1`` and the slopes at k and k + 1. Beyond
+        the ends the spline is continued along its tangents.
         """
         s = self.stations
         inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
@@ -88,17 +90,18 @@ class Curve:
 
 
 def band_slopes(stations: Floats) -> Floats:
-    """Slopes at the stations of the not-a-knot splines that are one at one station and zero at the others.
+    """Slopes of the cardinal not-a-knot splines at the stations, in band storage ``(m, 2 b + 1)`` with b <= 45.
 
-    Those of the stations ``k - b`` to ``k + b`` at the station k, ``(m, 2 b + 1)``, b = 45 or ``m - 1``: with every station further off they
-    fall to .27, at worst to a half. They are found window by window, so that work and memory grow with m only.
+    A cardinal spline is one at one station and zero at all others. Row k holds the slopes at station k of the splines of
+    the stations ``k - b`` to ``k + b``. From station to station the slopes decrease by the factor 0.27, at worst 0.5, so that
+    those outside the band vanish. They are computed in windows of stations; work and memory are proportional to m.
     """
     m = stations.size
-    half = min(_REACH, m - 1)
+    half = min(_HALF_BAND, m - 1)
     band = np.zeros((m, 2 * half + 1))
     for first in range(0, m, _WINDOW):
         last = min(first + _WINDOW, m)
-        low, high = max(0, first - 2 * _REACH), min(m, last + 2 * _REACH)
+        low, high = max(0, first - 2 * _HALF_BAND), min(m, last + 2 * _HALF_BAND)
         near = stations[low:high]
         full = np.zeros((last - first, high - low + 2 * half))
         full[:, half : half + near.size] = CubicSpline(near, np.eye(near.size), bc_type="not-a-knot")(
@@ -109,11 +112,8 @@ def band_slopes(stations: Floats) -> Floats:
     return band
 
 
-_REACH, _WINDOW = 45, 256
-
-
-def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve:
-    """Build the curve a contact acts on: section means ("axis") or the nodes of the touched face ("face")."""
+def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> ContactCurve:
+    """Build the curve through the section means ("axis") or the nodes of the touched face ("face")."""
     stations, rows = mesh.stations, mesh.sections
     if contact.surface == "face":
         face = mesh.edges[contact.side]
@@ -121,23 +121,21 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Curve
         rows = csr_matrix(
             (np.ones(face.size), (np.arange(face.size), face)), shape=(face.size, len(mesh.nodes))
         )
-    parts = (
-        stations / strip.length
-    )  # of a few stations a spline solves equations that lengths far from 1 make ill-conditioned
-    slopes = band_slopes(parts) / strip.length
+    # SciPy's equations for a spline of few stations are ill-conditioned if lengths are far from 1.
+    slopes = band_slopes(stations / strip.length) / strip.length
     offsets, kernel = averaging(contact_spread(strip, contact), float(np.diff(stations).min()))
-    return Curve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
 
 
 def contact_spread(strip: Strip, contact: Contact) -> float:
-    """Half of the length that a contact is spread over [m]: as given, or 1.5 heights, at most a tenth of the length."""
+    """Half the length of contact averaging [m]: ``contact.spread``, or 1.5 heights and at most a tenth of the length."""
     return min(1.5 * strip.height, strip.length / 10) if contact.spread is None else contact.spread
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
-    """Points and weights of an average over ``[-spread, spread]`` that leaves cubic curves as they are.
+    """Offsets and weights of an average over ``[-spread, spread]`` that is exact for cubic polynomials.
 
-    Gauss points, at least two to a ``spacing`` of the curve's points, of the kernel ``15 (3 - 10 x^2 + 7 x^4) / 32``
+    Gauss points, at least two in each ``spacing`` of the stations, weighted by the kernel ``15 (3 - 10 x^2 + 7 x^4) / 32``
     (Gasser, Mueller, Mammitzsch, J. R. Statist. Soc. B 47 (1985), 238-252, table 1).
     """
     if spread == 0:
@@ -149,26 +147,26 @@ def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Projection:
-    """A point seen from the curve.
+    """Projection of a point on the curve.
 
     Parameters
     ----------
     zeta
         Undeformed axial coordinate of the closest point [m].
     inside
-        Whether the closest point lies on the strip, rather than beyond an end.
+        Whether the closest point lies on the strip and not on the continuation beyond an end.
     stationary
-        Whether ``(r - x_c) . r' = 0`` was reached at ``zeta``.
+        Whether the iteration reached ``(r - x_c) . r' = 0`` at ``zeta``.
     distance
-        ``n . (x_c - r)``, positive on the left [m].
+        Signed distance ``n . (x_c - r)``, positive on the left [m].
     end_distance
-        Distance to the nearer end of the curve [m]: how far off a point is whose closest point is not inside.
+        Distance of the point from the end of the curve nearer to ``zeta`` [m].
     basis
         Spline values and derivatives at ``zeta``, ``(3, m)``.
     tangent, normal
         Unit tangent and left normal of the curve, ``(2,)``.
     stretch, bend
-        ``rho = |r'|`` [-] and ``k = n . r''`` [1/m].
+        ``rho = |r'|`` [-] and ``n . r''`` [1/m].
     """
 
     zeta: Any
@@ -183,8 +181,8 @@ class Projection:
     bend: Any
 
 
-def project(curve: Curve, X: Array, point: Array) -> Projection:
-    """Project a point on the curve through the positions ``X`` ``(m, 2)``."""
+def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
+    """Project a point on the curve whose points have the positions ``X`` ``(m, 2)``."""
     s = curve.stations
     zeta, stationary = closest(curve, X, point)
     B = curve.basis(zeta)
@@ -193,7 +191,7 @@ def project(curve: Curve, X: Array, point: Array) -> Projection:
     tangent = r1 / stretch
     normal = np.array([-tangent[1], tangent[0]])
     end = X[0] if 2 * np.real(zeta) < s[0] + s[-1] else X[-1]
-    slack = 1e-12 * (s[-1] - s[0])  # a point within round-off of an end is on the strip
+    slack = 1e-12 * (s[-1] - s[0])  # round-off must not place a point at an end beyond it
     return Projection(
         zeta=zeta,
         inside=bool(s[0] - slack <= np.real(zeta) <= s[-1] + slack),
@@ -208,26 +206,26 @@ def project(curve: Curve, X: Array, point: Array) -> Projection:
     )
 
 
-def closest(curve: Curve, X: Array, point: Array) -> tuple[Any, bool]:
-    """Coordinate of the closest point, by Newton's method from the closest station, and whether it is stationary.
+def closest(curve: ContactCurve, X: Array, point: Array) -> tuple[Any, bool]:
+    """Coordinate of the closest point by Newton's method from the closest station, and whether it is stationary.
 
-    The curve's end pieces are continued by one spacing, so that a point within round-off of an end, or beyond it
-    during an iteration, still has a projection. Near a centre of curvature the root is kept between the neighbouring stations.
+    The curve is continued by one spacing beyond its ends, so that a point beyond an end still has a projection. Near a
+    centre of curvature the root is searched between the neighbouring stations.
     """
     s = curve.stations
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
     k = int(np.argmin(((X - point).real ** 2).sum(axis=1)))
-    zeta, flat = s[k] + 0 * X[0, 0], False
+    zeta, bracket_tried = s[k] + 0 * X[0, 0], False
     for _ in range(_PROJECTION_STEPS):
-        fall, slope, size = _fall(curve, X, point, zeta)
-        # Beyond the centre of curvature, Gauss-Newton instead.
+        value, slope, size = _orthogonality(curve, X, point, zeta)
+        # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
         if slope.real <= 0.1 * size.real:
-            if not flat:
-                flat, found = True, _bracketed(curve, X, point, k)
-                if found is not None:
-                    return found, True
+            if not bracket_tried:
+                bracket_tried, root = True, _bracketed_root(curve, X, point, k)
+                if root is not None:
+                    return root, True
             slope = size
-        step = -fall / slope
+        step = -value / slope
         last, zeta = zeta, zeta + step if np.iscomplexobj(X) else min(max(zeta + step, low), high)
         if abs(step) <= 1e-14 * (s[-1] - s[0]):
             return zeta, True
@@ -236,30 +234,31 @@ def closest(curve: Curve, X: Array, point: Array) -> tuple[Any, bool]:
     return zeta, False
 
 
-def _fall(curve: Curve, X: Array, point: Array, zeta: Any) -> tuple[Any, Any, Any]:
-    """``(r - x_c) . r'``, its slope ``r' . r' + (r - x_c) . r''`` and ``r' . r'``."""
+def _orthogonality(curve: ContactCurve, X: Array, point: Array, zeta: Any) -> tuple[Any, Any, Any]:
+    """Return ``(r - x_c) . r'``, its slope ``r' . r' + (r - x_c) . r''`` and ``r' . r'``."""
     r, r1, r2 = curve.basis(zeta) @ X
     size = r1 @ r1
     return (r - point) @ r1, size + (r - point) @ r2, size
 
 
-def _bracketed(curve: Curve, X: Array, point: Array, k: int) -> Any | None:
-    """Closest point between the neighbours of station k, by Newton's method kept in a bracket; None if there is none."""
+def _bracketed_root(curve: ContactCurve, X: Array, point: Array, k: int) -> Any | None:
+    """Closest point between the neighbours of station k by bracketed Newton iteration; None without a sign change."""
     s = np.concatenate([[2 * curve.stations[0] - curve.stations[1]], curve.stations])
     s = np.append(s, 2 * s[-1] - s[-2])
     low, high = float(s[k]), float(s[k + 2])
-    if _fall(curve, X, point, low)[0].real > 0 or _fall(curve, X, point, high)[0].real < 0:
+    if _orthogonality(curve, X, point, low)[0].real > 0 or _orthogonality(curve, X, point, high)[0].real < 0:
         return None
     zeta = float(s[k + 1])
     for _ in range(_PROJECTION_STEPS):
-        fall, slope, size = (term.real for term in _fall(curve, X, point, zeta))
-        low, high = (low, zeta) if fall > 0 else (zeta, high)
-        after = zeta - fall / slope if slope > 0 else np.inf
-        if not low < after < high:
-            after = (low + high) / 2
-        done = abs(fall) <= 1e-14 * size * (s[-1] - s[0]) or after == zeta
-        zeta = after
+        value, slope, size = (term.real for term in _orthogonality(curve, X, point, zeta))
+        low, high = (low, zeta) if value > 0 else (zeta, high)
+        following = zeta - value / slope if slope > 0 else np.inf
+        if not low < following < high:
+            following = (low + high) / 2
+        done = abs(value) <= 1e-14 * size * (s[-1] - s[0]) or following == zeta
+        zeta = following
         if done:
             break
-    fall, slope, _ = _fall(curve, X, point, zeta + 0 * X[0, 0])
-    return zeta - fall / slope if np.iscomplexobj(X) else zeta
+    # One complex Newton step carries the derivative of a complex-step check.
+    value, slope, _ = _orthogonality(curve, X, point, zeta + 0 * X[0, 0])
+    return zeta - value / slope if np.iscomplexobj(X) else zeta

@@ -1,7 +1,8 @@
 """Factorisation of a body's tangent stiffness, and the number of its negative eigenvalues.
 
-A banded Cholesky factorisation that succeeds says "none". Where it fails, ``K = L D L^T`` with diagonal pivots shows the
-signs (Sylvester's law of inertia), as long as its entries do not grow; where they do, the eigenvalues are counted.
+A banded Cholesky factorisation succeeds if and only if all eigenvalues are positive. If it fails, the signs of the pivots of
+``K = L D L^T`` give the number of negative eigenvalues (Sylvester's law of inertia). Pivots of a factorisation whose
+entries grow are unreliable; then the eigenvalues themselves are counted.
 """
 
 from collections.abc import Callable
@@ -16,31 +17,31 @@ from scipy.sparse.linalg import splu
 from fem_reference.arrays import Floats, Ints
 
 _GROWTH = 1e3
-"""Largest ``|L| |D L^T|`` over ``|K|``, row sums, at which the signs of pivots are trusted."""
+"""Largest ratio of the row sums of ``|L| |D L^T|`` and ``|K|`` at which the signs of the pivots are used."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Band:
-    """Places of a symmetric matrix's stored entries in LAPACK's lower band storage.
+    """Positions of the entries of a symmetric sparse matrix in LAPACK's lower band storage.
 
     Parameters
     ----------
     entries
-        Numbers of the entries on and below the diagonal among those of the compressed columns.
-    places
-        Their places in the raveled band ``(m, width + 1)``, column after column.
+        Indices of the entries on and below the diagonal in the compressed-column data.
+    positions
+        Positions of these entries in the raveled band ``(m, width + 1)``, column after column.
     width
         Number of diagonals below the main one.
     """
 
     entries: Ints
-    places: Ints
+    positions: Ints
     width: int
 
     def fill(self, K: csc_matrix) -> Floats:
-        """Band ``(width + 1, m)`` of a matrix, in Fortran's order."""
+        """Return a matrix in band storage, ``(width + 1, m)``, in Fortran order."""
         flat = np.zeros(K.shape[0] * (self.width + 1))
-        flat[self.places] = K.data[self.entries]
+        flat[self.positions] = K.data[self.entries]
         return flat.reshape(K.shape[0], self.width + 1).T
 
 
@@ -53,7 +54,7 @@ class Factor:
     solve
         Solution of ``K x = b`` for ``b`` ``(m,)`` or ``(m, c)``.
     negatives
-        Counts the negative eigenvalues.
+        Function that returns the number of negative eigenvalues.
     """
 
     solve: Callable[[Floats], Floats]
@@ -61,13 +62,13 @@ class Factor:
 
 
 def band_of(indices: Ints, indptr: Ints) -> Band:
-    """Find the band of a pattern of compressed columns."""
+    """Return the band of a sparsity pattern in compressed columns."""
     column = np.repeat(np.arange(indptr.size - 1), np.diff(indptr))
     entries = np.flatnonzero(indices >= column)
     below = indices[entries] - column[entries]
     width = int(below.max(initial=0))
-    places = column[entries].astype(np.int64) * (width + 1) + below
-    return Band(entries=entries, places=places, width=width)
+    positions = column[entries].astype(np.int64) * (width + 1) + below
+    return Band(entries=entries, positions=positions, width=width)
 
 
 def factorise(K: csc_matrix, band: Band) -> Factor | None:
@@ -83,11 +84,12 @@ def factorise(K: csc_matrix, band: Band) -> Factor | None:
 
 
 def _indefinite(K: csc_matrix, band: Band) -> Factor | None:
+    """Factorise a matrix that is not positive definite; None if it is singular."""
     try:
         lu = splu(K, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        if _trusted(K, lu):
+        if _reliable(K, lu):
             return Factor(solve=lu.solve, negatives=lambda: int((lu.U.diagonal() < 0).sum()))
-    except RuntimeError:  # a pivot vanished
+    except RuntimeError:  # a zero pivot
         pass
     try:
         lu = splu(K, permc_spec="NATURAL")
@@ -96,8 +98,8 @@ def _indefinite(K: csc_matrix, band: Band) -> Factor | None:
     return Factor(solve=lu.solve, negatives=lambda: count_negatives(band.fill(K)))
 
 
-def _trusted(K: csc_matrix, lu: object) -> bool:
-    """Whether every pivot was taken from the diagonal, and the factors did not grow."""
+def _reliable(K: csc_matrix, lu: object) -> bool:
+    """Whether every pivot was taken from the diagonal and the factors did not grow."""
     rows, columns, L, U = (getattr(lu, name) for name in ("perm_r", "perm_c", "L", "U"))
     if not np.array_equal(rows, columns):
         return False
@@ -107,6 +109,6 @@ def _trusted(K: csc_matrix, lu: object) -> bool:
 
 
 def count_negatives(band: Floats) -> int:
-    """Count the negative eigenvalues of a lower band ``(width + 1, m)`` one by one."""
+    """Count the negative eigenvalues of a matrix in lower band storage ``(width + 1, m)`` by computing them."""
     bound = 2 * band.shape[0] * float(np.abs(band).max())
     return int(eigvals_banded(band, lower=True, select="v", select_range=(-bound, 0.0)).size)

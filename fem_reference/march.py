@@ -1,7 +1,7 @@
-"""March along the load parameters: steps that stay on their branch, through slip-offs that are allowed.
+"""March along the load parameters with step control, branch control and slip-off.
 
-A step is accepted if it departs little from the tangents at both ends, and the index is the same or the set of closed contacts
-has changed. The load parameters asked for are where states are read; what lies between decides the steps.
+A step is accepted if it departs little from the tangents at both ends, and if the index is unchanged or the set of closed
+contacts has changed. The steps between the requested load parameters are chosen automatically.
 """
 
 from collections.abc import Iterator
@@ -15,45 +15,45 @@ from fem_reference.critical import (
     CriticalPoint,
     Located,
     bifurcation,
+    displacement_tolerance,
     limit_point,
-    noise,
-    release,
+    opening_limit,
     stable_branch,
 )
-from fem_reference.line_contact import line_contact, tightest
+from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
 from fem_reference.newton import Attempt
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, State, Touch, at_rest, state
+from fem_reference.state import Condition, State, Touch, at_rest, build_state
 from fem_reference.status import Status
-from fem_reference.track import KEPT, Accepted, accept, departure, predict
+from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
 
-_NEAR = 1e-9
-"""Turns of a pin that are as close as this to an end of a step are there."""
-_STEEPER = 1.5
-"""Growth of the rate over a step after which a limit point is looked for."""
-_PATIENCE = 5
-"""Attempts given up in a row, after which what stands in the way is looked for."""
+_LOAD_ROUND_OFF = 1e-9
+"""Largest distance at which the turn of a pin's path and the end of a step coincide."""
+_RATE_GROWTH = 1.5
+"""Growth of the rate over a step beyond which a limit point is searched."""
+_SEARCH_INTERVAL = 5
+"""Number of consecutive rejected attempts after which a limit point is searched."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Step:
-    """The way to one common load parameter.
+    """Progress to one requested load parameter.
 
     Parameters
     ----------
     status
-        ``Status.CONVERGED`` if ``load_parameter`` is the common one; otherwise why the march ended here.
+        ``Status.CONVERGED`` if the requested load parameter was reached; otherwise the reason why the march ended.
     cause, pair
-        Status of the last attempt, and the number of the contact it is about.
+        Status of the last attempt, and the index of the contact to which it refers.
     load_parameter, state, index
-        The last accepted load parameter, or that of the event which ends the path; the last accepted state and its index.
+        Last accepted state with its load parameter and index. If an event ends the path, its load parameter instead.
     iterations, cutbacks, substeps
-        Linear solutions, attempts given up and states accepted since the common load parameter before.
+        Numbers of linear solutions, rejected attempts and accepted states since the previous requested load parameter.
     slips
-        Contacts that slipped off, with their load parameters.
+        Indices of contacts that slipped off, with the load parameters.
     critical
-        Critical points on the way.
+        Critical points since the previous requested load parameter.
     """
 
     status: Status
@@ -70,8 +70,8 @@ class Step:
 
 
 @dataclass(kw_only=True, eq=False)
-class _Walk:
-    """What changes on the way to a load parameter."""
+class _Progress:
+    """Variables of the march to one requested load parameter."""
 
     track: tuple[Accepted, ...]
     trial: float
@@ -90,184 +90,192 @@ class _Walk:
     def last(self) -> Accepted:
         return self.track[-1]
 
-    def accept(self, *found: Accepted, afresh: bool = False) -> None:
-        self.track = found if afresh else (*self.track, *found)[-KEPT:]
+    def accept(self, state: Accepted, *, restart: bool = False) -> None:
+        """Append an accepted state to the track, or start a new track with it."""
+        self.track = (state,) if restart else (*self.track, state)[-TRACK_LENGTH:]
         self.substeps += 1
         self.failures = 0
 
 
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
-    """Yield the accepted state at every load parameter; if one cannot be reached, a last step says why."""
+    """Yield a step to every load parameter; a step with another status than ``CONVERGED`` is the last."""
     start = accept(model, at_rest(model), settings)
-    assert start is not None, "a strip at rest has a stiffness"
+    assert start is not None, "the undeformed stiffness is regular"
     track: tuple[Accepted, ...] = (start,)
     trial = settings.first_step
     for target in map(float, load_parameters):
-        walk = _Walk(track=track, trial=trial, order=settings.predictor_order)
-        status = _reach(model, target, walk, settings)
-        yield _step(walk, status)
+        progress = _Progress(track=track, trial=trial, order=settings.predictor_order)
+        status = _advance(model, target, progress, settings)
+        yield _step(progress, status)
         if status is not Status.CONVERGED:
             return
-        track, trial = walk.track, walk.trial
+        track, trial = progress.track, progress.trial
 
 
-def _step(walk: _Walk, status: Status) -> Step:
-    last = walk.last
+def _step(progress: _Progress, status: Status) -> Step:
+    """Return the completed step."""
+    last = progress.last
     return Step(
         status=status,
-        cause=walk.cause,
-        pair=walk.pair,
-        load_parameter=last.at.t if walk.ended_at is None else walk.ended_at,
-        state=last.at,
+        cause=progress.cause,
+        pair=progress.pair,
+        load_parameter=last.state.t if progress.ended_at is None else progress.ended_at,
+        state=last.state,
         index=last.index,
-        iterations=walk.iterations,
-        cutbacks=walk.cutbacks,
-        substeps=walk.substeps,
-        slips=tuple(walk.slips),
-        critical=tuple(walk.critical),
+        iterations=progress.iterations,
+        cutbacks=progress.cutbacks,
+        substeps=progress.substeps,
+        slips=tuple(progress.slips),
+        critical=tuple(progress.critical),
     )
 
 
-def _reach(model: Model, target: float, walk: _Walk, settings: Settings) -> Status:
-    """Go from the track's end to ``target``; return ``Status.CONVERGED`` there, or why the path ended before."""
-    while walk.last.at.t < target:
-        if walk.cutbacks + walk.substeps >= settings.max_attempts:
+def _advance(model: Model, target: float, progress: _Progress, settings: Settings) -> Status:
+    """Advance to ``target``; return ``Status.CONVERGED``, or the reason why the path ended before."""
+    while progress.last.state.t < target:
+        if progress.cutbacks + progress.substeps >= settings.max_attempts:
             return Status.STEP_LIMIT
-        goal = _goal(model, walk, target)
-        attempt = equilibrium(model, predict(model, walk.track, goal, walk.order), settings)
-        walk.iterations += attempt.iterations
-        walk.cause, walk.pair = attempt.status, attempt.pair
-        found = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
-        ended = _judge(model, walk, found, goal, settings)
-        if ended is None and walk.failures:
-            ended = _blocked(model, walk, attempt, goal, target, settings)
+        goal = _goal(model, progress, target)
+        attempt = equilibrium(model, predict(model, progress.track, goal, progress.order), settings)
+        progress.iterations += attempt.iterations
+        progress.cause, progress.pair = attempt.status, attempt.pair
+        candidate = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
+        ended = _accept_or_shorten(model, progress, candidate, goal, settings)
+        if ended is None and progress.failures:
+            ended = _find_obstacle(model, progress, attempt, goal, target, settings)
         if ended is not None:
             return ended
     return Status.CONVERGED
 
 
-def _goal(model: Model, walk: _Walk, target: float) -> float:
-    """Load parameter of the next attempt: a remainder that is all but covered is taken whole, so that no sliver is left."""
-    t = walk.last.at.t
-    end = next((turn for turn in model.problem.turns if t + _NEAR < turn < target - _NEAR), target)
-    return end if walk.trial >= (end - t) * (1 - 1e-6) else t + walk.trial
+def _goal(model: Model, progress: _Progress, target: float) -> float:
+    """Load parameter of the next attempt. The step ends at a turn of a pin's path and leaves no tiny remainder."""
+    t = progress.last.state.t
+    end = next(
+        (turn for turn in model.problem.turns if t + _LOAD_ROUND_OFF < turn < target - _LOAD_ROUND_OFF),
+        target,
+    )
+    return end if progress.trial >= (end - t) * (1 - 1e-6) else t + progress.trial
 
 
-def _judge(
-    model: Model, walk: _Walk, found: Accepted | None, goal: float, settings: Settings
+def _accept_or_shorten(
+    model: Model, progress: _Progress, candidate: Accepted | None, goal: float, settings: Settings
 ) -> Status | None:
-    """Accept what an attempt found or count it as a failure; return a status if the path ends at a critical point."""
-    last, shorter = walk.last, 0.5
-    h = goal - last.at.t
-    if found is not None:
-        far = departure(last, found, noise(model, settings))
-        tight = tightest(found.at)
-        same = found.closed == last.closed and -1 not in (found.index, last.index)
-        if not far <= settings.largest_departure:
-            walk.cause = Status.ANOTHER_BRANCH
-            shorter = max(0.1, min(0.5, 0.7 * settings.largest_departure / far))
-        elif tight is not None and tight[1] <= 0:
-            walk.cause, walk.pair = Status.LINE_CONTACT, tight[0]
-        elif not same and settings.branch != "primary" and found.index > max(last.index, 0):
-            walk.cause = Status.LIMIT_POINT
-        elif not same or found.index == last.index:
-            grown = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(far, 1e-9)))
-            walk.trial = grown if h >= walk.trial * (1 - 1e-6) else max(grown, walk.trial)
-            walk.order = settings.predictor_order
-            walk.accept(found)
+    """Accept the state of an attempt or shorten the step; return a status if the path ends at a bifurcation."""
+    last, reduction = progress.last, 0.5
+    h = goal - last.state.t
+    if candidate is not None:
+        distance = departure(last, candidate, displacement_tolerance(model, settings))
+        tightest = least_clearance(candidate.state)
+        same_set = candidate.state.contact_set == last.state.contact_set
+        comparable = same_set and -1 not in (candidate.index, last.index)
+        if not distance <= settings.largest_departure:
+            progress.cause = Status.ANOTHER_BRANCH
+            reduction = max(0.1, min(0.5, 0.7 * settings.largest_departure / distance))
+        elif tightest is not None and tightest[1] <= 0:
+            progress.cause, progress.pair = Status.LINE_CONTACT, tightest[0]
+        elif not comparable and settings.branch != "primary" and candidate.index > max(last.index, 0):
+            progress.cause = Status.LIMIT_POINT
+        elif not comparable or candidate.index == last.index:
+            step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
+            progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
+            progress.order = settings.predictor_order
+            progress.accept(candidate)
             return None
         else:
-            located = bifurcation(model, last, found, settings)
+            located = bifurcation(model, last, candidate, settings)
             if located is not None:
-                return _divide(model, walk, found, located, settings)
-            walk.cause = Status.ANOTHER_BRANCH
-    walk.cutbacks += 1
-    walk.failures += 1
-    walk.trial = shorter * h
-    # After a failure the extrapolation itself is in doubt.
-    walk.order = max(walk.order - 2, 1)
+                return _continue_from_bifurcation(model, progress, candidate, located, settings)
+            progress.cause = Status.ANOTHER_BRANCH
+    progress.cutbacks += 1
+    progress.failures += 1
+    progress.trial = reduction * h
+    # A high-order extrapolation may be the reason of the failure.
+    progress.order = max(progress.order - 2, 1)
     return None
 
 
-def _divide(
-    model: Model, walk: _Walk, found: Accepted, located: Located, settings: Settings
+def _continue_from_bifurcation(
+    model: Model, progress: _Progress, candidate: Accepted, located: Located, settings: Settings
 ) -> Status | None:
-    """Go on from a bifurcation on the branch that is asked for; return a status if none is."""
-    walk.critical.append(located.point)
+    """Continue on the branch of `Settings.branch`; return a status if the path ends at the bifurcation."""
+    progress.critical.append(located.point)
     if settings.branch == "primary":
-        walk.accept(found)
+        progress.accept(candidate)
         return None
     t = located.point.load_parameter
     if settings.branch == "stable":
-        turned = stable_branch(model, located, found.at.t, settings)
-        if turned is not None:
-            walk.accept(turned, afresh=True)
-            walk.trial = turned.at.t - t
+        stable = stable_branch(model, located, candidate.state.t, settings)
+        if stable is not None:
+            progress.accept(stable, restart=True)
+            progress.trial = stable.state.t - t
             return None
-    walk.cause, walk.ended_at = Status.BIFURCATION, t
+    progress.cause, progress.ended_at = Status.BIFURCATION, t
     return Status.BIFURCATION
 
 
-def _blocked(
-    model: Model, walk: _Walk, attempt: Attempt, goal: float, target: float, settings: Settings
+def _find_obstacle(
+    model: Model, progress: _Progress, attempt: Attempt, goal: float, target: float, settings: Settings
 ) -> Status | None:
-    """Search for what stands in the way of ever shorter steps; return a status if the path ends there."""
-    floor = walk.trial < settings.min_step
-    line = line_contact(model, walk.track, settings)
+    """Search for line contact or a limit point ahead of a rejected attempt; return a status if the path ends there."""
+    at_floor = progress.trial < settings.min_step
+    line = line_contact(model, progress.track, settings)
     if line is not None and line[0] <= target:
-        walk.ended_at, walk.pair, last = line
-        walk.track = (*walk.track, last)
-        walk.cause = Status.LINE_CONTACT
+        progress.ended_at, progress.pair, last = line
+        progress.track = (*progress.track, last)
+        progress.cause = Status.LINE_CONTACT
         return Status.LINE_CONTACT
-    if not floor and walk.failures % _PATIENCE and not _steeper(walk.track):
+    if not at_floor and progress.failures % _SEARCH_INTERVAL and not _approaches_fold(progress.track):
         return None
-    located = limit_point(model, walk.last, max(walk.trial, settings.min_step), settings)
-    if located is not None and walk.last.at.t <= located.point.load_parameter <= target:
-        walk.critical.append(located.point)
-        walk.ended_at, walk.pair = located.point.load_parameter, None
-        walk.cause = Status.LIMIT_POINT
+    located = limit_point(model, progress.last, max(progress.trial, settings.min_step), settings)
+    if located is not None and progress.last.state.t <= located.point.load_parameter <= target:
+        progress.critical.append(located.point)
+        progress.ended_at, progress.pair = located.point.load_parameter, None
+        progress.cause = Status.LIMIT_POINT
         return Status.LIMIT_POINT
-    return _at_floor(model, walk, attempt, goal, settings) if floor else None
+    return _at_smallest_step(model, progress, attempt, goal, settings) if at_floor else None
 
 
-def _at_floor(model: Model, walk: _Walk, attempt: Attempt, goal: float, settings: Settings) -> Status | None:
-    """Let go of a contact that slips off where that is allowed; return a status if the path ends here."""
-    loosened = release(model, walk.last, settings)
-    if loosened is not None:
-        walk.critical.append(loosened)
-        walk.cause, walk.pair = Status.LIMIT_POINT, None
+def _at_smallest_step(
+    model: Model, progress: _Progress, attempt: Attempt, goal: float, settings: Settings
+) -> Status | None:
+    """Release a contact that opens or slips off; return a status if the path ends here."""
+    limit = opening_limit(model, progress.last, settings)
+    if limit is not None:
+        progress.critical.append(limit)
+        progress.cause, progress.pair = Status.LIMIT_POINT, None
         return Status.LIMIT_POINT
-    after = _after_slip(model, walk.last.at, goal, attempt, settings)
-    found = None
+    after = _after_slip(model, progress.last.state, goal, attempt, settings)
+    released = None
     if after is not None and after.status is Status.CONVERGED:
-        found = accept(model, after.state, settings)
-    if after is None or found is None:
+        released = accept(model, after.state, settings)
+    if after is None or released is None:
         lost = attempt.status is Status.LOST_CONTACT
         return Status.LOST_CONTACT if lost else Status.CUTBACK_FLOOR
-    assert attempt.pair is not None, "a slip-off is about a pair"
-    walk.iterations += after.iterations
-    walk.slips.append((attempt.pair, goal))
-    walk.accept(found, afresh=True)
-    walk.trial, walk.order = settings.first_step, settings.predictor_order
+    assert attempt.pair is not None, "a slip-off refers to a pair"
+    progress.iterations += after.iterations
+    progress.slips.append((attempt.pair, goal))
+    progress.accept(released, restart=True)
+    progress.trial, progress.order = settings.first_step, settings.predictor_order
     return None
 
 
-def _steeper(track: tuple[Accepted, ...]) -> bool:
-    """Whether the rate has grown over the last step as it does towards a limit point."""
-    if len(track) < 2 or track[-1].closed != track[-2].closed:
+def _approaches_fold(track: tuple[Accepted, ...]) -> bool:
+    """Whether the rate grows over the last step as before a limit point."""
+    if len(track) < 2 or track[-1].state.contact_set != track[-2].state.contact_set:
         return False
-    before, after = (one.at.t for one in track[-2:])
-    first, second = (float(np.linalg.norm(one.rate(before, after).u)) for one in track[-2:])
-    return second > _STEEPER * first
+    before, after = (accepted.state.t for accepted in track[-2:])
+    first, second = (float(np.linalg.norm(accepted.rate(before, after).u)) for accepted in track[-2:])
+    return second > _RATE_GROWTH * first
 
 
 def _after_slip(
     model: Model, before: State, goal: float, attempt: Attempt, settings: Settings
 ) -> Attempt | None:
-    """Equilibrium without the contact that is lost over an end; None if none is, or if it must be kept.
+    """Equilibrium after a slip-off without the lost contact; None without slip-off, or if the contact must be kept.
 
-    A strip that nothing else touches springs back to rest, and all its contacts open. Every other contact that its node is
-    about to reach, within the strip's height, is tried closed first.
+    A strip without another closed contact springs back to rest, and all its contacts open. Every other contact whose
+    gap is smaller than the strip's height is closed in the initial guess.
     """
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
@@ -283,10 +291,11 @@ def _after_slip(
         _condition_after(model, touch, strip if free else None, number == attempt.pair)
         for number, touch in enumerate(before.touches)
     ]
-    return equilibrium(model, state(model, u, goal, tuple(conditions)), settings)
+    return equilibrium(model, build_state(model, u, goal, tuple(conditions)), settings)
 
 
 def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost: bool) -> Condition:
+    """Condition of a contact in the initial guess after a slip-off."""
     if lost:
         return touch.condition.opened(armed=False)
     if at_rest_strip in touch.pair.strips:

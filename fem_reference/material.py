@@ -1,10 +1,10 @@
-r"""Hyperelastic laws of plane stress and plane strain behind one interface: energy, stress and tangent.
+r"""Hyperelastic laws in plane stress and plane strain: energy, stress and tangent.
 
 Every law is a function of the deformation gradient in the plane, ``F``: tensor axes first, any number of point axes
-after. ``lam`` and ``mu`` are Lame's constants. Isotropic laws that are linear in a strain of their own meet plane
-stress exactly with ``lam`` replaced by ``2 lam mu / (lam + 2 mu) = E nu / (1 - nu^2)``: the transverse strain that
-annuls the transverse stress is ``-lam / (lam + 2 mu)`` times the trace in the plane. A nonlinear law has its
-transverse stretch condensed at every point.
+after. ``lam`` and ``mu`` are Lame's constants. A law whose stress is linear in a strain measure is exact in plane stress
+with ``lam`` replaced by ``2 lam mu / (lam + 2 mu) = E nu / (1 - nu^2)``, since the transverse stress vanishes at the
+transverse strain ``-lam / (lam + 2 mu)`` times the trace in the plane. For a nonlinear law the transverse stretch is
+condensed at every point.
 """
 
 from collections.abc import Callable
@@ -44,7 +44,7 @@ def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float,
 
 
 def in_plane_lam(lam: float, mu: float, plane: str) -> float:
-    """Return lam as a law linear in its strain has it in the plane ``"stress"`` or ``"strain"`` [Pa]."""
+    """Return the constant lam of a linear law in plane ``"stress"`` or ``"strain"`` [Pa]."""
     return 2 * lam * mu / (lam + 2 * mu) if plane == "stress" else lam
 
 

@@ -1,7 +1,4 @@
-"""The strip's mesh of quadrilaterals, in the strip's own frame.
-
-This and `fem_reference.mesh_file` are the modules that read scikit-fem's arrays.
-"""
+"""Meshes of quadrilaterals in the frame of the strip."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,41 +10,41 @@ from fem_reference.arrays import Floats, Ints
 from fem_reference.strip import Strip
 
 GAUSS = {"Q1": (2, 2), "Q2": (2, 3), "Q2-full": (3, 3)}
-"""Gauss points of each element along the strip and across.
+"""Numbers of Gauss points in each element, along the strip and across.
 
-An arc of the angle a over an element's length, drawn by parabolas, has a membrane strain of about a^2 / 24 times
-Legendre's second polynomial; two points along the strip do not see it, three lock by it. Three points across leave the
-rule without modes of no energy.
+If an element is bent by the angle a, its parabolic shape functions have a spurious membrane strain of about a^2 / 24 times
+Legendre's second polynomial along the strip. The polynomial vanishes at two Gauss points; with three points the
+element locks. Three points across the strip avoid zero-energy modes.
 """
 EDGES = ("start", "end", "right", "left")
-"""The ends, and the faces on either side of the direction from start to end."""
+"""Names of the two ends and of the faces to the right and left of the direction from start to end."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretisation:
-    """Elements of a strip in its own frame (x along the axis from 0 to L, y to its left).
+    """Elements of a strip in the strip's frame, with x along the axis from 0 to L and y to the left.
 
     Parameters
     ----------
     nodes
         Reference positions ``(n, 2)`` [m].
     cells
-        Nodes of each element ``(e, k)``: four corners anticlockwise from the lower left one and, but for Q1, four midsides
-        and the centre.
+        Nodes of each element ``(e, k)``: four corners anticlockwise from the lower left one; biquadratic elements also
+        have four midside nodes and a centre node.
     gradients
         Shape-function gradients ``(e, 2 q, k)``, direction-major in the middle axis [1/m].
     weights
         Quadrature weights ``(e, q)``, width included [m^3].
     nodal_gradients
-        As ``gradients``, at the nodes of each element instead of the quadrature points.
+        Shape-function gradients at the element's own nodes, in the same layout as ``gradients`` [1/m].
     gather
-        Sums at the nodes of what elements state about theirs, ``(n, e k)``.
+        Sparse matrix ``(n, e k)`` that adds the nodal values of all elements.
     edges
-        Nodes of the four edges by name (`EDGES`): the ends upwards, the faces from start to end.
+        Nodes of the four edges by name (`EDGES`). An end is ordered upwards, a face from start to end.
     stations
-        Axial coordinates of the sections, increasing, ``(m,)`` [m].
+        Undeformed axial coordinates of the sections, increasing, ``(m,)`` [m].
     sections
-        Section means as weights of the nodes, ``(m, n)``; rows sum to one.
+        Weights ``(m, n)`` of the nodes in the section means; rows sum to one.
     basis
         scikit-fem's scalar basis, for `fem_reference.sampling`.
     """
@@ -65,7 +62,7 @@ class Discretisation:
 
 
 def structured_mesh(strip: Strip) -> Discretisation:
-    """Mesh a strip by equal rows over the height and elements along it in a geometric series."""
+    """Mesh a strip with equal rows over the height and element lengths in a geometric series along the axis."""
     from skfem import MeshQuad
 
     nx, ny = strip.mesh
@@ -84,7 +81,7 @@ def structured_mesh(strip: Strip) -> Discretisation:
 
 
 def scalar_basis(mesh: Any, element: str) -> Any:
-    """scikit-fem's basis of an element on straight-sided quadrilaterals, with its Gauss points (`GAUSS`)."""
+    """Return scikit-fem's basis for an element on straight-sided quadrilaterals with the Gauss points of `GAUSS`."""
     from skfem import Basis, ElementQuad1, ElementQuad2
 
     (x, wx), (y, wy) = (np.polynomial.legendre.leggauss(n) for n in GAUSS[element])
@@ -96,7 +93,7 @@ def scalar_basis(mesh: Any, element: str) -> Any:
 def from_basis(
     strip: Strip, basis: Any, edges: dict[str, Ints], stations: Floats, sections: csr_matrix
 ) -> Discretisation:
-    """Collect the arrays of a scikit-fem basis."""
+    """Build the discretisation from a scikit-fem basis."""
     from skfem import Basis
 
     element, cells = basis.elem, basis.element_dofs.T.astype(np.int64)
@@ -117,7 +114,7 @@ def from_basis(
 
 
 def _fractions(n: int, grading: float) -> Floats:
-    """Return ``n + 1`` points of [0, 1] whose distances form a geometric series from 1 to ``grading``."""
+    """Return ``n + 1`` points of [0, 1] with distances in a geometric series; last over first is ``grading``."""
     lengths = grading ** (np.arange(n) / (n - 1))
     points = np.concatenate([[0.0], np.cumsum(lengths)]) / lengths.sum()
     points[-1] = 1.0
@@ -125,7 +122,7 @@ def _fractions(n: int, grading: float) -> Floats:
 
 
 def edge_weights(element: str, along: Floats) -> Floats:
-    """Shares of an even traction at an edge's nodes, placed ``along`` it in order: ``integral N ds / length``, ``(r,)``."""
+    """Nodal shares ``integral N ds / length`` ``(r,)`` of a uniform traction on an edge; ``along`` are the nodes' coordinates."""
     pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
     weights = np.zeros(along.size)
     for j in range(0, along.size - step, step):
@@ -134,7 +131,7 @@ def edge_weights(element: str, along: Floats) -> Floats:
 
 
 def _gradients(basis: Any) -> Floats:
-    """Gradients ``(e, 2 q, k)`` from scikit-fem's ``(2, e, q)`` per shape function."""
+    """Arrange scikit-fem's gradients, ``(2, e, q)`` per shape function, as ``(e, 2 q, k)``."""
     stacked = np.stack([field[0].grad for field in basis])
     shapes, axes, elements, points = stacked.shape
     return np.ascontiguousarray(stacked.transpose(2, 1, 3, 0)).reshape(elements, axes * points, shapes)

@@ -1,4 +1,4 @@
-"""A strip's mesh of the user's own, read by meshio and checked."""
+"""Mesh files of the user, read by meshio and checked."""
 
 from pathlib import Path
 from typing import Any
@@ -10,39 +10,38 @@ from scipy.sparse.csgraph import connected_components
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import EDGES, Discretisation, from_basis, scalar_basis
 from fem_reference.mesh_text import MeshError, check_file
-from fem_reference.sampling import sample_basis
+from fem_reference.sampling import SECTION_LAYERS, sample_basis, section_points
 from fem_reference.strip import Strip
 
-_LAYERS = 8
 _ROUND_OFF = 1e-9
-_HEIGHT = 1e-6
-"""Distance of a face from its place, relative to the height, that digits written to a file may leave."""
+_FACE_TOLERANCE = 1e-6
+"""Largest distance of a face from half the height, relative to the height: the file may hold few digits."""
 
 
 def read_mesh(strip: Strip) -> Discretisation:
-    """Read ``strip.mesh_file``: straight-sided quadrilaterals in the strip's frame, with four named edges.
+    """Read ``strip.mesh_file``, a mesh of straight-sided quadrilaterals in the strip's frame with four named edges.
 
-    The mesh fills the strip: its ends "start" and "end" lie at x = 0 and at its length, its faces "right" and "left" at half its
-    height below and above the axis, all in the plane z = 0. The edges are named sets of lines: Gmsh's physical groups, or
-    meshio's cell sets.
+    The mesh lies in the plane z = 0 and fills the strip. The edges "start" and "end" lie at x = 0 and at the strip's length,
+    "right" and "left" at half the height below and above the axis. An edge is a named set of lines, either a physical
+    group of Gmsh or a cell set of meshio.
 
     Raises
     ------
     ValueError
-        If the file is not a regular one of at most 16 MB, cannot be read, an edge is missing or out of place, an element is
-        clockwise, not convex or without area, a node belongs to none, or the mesh falls into parts or has holes.
+        If the file is not a regular file of at most 16 MB or cannot be read; if an edge is missing or misplaced; if an element
+        is clockwise, not convex or has no area; if a node belongs to no element; if the mesh has several parts or holes.
     """
     from skfem import MeshQuad
 
-    assert strip.mesh_file is not None, "the strip's mesh is its own"
+    assert strip.mesh_file is not None, "structured strips have no file"
     try:
         points, quads, lines = _contents(Path(strip.mesh_file))
         _check_elements(points, quads)
-        quads = _along(points, quads)
+        quads = _aligned(points, quads)
         basis = scalar_basis(MeshQuad(points.T, quads.T), strip.element)
         edges = {name: _edge(basis, name, lines) for name in EDGES}
         _check_closed(basis, lines)
-        _check_place(strip, basis.doflocs.T, edges)
+        _check_position(strip, basis.doflocs.T, edges)
     except MeshError as error:
         raise ValueError(f"Strip({strip.name!r}).mesh_file = {strip.mesh_file!r}: {error}") from None
     nodes = basis.doflocs.T
@@ -51,15 +50,15 @@ def read_mesh(strip: Strip) -> Discretisation:
 
 
 def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
-    """Corners ``(n, 2)``, quadrilaterals ``(e, 4)``, and the lines ``(l, 2)`` of each named edge."""
+    """Read corners ``(n, 2)``, quadrilaterals ``(e, 4)`` and the lines ``(l, 2)`` of each named edge."""
     import meshio
 
     check_file(path)
     try:
         mesh = meshio.read(path)
     except (meshio.ReadError, *_UNREADABLE) as error:
-        said = " ".join(str(error).split())[:80] or type(error).__name__
-        raise MeshError(f"cannot be read ({said})") from None
+        reason = " ".join(str(error).split())[:80] or type(error).__name__
+        raise MeshError(f"cannot be read ({reason})") from None
     _check_points(mesh)
     quads, lines = [], dict[str, list[Ints]]()
     named = _names(mesh)
@@ -77,8 +76,8 @@ def _contents(path: Path) -> tuple[Floats, Ints, dict[str, Ints]]:
     corners, local = np.unique(np.concatenate(quads), return_inverse=True)
     number_of = np.full(len(mesh.points), -1)
     number_of[corners] = np.arange(corners.size)
-    found = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
-    return mesh.points[corners, :2].astype(float), local.reshape(-1, 4), found
+    edges = {name: number_of[np.concatenate(parts)] for name, parts in lines.items()}
+    return mesh.points[corners, :2].astype(float), local.reshape(-1, 4), edges
 
 
 _UNREADABLE = (
@@ -95,11 +94,11 @@ _UNREADABLE = (
     TypeError,
     ValueError,
 )
-"""What readers of formats raise on broken files."""
+"""Exceptions that meshio's readers raise on broken files."""
 
 
 def _check_points(mesh: Any) -> None:
-    """Require finite nodes in the plane z = 0, cells of nodes that are there, and no node without a quadrilateral."""
+    """Require finite nodes in the plane z = 0, each in a quadrilateral, and cells without unknown nodes."""
     points = mesh.points
     if points.ndim != 2 or points.shape[1] not in (2, 3) or not len(points):
         raise MeshError("must hold nodes with two or three coordinates")
@@ -125,7 +124,7 @@ def _first(failed: Array) -> int:
 
 
 def _names(mesh: Any) -> dict[str, list[Ints]]:
-    """Cells of each named set, block by block: meshio's cell sets, or Gmsh's physical groups."""
+    """Cell numbers of each named edge in every block, from meshio's cell sets or Gmsh's physical groups."""
     empty = np.zeros(0, dtype=np.int64)
     named = {
         name: [empty if part is None else np.asarray(part, dtype=np.int64) for part in sets]
@@ -140,7 +139,7 @@ def _names(mesh: Any) -> dict[str, list[Ints]]:
 
 
 def _check_straight(points: Floats, cells: Ints) -> None:
-    """Require that midsides and centres, if there are any, lie half way."""
+    """Require midside and centre nodes, if any, at the middle of the sides and of the element."""
     corners = points[cells[:, :4]]
     middles = (corners + np.roll(corners, -1, axis=1)) / 2
     expected = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)[:, : cells.shape[1] - 4]
@@ -151,6 +150,7 @@ def _check_straight(points: Floats, cells: Ints) -> None:
 
 
 def _check_elements(points: Floats, quads: Ints) -> None:
+    """Require convex anticlockwise quadrilaterals in one connected part."""
     x = points[quads]
     sides = np.roll(x, -1, axis=1) - x
     after = np.roll(sides, -1, axis=1)
@@ -164,15 +164,15 @@ def _check_elements(points: Floats, quads: Ints) -> None:
         (turn.min(axis=1) <= _ROUND_OFF * size, "is not convex"),
     ):
         if failed.any():
-            raise MeshError(f"element {int(np.argmax(failed))} {rule}")
+            raise MeshError(f"element {_first(failed)} {rule}")
     shares = coo_matrix((np.ones(quads.size), (np.repeat(np.arange(len(quads)), 4), quads.ravel())))
     parts, _ = connected_components(shares.T @ shares)
     if parts > 1:
-        raise MeshError(f"falls into {parts} parts that share no node")
+        raise MeshError(f"falls into {parts} parts without a common node")
 
 
-def _along(points: Floats, quads: Ints) -> Ints:
-    """Begin every element with the side that runs furthest along the strip."""
+def _aligned(points: Floats, quads: Ints) -> Ints:
+    """Renumber the corners of every element so that the first side has the largest increase of x."""
     x = points[quads, 0]
     first = np.argmax(np.roll(x, -1, axis=1) - x, axis=1)
     turned: Ints = np.take_along_axis(quads, (first[:, None] + np.arange(4)) % 4, axis=1)
@@ -180,13 +180,14 @@ def _along(points: Floats, quads: Ints) -> Ints:
 
 
 def _edge(basis: Any, name: str, lines: dict[str, Ints]) -> Ints:
-    """Nodes on the lines of a named edge: the ends upwards, the faces from start to end."""
+    """Nodes on the lines of a named edge, an end ordered upwards, a face from start to end."""
     if not lines.get(name, np.zeros(0)).size:
         raise MeshError(f'must name the lines of the edge "{name}", it names {sorted(lines) or "none"}')
-    wanted = {tuple(sorted(map(int, line))) for line in lines[name]}
+    named = _node_pairs(lines[name])
     facets = basis.mesh.boundary_facets()
-    chosen = [facet for facet in facets if tuple(sorted(map(int, basis.mesh.facets[:, facet]))) in wanted]
-    if len(chosen) < len(wanted):
+    pairs = map(frozenset, basis.mesh.facets[:, facets].T.tolist())
+    chosen = [facet for facet, pair in zip(facets, pairs, strict=True) if pair in named]
+    if len(chosen) < len(named):
         raise MeshError(f'the edge "{name}" must lie on the boundary')
     dofs = np.unique(basis.get_dofs(np.array(chosen)).flatten())
     axis = 1 if name in ("start", "end") else 0
@@ -194,20 +195,25 @@ def _edge(basis: Any, name: str, lines: dict[str, Ints]) -> Ints:
 
 
 def _check_closed(basis: Any, lines: dict[str, Ints]) -> None:
-    """Require every line of the boundary on one of the edges: no hole, no gap."""
-    named = {tuple(sorted(map(int, line))) for name in EDGES for line in lines[name]}
-    for facet in basis.mesh.boundary_facets():
-        a, b = basis.mesh.facets[:, facet]
-        if tuple(sorted((int(a), int(b)))) not in named:
-            (xa, ya), (xb, yb) = basis.mesh.p[:, [a, b]].T
+    """Require that every boundary line belongs to an edge; otherwise the mesh has a hole or a gap."""
+    named = _node_pairs(np.concatenate([lines[name] for name in EDGES]))
+    for nodes in basis.mesh.facets[:, basis.mesh.boundary_facets()].T.tolist():
+        if frozenset(nodes) not in named:
+            (xa, ya), (xb, yb) = basis.mesh.p[:, nodes].T
             raise MeshError(f"the boundary from ({xa:g}, {ya:g}) to ({xb:g}, {yb:g}) must belong to an edge")
 
 
-def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
+def _node_pairs(lines: Ints) -> set[frozenset[int]]:
+    """Nodes of the lines ``(l, 2)`` without their order."""
+    return set(map(frozenset, lines.tolist()))
+
+
+def _check_position(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
+    """Require that the edges are the ends and the faces of the strip."""
     L = strip.length
-    for name, place in (("start", 0.0), ("end", L)):
-        if np.abs(nodes[edges[name], 0] - place).max() > _ROUND_OFF * L:
-            raise MeshError(f'the edge "{name}" must lie at x = {place:g}')
+    for name, x in (("start", 0.0), ("end", L)):
+        if np.abs(nodes[edges[name], 0] - x).max() > _ROUND_OFF * L:
+            raise MeshError(f'the edge "{name}" must lie at x = {x:g}')
     for name in ("right", "left"):
         x = nodes[edges[name], 0]
         if abs(x[0]) + abs(x[-1] - L) > _ROUND_OFF * L or np.any(np.diff(x) <= _ROUND_OFF * L):
@@ -216,26 +222,21 @@ def _check_place(strip: Strip, nodes: Floats, edges: dict[str, Ints]) -> None:
     low, high = (nodes[edges[name], 1] for name in ("right", "left"))
     if low.mean() > high.mean():
         raise MeshError('the edge "right" must lie below the edge "left"')
-    for name, y, place in (("right", low, -h / 2), ("left", high, h / 2)):
-        off = y[np.argmax(np.abs(y - place))]
-        if abs(off - place) > _HEIGHT * h:
+    for name, y, expected in (("right", low, -h / 2), ("left", high, h / 2)):
+        furthest = y[np.argmax(np.abs(y - expected))]
+        if abs(furthest - expected) > _FACE_TOLERANCE * h:
             raise MeshError(
-                f'the edge "{name}" must lie at y = {place:g} (half the height), it reaches {off:g}'
+                f'the edge "{name}" must lie at y = {expected:g} (half the height), it reaches {furthest:g}'
             )
     for name in ("start", "end"):
         y = nodes[edges[name], 1]
-        if max(abs(y[0] + h / 2), abs(y[-1] - h / 2)) > _HEIGHT * h:
+        if max(abs(y[0] + h / 2), abs(y[-1] - h / 2)) > _FACE_TOLERANCE * h:
             raise MeshError(f'the edge "{name}" must reach from y = {-h / 2:g} to {h / 2:g}')
 
 
 def _sections(basis: Any, nodes: Floats, edges: dict[str, Ints], stations: Floats) -> csr_matrix:
-    """Section means by three Gauss points in each of eight layers."""
-    low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
-    points, weights = np.polynomial.legendre.leggauss(3)
-    fractions = (np.arange(_LAYERS)[:, None] + (1 + points) / 2).ravel() / _LAYERS
-    shares = np.tile(weights / 2, _LAYERS) / _LAYERS
-    y = low[:, None] + fractions * (high - low)[:, None]
-    x = np.broadcast_to(stations[:, None], y.shape)
-    sampled = sample_basis(basis, basis.element_dofs.T, np.stack([x.ravel(), y.ravel()], axis=1))
+    """Weights ``(m, n)`` of the nodes in the section means, by Gauss rules over the height."""
+    points, shares, _ = section_points(nodes, edges, stations, SECTION_LAYERS)
+    sampled = sample_basis(basis, basis.element_dofs.T, points)
     means = kron(np.eye(stations.size), shares[None], format="csr")
     return csr_matrix(means @ sampled.rows(len(nodes)))

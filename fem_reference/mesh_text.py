@@ -1,4 +1,7 @@
-"""Text of a Gmsh mesh, checked before anything is allocated: what it states must be in it."""
+"""Check of a Gmsh text before it is parsed: every count must agree with the lines that follow.
+
+A parser that trusts a wrong count may allocate any amount of memory.
+"""
 
 from collections.abc import Iterator
 from math import isfinite
@@ -10,25 +13,25 @@ LARGEST = 16 * 2**20
 
 
 class MeshError(ValueError):
-    """A mesh file breaks a rule: one line."""
+    """A mesh file breaks a rule; the message is one line."""
 
 
 def check_file(path: Path) -> None:
-    """Require a regular file of at most `LARGEST` bytes; one of Gmsh's is checked line by line.
+    """Require a regular file of at most `LARGEST` bytes, and check a Gmsh file line by line.
 
     Raises
     ------
     MeshError
-        If the file cannot be read, is too large, or a line states what does not follow.
+        If the file cannot be read, is too large, or a line breaks the format.
     """
     try:
-        found = path.stat()
+        info = path.stat()
     except (OSError, ValueError) as error:
         raise MeshError(f"cannot be read ({getattr(error, 'strerror', None) or error})") from None
-    if not S_ISREG(found.st_mode):
+    if not S_ISREG(info.st_mode):
         raise MeshError("must be a regular file")
-    if found.st_size > LARGEST:
-        raise MeshError(f"must not be larger than 16 MB, it has {found.st_size / 2**20:.4g}")
+    if info.st_size > LARGEST:
+        raise MeshError(f"must not be larger than 16 MB, it has {info.st_size / 2**20:.4g}")
     if path.suffix == ".msh":
         _check_gmsh(path.read_bytes())
 
@@ -53,14 +56,14 @@ def _check_gmsh(content: bytes) -> None:
             _expect_end(rows, section)
         elif section == "$PhysicalNames":
             for _ in range(_count(rows, len(lines), 1)[0]):
-                at, name = _row(rows)
+                row, name = _row(rows)
                 if len(name.split(None, 2)) != 3 or not name.rstrip().endswith('"'):
-                    raise MeshError(f'line {at}: must be a dimension, a number and a "name"')
+                    raise MeshError(f'line {row}: must be a dimension, a number and a "name"')
             _expect_end(rows, section)
         elif section.startswith("$") and not section.startswith("$End") and section != "$Comments":
             _skip(rows, number, section)
     if missing:
-        raise MeshError(f"ends before {missing[0]} has come")
+        raise MeshError(f"ends before {missing[0]}")
 
 
 def _section_2(rows: Iterator[tuple[int, str]], lines: int, section: str) -> None:
@@ -83,34 +86,36 @@ def _section_4(rows: Iterator[tuple[int, str]], lines: int, section: str) -> Non
 
 
 def _row(rows: Iterator[tuple[int, str]]) -> tuple[int, str]:
-    found = next(rows, None)
-    if found is None:
-        raise MeshError("ends before all that it states has come")
-    return found
+    row = next(rows, None)
+    if row is None:
+        raise MeshError("ends before the last line that it announces")
+    return row
 
 
 def _count(
     rows: Iterator[tuple[int, str]], lines: int, size: int, counts: tuple[int, ...] = (0,)
 ) -> list[int]:
-    """Read whole numbers; the ones at ``counts`` say how many lines follow, which must be there."""
-    at, line = _row(rows)
+    """Read ``size`` whole numbers; the entries ``counts`` must not exceed the number of lines that follow."""
+    number, line = _row(rows)
     try:
-        found = [int(word) for word in line.split()]
+        entries = [int(word) for word in line.split()]
     except ValueError:
-        found = []
-    if len(found) != size:
+        entries = []
+    if len(entries) != size:
         raise MeshError(
-            f"line {at}: must be {size} whole number{'s' * (size > 1)}, it is {line.strip()[:40]!r}"
+            f"line {number}: must be {size} whole number{'s' * (size > 1)}, it is {line.strip()[:40]!r}"
         )
-    for place in counts:
-        if not 0 <= found[place] <= lines - at:
-            raise MeshError(f"line {at}: states {found[place]}, but {lines - at} lines follow")
-    return found
+    for k in counts:
+        if not 0 <= entries[k] <= lines - number:
+            raise MeshError(
+                f"line {number}: announces {entries[k]} entries, but {lines - number} lines follow"
+            )
+    return entries
 
 
 def _numbers(rows: Iterator[tuple[int, str]], size: int | None, *, whole: int | None) -> None:
-    """Require ``size`` finite numbers (any if None), the first ``whole`` of them whole (all if None)."""
-    at, line = _row(rows)
+    """Require ``size`` finite numbers (None: any count), the first ``whole`` being integers (None: all)."""
+    number, line = _row(rows)
     words = line.split()
     split = len(words) if whole is None else whole
     try:
@@ -120,13 +125,13 @@ def _numbers(rows: Iterator[tuple[int, str]], size: int | None, *, whole: int | 
     right = len(values) == size if size is not None else len(values) > 1
     if not (right and all(map(isfinite, values))):
         kind = "whole numbers" if size is None else f"{size} finite number{'s' * (size > 1)}"
-        raise MeshError(f"line {at}: must be {kind}, it is {line.strip()[:40]!r}")
+        raise MeshError(f"line {number}: must be {kind}, it is {line.strip()[:40]!r}")
 
 
 def _expect_end(rows: Iterator[tuple[int, str]], section: str) -> None:
-    at, line = _row(rows)
+    number, line = _row(rows)
     if line.strip() != f"$End{section[1:]}":
-        raise MeshError(f"line {at}: must be $End{section[1:]}, it is {line.strip()[:40]!r}")
+        raise MeshError(f"line {number}: must be $End{section[1:]}, it is {line.strip()[:40]!r}")
 
 
 def _skip(rows: Iterator[tuple[int, str]], number: int, section: str) -> None:

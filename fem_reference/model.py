@@ -1,4 +1,4 @@
-"""The discrete model: bodies side by side in one vector of nodes, and the pairs that couple them."""
+"""The discrete model: bodies with consecutive node numbers, and the contact pairs that couple them."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,27 +11,27 @@ from fem_reference.body import Body, build_body
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
 from fem_reference.mesh import edge_weights
-from fem_reference.problem import Contact, SolidProblem
+from fem_reference.problem import Contact, Pin, SolidProblem
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
-    """Everything that stays constant during a solution.
+    """Constant data of a solution.
 
     Parameters
     ----------
     problem
-        What is modelled.
+        Input data.
     bodies
-        Its strips.
+        Discretised strips.
     parts
-        Nodes of each body in the model's arrays of nodes.
+        Range of each body in the model's nodal arrays.
     pairs
-        Its contacts.
+        Contacts.
     expansion
-        Displacements from unknowns, ``(2 n, m)``.
+        Matrix ``(2 n, m)`` from the unknowns to the displacements.
     load
-        Nodal forces of the end loads at the load parameter 1, ``(n, 2)``, each in the frame of its strip [N].
+        Nodal forces ``(n, 2)`` of the end loads at the load parameter 1, each in the frame of its strip [N].
     """
 
     problem: SolidProblem
@@ -53,7 +53,7 @@ class Model:
 
     @property
     def force_scale(self) -> float:
-        """Largest ``E I / L^2`` [N]: a force that bends the strips, whatever the load."""
+        """Largest ``E I / L^2`` of the strips, a scale of forces that is independent of the load [N]."""
         return max(body.force_scale for body in self.bodies)
 
     @property
@@ -73,26 +73,26 @@ class Model:
 
     @property
     def length_round_off(self) -> float:
-        """Round-off of a position [m]: 8 machine epsilons times the scene's reach from the origin."""
+        """Round-off of a position [m]: 8 machine epsilons times the largest distance of a strip from the global origin."""
         points = [point for strip in self.problem.strips for point in (strip.start, strip.end)]
-        reach = max(np.hypot(*point) for point in points)
-        return 8 * float(np.finfo(float).eps) * max(float(reach), self.length)
+        distance = max(np.hypot(*point) for point in points)
+        return 8 * float(np.finfo(float).eps) * max(float(distance), self.length)
 
     def body(self, strip: str) -> tuple[Body, slice]:
-        """Return the body of a strip and its nodes."""
+        """Return the body of a strip and its range of nodes."""
         number = [item.name for item in self.problem.strips].index(strip)
         return self.bodies[number], self.parts[number]
 
     def internal_force(self, u: Array) -> Array:
-        """Internal forces of the bodies, ``(n, 2)``, each in its own frame."""
-        return np.concatenate([body.internal_force(u[part]) for body, part in self.each()])
+        """Internal nodal forces ``(n, 2)``, each in the frame of its strip [N]."""
+        return np.concatenate([body.internal_force(u[part]) for body, part in self.bodies_and_nodes()])
 
     def strain_energy(self, u: Array) -> float:
         """Strain energy of the bodies [J]."""
-        return sum(body.strain_energy(u[part]) for body, part in self.each())
+        return sum(body.strain_energy(u[part]) for body, part in self.bodies_and_nodes())
 
-    def each(self) -> list[tuple[Body, slice]]:
-        """Every body with its nodes."""
+    def bodies_and_nodes(self) -> list[tuple[Body, slice]]:
+        """Return every body with its range of nodes."""
         return list(zip(self.bodies, self.parts, strict=True))
 
 
@@ -112,7 +112,7 @@ def build(problem: SolidProblem) -> Model:
 
 
 def _end_load(problem: SolidProblem, body: Body) -> Floats:
-    """Nodal forces ``(n, 2)`` of the loads on a body's free end."""
+    """Nodal forces ``(n, 2)`` of the loads on a body's free end, in the strip's frame [N]."""
     forces = np.zeros((len(body.mesh.nodes), 2))
     edge = body.mesh.edges["end" if body.free_end else "start"]
     share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
@@ -125,30 +125,25 @@ def _end_load(problem: SolidProblem, body: Body) -> Floats:
 def _pair(
     problem: SolidProblem, contact: Contact, bodies: tuple[Body, ...], parts: tuple[slice, ...]
 ) -> Pair:
+    """Build a contact pair."""
     numbers = {strip.name: number for number, strip in enumerate(problem.strips)}
     touched, origin = numbers[contact.strip], np.array(problem.strips[0].start)
     curve = contact_curve(bodies[touched].strip, bodies[touched].mesh, contact)
-    node: Carrier | None = None
+
+    def carrier(number: int, rows: csr_matrix) -> Carrier:
+        return _carrier(bodies[number], parts[number], parts[-1].stop, rows, origin)
+
+    node: Pin | Carrier | None = problem.pin(contact.node)
     strips: tuple[int, ...] = (touched,)
-    if problem.pin(contact.node) is None:
+    if node is None:
         name, end = contact.node.split(".")
         strips = (touched, numbers[name])
-        body = bodies[numbers[name]]
-        node = _carrier(
-            body,
-            parts[numbers[name]],
-            parts[-1].stop,
-            body.mesh.sections[[0 if end == "start" else -1]],
-            origin,
-        )
-    pin = problem.pin(contact.node)
-    actor = pin if node is None else node
-    assert actor is not None, "a contact's node is a pin or an end"
+        node = carrier(strips[1], bodies[strips[1]].mesh.sections[[0 if end == "start" else -1]])
     return Pair(
         contact=contact,
         curve=curve,
-        carrier=_carrier(bodies[touched], parts[touched], parts[-1].stop, curve.rows, origin),
-        node=actor,
+        carrier=carrier(touched, curve.rows),
+        node=node,
         penalty=problem.penalty(contact),
         strips=strips,
         origin=origin,
@@ -156,7 +151,7 @@ def _pair(
 
 
 def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix, origin: Floats) -> Carrier:
-    """Points of a body as points of the model."""
+    """Points with the weights ``rows`` of a body's nodes, among all ``nodes`` of the model."""
     reference: Floats = (rows @ body.mesh.nodes) @ body.strip.frame.T + (np.array(body.strip.start) - origin)
     placed = rows.tocoo()
     wide = csr_matrix((placed.data, (placed.row, placed.col + part.start)), shape=(rows.shape[0], nodes))

@@ -1,4 +1,4 @@
-"""Newton's method with every contact held open or closed; displacements and contact forces are its unknowns."""
+"""Newton's method for displacements and contact forces with a fixed set of closed contacts."""
 
 from dataclasses import dataclass, replace
 
@@ -7,23 +7,23 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.model import Model
 from fem_reference.settings import Settings
-from fem_reference.state import State, residual, state
+from fem_reference.state import State, build_state, residual
 from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Attempt:
-    """What one search for equilibrium ended with.
+    """Result of one search for equilibrium.
 
     Parameters
     ----------
     status, state
-        How it ended, and the last state.
+        Outcome and last state.
     iterations
         Number of linear solutions.
     pair
-        Number of the contact that the status is about; None if it is about none.
+        Index of the contact that the status refers to, or None.
     """
 
     status: Status
@@ -32,57 +32,63 @@ class Attempt:
     pair: int | None = None
 
 
-def iterate(model: Model, at: State, settings: Settings) -> Attempt:
-    """Iterate with the contacts held as they are; never raises.
+def iterate(model: Model, state: State, settings: Settings) -> Attempt:
+    """Iterate with a fixed set of closed contacts; never raises.
 
-    A correction that the next one exceeds was too long: the iteration goes back and takes half of it (the natural
-    monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
+    If a correction is larger than the previous one by `Settings.largest_growth`, the previous step is repeated with half
+    its length (natural monotonicity test, Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 3.3).
     """
-    base, last, damping = at, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
+    base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
     for iteration in range(settings.max_iterations + 1):
-        R = model.expansion.T @ residual(model, at).ravel()
-        status, pair = judge(model, at, R, settings)
+        R = model.expansion.T @ residual(model, state).ravel()
+        status, pair = check_convergence(model, state, R, settings)
         if status is not Status.ITERATION_LIMIT or iteration == settings.max_iterations:
             break
-        tangent = linearise(model, at)
-        found = None if tangent is None else tangent.correction(R)
-        if found is None:
+        tangent = linearise(model, state)
+        correction = None if tangent is None else tangent.correction(R)
+        if correction is None:
             status = Status.SINGULAR
             break
-        if found.size > settings.largest_growth * last.size and damping > settings.smallest_damping:
+        if correction.size > settings.largest_growth * last.size and damping > settings.smallest_damping:
             damping /= 2
         else:
-            base, last, damping = at, found, 1.0
-        at = moved(model, base, last, damping)
-    return Attempt(status=status, state=at, iterations=iteration, pair=pair)
+            base, last, damping = state, correction, 1.0
+        state = updated(model, base, last, damping)
+    return Attempt(status=status, state=state, iterations=iteration, pair=pair)
 
 
-def judge(model: Model, at: State, R: Floats, settings: Settings) -> tuple[Status, int | None]:
-    """Status of an iterate and the pair it is about; ``ITERATION_LIMIT`` as long as another iteration is wanted."""
+def check_convergence(model: Model, state: State, R: Floats, settings: Settings) -> tuple[Status, int | None]:
+    """Status of an iterate with the residual ``R`` ``(m,)``, and the pair that the status refers to.
+
+    The status is ``ITERATION_LIMIT`` if another iteration is needed.
+    """
     error = float(np.abs(R).max())
-    mismatch = [abs(touch.mismatch) for touch in at.touches]
-    if not np.isfinite(error + sum(mismatch)):
+    gap_residuals = [abs(touch.gap_residual) for touch in state.touches]
+    if not np.isfinite(error + sum(gap_residuals)):
         return Status.NOT_FINITE, None
-    for number, touch in enumerate(at.touches):
+    for number, touch in enumerate(state.touches):
         if touch.closed and not touch.projection.stationary:
             return Status.LOST_CONTACT, number
-    allowed = settings.tolerance * force_scale(model, at)
-    wanted = error > allowed + model.round_off or any(
-        miss > allowed / touch.pair.penalty + model.length_round_off
-        for miss, touch in zip(mismatch, at.touches, strict=True)
+    allowed = settings.tolerance * force_scale(model, state)
+    converged = error <= allowed + model.round_off and all(
+        gap_residual <= allowed / touch.pair.penalty + model.length_round_off
+        for gap_residual, touch in zip(gap_residuals, state.touches, strict=True)
     )
-    return (Status.ITERATION_LIMIT if wanted else Status.CONVERGED), None
+    return (Status.CONVERGED if converged else Status.ITERATION_LIMIT), None
 
 
-def force_scale(model: Model, at: State) -> float:
-    """Largest of contact forces, end loads and ``E I / L^2`` [N]."""
-    return max(model.force_scale, at.t * model.largest_load, *(abs(touch.force) for touch in at.touches))
+def force_scale(model: Model, state: State) -> float:
+    """Force that tolerances refer to: the largest of contact forces, end loads and ``E I / L^2`` [N]."""
+    return max(
+        model.force_scale, state.t * model.largest_load, *(abs(touch.force) for touch in state.touches)
+    )
 
 
-def moved(model: Model, at: State, step: Correction, damping: float) -> State:
-    """Return the state a part of a correction away."""
-    forces = iter(damping * step.forces)
+def updated(model: Model, state: State, correction: Correction, damping: float) -> State:
+    """Return the state after ``damping`` times a correction."""
+    forces = iter(damping * correction.forces)
     conditions = tuple(
-        replace(one, force=one.force + float(next(forces))) if one.closed else one for one in at.conditions
+        replace(condition, force=condition.force + float(next(forces))) if condition.closed else condition
+        for condition in state.conditions
     )
-    return state(model, at.u + damping * step.u, at.t, conditions)
+    return build_state(model, state.u + damping * correction.u, state.t, conditions)

@@ -1,4 +1,4 @@
-"""What can be seen of a solution: lines, stresses, energies."""
+"""Post-processing of a solution: axis lines, stresses and energies."""
 
 import numpy as np
 
@@ -7,34 +7,34 @@ from fem_reference.assembly import deformation_gradient
 from fem_reference.body import Body
 from fem_reference.model import Model
 from fem_reference.result import Result
-from fem_reference.state import State
+from fem_reference.state import State, contact_energy
 
 
-def section_means(model: Model, at: State, strip: str) -> Floats:
+def section_means(model: Model, state: State, strip: str) -> Floats:
     """Section-mean positions ``(m, 2)`` of a strip in the global frame [m]."""
     body, part = model.body(strip)
-    means: Floats = body.mesh.sections @ (body.mesh.nodes + at.u[part])
+    means: Floats = body.mesh.sections @ (body.mesh.nodes + state.u[part])
     return body.strip.to_global(means)
 
 
 def axis_line(result: Result, strip: str, k: int) -> Floats:
-    """Deformed axis at the accepted load parameter ``k``: section means ``(m, 2)``, from start to end [m]."""
+    """Section means ``(m, 2)`` from start to end at the accepted load parameter ``k``, in the global frame [m]."""
     return section_means(result.model, result.states[k], strip)
 
 
 def axis_stations(result: Result, strip: str) -> Floats:
-    """Undeformed axial coordinates ``(m,)`` of the points of `axis_line` [m]."""
+    """Undeformed axial coordinates ``(m,)`` of the points in `axis_line` [m]."""
     return result.model.body(strip)[0].mesh.stations
 
 
 def nodal_stress(result: Result, k: int) -> Floats:
     """Cauchy stresses ``xx, yy, xy`` at the nodes, ``(n, 3)``, in the global frame [Pa].
 
-    ``sigma = P F^T / det F``, evaluated at each element's nodes and averaged over the elements that meet there: force
-    per current length in the plane and reference thickness.
+    ``sigma = P F^T / det F`` is the force per current length in the plane and per reference thickness. It is evaluated at
+    the nodes of every element and averaged over the elements with a common node.
     """
     u = result.states[k].u
-    return np.concatenate([_nodal_stress(body, u[part]) for body, part in result.model.each()])
+    return np.concatenate([_nodal_stress(body, u[part]) for body, part in result.model.bodies_and_nodes()])
 
 
 def _nodal_stress(body: Body, u: Floats) -> Floats:
@@ -45,9 +45,11 @@ def _nodal_stress(body: Body, u: Floats) -> Floats:
 
 
 def fibre_stress(result: Result, k: int) -> Floats:
-    """Cauchy stress along the deformed fibres of the strips at the nodes, ``(n,)``: ``t . sigma t`` with t along ``F e_x`` [Pa]."""
+    """Cauchy stress ``t . sigma t`` ``(n,)`` at the nodes, with the unit vector t along the deformed fibre ``F e_x`` [Pa]."""
     u = result.states[k].u
-    return np.concatenate([_fibre_stress(body, u[part])[:, 0] for body, part in result.model.each()])
+    return np.concatenate(
+        [_fibre_stress(body, u[part])[:, 0] for body, part in result.model.bodies_and_nodes()]
+    )
 
 
 def _fibre_stress(body: Body, u: Floats) -> Floats:
@@ -60,14 +62,14 @@ def _fibre_stress(body: Body, u: Floats) -> Floats:
 
 
 def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
-    """Deformation gradient and stress at each element's nodes, in the strip's frame."""
+    """Deformation gradient and Cauchy stress at the nodes of every element, in the strip's frame."""
     F = deformation_gradient(body.mesh, u, body.mesh.nodal_gradients)
     sigma = np.einsum("ik...,jk...->ij...", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
     return F, sigma
 
 
 def _averaged(body: Body, values: Floats) -> Floats:
-    """Mean over the elements that meet at a node."""
+    """Mean over the elements with a common node."""
     mesh = body.mesh
     total = np.zeros((len(mesh.nodes), values.shape[-1]))
     np.add.at(total, mesh.cells, values)
@@ -75,7 +77,6 @@ def _averaged(body: Body, values: Floats) -> Floats:
 
 
 def energy(result: Result, k: int) -> tuple[float, float]:
-    """Strain energy and contact energy, ``eps g^2 / 2`` of every penalty, at the accepted load parameter ``k`` [J]."""
-    at = result.states[k]
-    springs = sum(touch.pair.penalty * touch.gap**2 / 2 for touch in at.closed)
-    return result.model.strain_energy(at.u), springs
+    """Strain energy and contact energy ``eps g^2 / 2`` at the accepted load parameter ``k`` [J]."""
+    state = result.states[k]
+    return result.model.strain_energy(state.u), contact_energy(state)

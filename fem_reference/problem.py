@@ -1,4 +1,4 @@
-"""What is to be solved: clamped strips, pins on paths, and their contacts."""
+"""Problem data: clamped strips, rigid pins on paths, contacts and end loads."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,21 +12,21 @@ from fem_reference.checks import Point, require, require_choice, require_point, 
 from fem_reference.strip import Strip
 
 TURN = 0.5
-"""Angle in radians that the path of a pin may turn by within a load step."""
+"""Largest angle [rad] by which the path of a pin may turn within one load step."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """A rigid circular pin led along a polyline at constant speed.
+    """A rigid circular pin that moves along a polyline at constant speed.
 
     Parameters
     ----------
     name
-        How contacts refer to it.
+        Name of the pin, which contacts refer to.
     path
-        At least two positions of its centre [m]. The load parameter t in [0, 1] is the fraction of the path's length.
+        At least two positions of the centre [m]. The load parameter t in [0, 1] is the fraction of the path's length.
     radius
-        Zero for a sharp pin [m].
+        Radius [m]; zero for a sharp pin.
 
     Raises
     ------
@@ -61,20 +61,20 @@ class Pin:
 
     @property
     def turns(self) -> tuple[float, ...]:
-        """Load parameters of the points at which the path has turned by `TURN` since the last of them.
+        """Load parameters of path points. Between two consecutive ones the path turns by at least `TURN`.
 
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
         (0.5,)
         """
         directions = np.arctan2(*np.diff(np.array(self.path, dtype=float), axis=0).T[::-1])
         bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
-        found, turned = [], 0.0
+        load_parameters, turned = [], 0.0
         for t, bend in zip(self._fractions[1:-1].tolist(), bends.tolist(), strict=True):
             turned += bend
             if turned >= TURN:
-                found.append(t)
+                load_parameters.append(t)
                 turned = 0.0
-        return tuple(found)
+        return tuple(load_parameters)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,29 +84,30 @@ class Contact:
     Parameters
     ----------
     node
-        A pin's name, or an end of another strip as ``"upper.end"``: the mean position of that edge.
+        Name of a pin, or an end of another strip such as ``"upper.end"``. The position of an end is the mean position of
+        its edge.
     strip
-        Name of the strip touched.
+        Name of the touched strip.
     side
-        Side of the strip, looking from start to end, that the node comes from: ``"right"`` or ``"left"``.
+        Side of the strip from which the node approaches, seen from start to end: ``"right"`` or ``"left"``.
     surface
         ``"axis"``: the curve of section-mean positions; ``"face"``: the face on the node's side.
     penalty
-        Contact stiffness eps of the energy ``eps g^2 / 2`` [N/m]; None for `default_penalty`.
+        Contact stiffness eps in the energy ``eps g^2 / 2`` [N/m]; None for `default_penalty`.
     penetration
-        Largest penetration left by augmented Lagrangian steps, relative to the strip's length; None leaves what the
-        penalty leaves.
+        Largest penetration that augmented Lagrangian steps leave, relative to the strip's length. None for the penalty
+        method without such steps.
     spread
-        Half of the length of the strip over which its position is averaged and the contact force spread [m], zero for a
-        sharp contact; None for one and a half heights, at most a tenth of the length.
+        Half the length [m] of the strip over which the contact force is distributed and the position averaged. Zero for
+        a sharp contact; None for 1.5 heights, at most a tenth of the length.
     keep
-        Whether the contact, once closed, must not slip off an end of the strip: that ends the solution by name.
-        Otherwise the strip springs back to what the other contacts hold.
+        Whether the solution ends with `Status.LOST_CONTACT` when the closed contact slips off an end of the strip.
+        Otherwise the solution continues without this contact.
 
     Raises
     ------
     ValueError
-        If a value breaks its rule.
+        If a value is out of range.
     """
 
     node: str
@@ -138,20 +139,20 @@ class Contact:
 
     @property
     def sign(self) -> float:
-        """Sign s of the gap ``g = s n . (x_c - r) - radius``, n the left normal: +1 on the left, -1 on the right."""
+        """Sign s in the gap ``g = s n . (x_c - r) - radius`` with the left normal n: +1 on the left, -1 on the right."""
         return 1.0 if self.side == "left" else -1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class EndLoad:
-    """A dead force on the free end of a strip, spread evenly over the undeformed section.
+    """A dead force on the free end of a strip, distributed evenly over the undeformed section.
 
     Parameters
     ----------
     strip
         Name of the strip.
     force
-        At the load parameter 1, in the global frame; it grows with the load parameter and keeps its direction [N].
+        Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
 
     Raises
     ------
@@ -175,7 +176,8 @@ class SolidProblem:
     Raises
     ------
     ValueError
-        If two have one name, a contact or a load names nothing, or a node starts on the wrong side of a strip.
+        If a name appears twice, a contact or a load refers to an unknown name, or a node starts on the wrong side of a
+        strip.
     """
 
     strips: tuple[Strip, ...]
@@ -211,7 +213,7 @@ class SolidProblem:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Load parameters at which the paths of the pins turn."""
+        """Load parameters at which a load step must end because the path of a pin turns, see `Pin.turns`."""
         return tuple(sorted({turn for pin in self.pins for turn in pin.turns}))
 
     def penalty(self, contact: Contact) -> float:
@@ -219,7 +221,7 @@ class SolidProblem:
         return contact.penalty or default_penalty(self.strip(contact.strip))
 
     def start_of(self, contact: Contact) -> tuple[Point, float]:
-        """Where a contact's node starts, and its radius."""
+        """Initial position of a contact's node and its radius [m]."""
         pin = self.pin(contact.node)
         if pin is not None:
             return pin.path[0], pin.radius
@@ -228,6 +230,7 @@ class SolidProblem:
         return (strip.start if end == "start" else strip.end), 0.0
 
     def _require_side(self, contact: Contact) -> None:
+        """Require that the node does not start beyond the touched surface."""
         strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
         axial, transverse = strip.to_local(np.array(start, dtype=float))
         height = strip.height / 2 if contact.surface == "face" else 0.0
@@ -250,9 +253,9 @@ def _require_distinct(field: str, names: Iterable[str]) -> None:
 
 
 def default_penalty(strip: Strip) -> float:
-    """Return 25 E b [N/m]: a contact spring 25 times as stiff as the material under a line load.
+    """Contact stiffness ``25 E b`` [N/m] with which penetration is small compared with the local indentation.
 
-    Local indentation scales with F / (E b), so the penetration stays small beside it in every strip; against the
-    bending stiffness ``3 E I / L^3 = E b (h / L)^3 / 4`` it is smaller still.
+    The local indentation under a line load scales with ``F / (E b)``. The bending stiffness ``3 E I / L^3``, which is
+    ``E b (h / L)^3 / 4``, is smaller than ``E b`` in every slender strip.
     """
     return 25 * strip.youngs_modulus * strip.width

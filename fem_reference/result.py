@@ -1,4 +1,4 @@
-"""What a solution is: histories over the accepted load parameters."""
+"""Results: histories over the accepted load parameters."""
 
 from dataclasses import dataclass, field
 
@@ -18,13 +18,13 @@ class ContactHistory:
     force
         Magnitude of the contact force, ``(s,)`` [N].
     arc_position
-        Distance of the contact along the undeformed axis from the strip's start, nan where open, ``(s,)`` [m].
+        Undeformed axial coordinate of the contact; nan while open, ``(s,)`` [m].
     gap
-        Signed distance, minus the penetration where closed, ``(s,)`` [m].
+        Signed distance of node and strip, negative in penetration, ``(s,)`` [m].
     vector
-        Force on the strip, ``(s, 2)`` [N].
+        Contact force on the strip in the global frame, ``(s, 2)`` [N].
     slip_off
-        Load parameter at which the contact first left the strip over an end, nan if it did not.
+        Load parameter at which the contact first slipped off an end of the strip; nan without slip-off.
     """
 
     force: Floats
@@ -36,14 +36,14 @@ class ContactHistory:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportHistory:
-    """History of one clamp: what it exerts on the strip.
+    """History of the reaction of one clamp on its strip.
 
     Parameters
     ----------
     force
-        Force, ``(s, 2)`` [N].
+        Reaction force in the global frame, ``(s, 2)`` [N].
     moment
-        Moment about the clamped point, anticlockwise positive, ``(s,)`` [N m].
+        Reaction moment about the middle of the clamped edge, anticlockwise positive, ``(s,)`` [N m].
     """
 
     force: Floats
@@ -52,43 +52,44 @@ class SupportHistory:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Result:
-    """A solution, or as much of it as was reached, in the global frame.
+    """A complete or incomplete solution, in the global frame.
 
     Parameters
     ----------
     status
-        ``Status.COMPLETED``, or why the solution stopped.
+        ``Status.COMPLETED``, or the reason why the solution stopped.
     message
-        The same as one sentence with its numbers.
+        The status as one sentence with its numbers.
     load_parameter
         Accepted load parameters, ``(s,)``.
     reached
-        Last accepted load parameter, sub-steps included, or that of the event at which the path ends.
+        Load parameter of the last accepted state, including sub-steps, or of the event that ends the path.
     contacts, supports, tips
-        Histories by pair ``"pin->strip"``, by strip, and the section mean of the free end ``(s, 2)`` by strip [m].
+        Contact histories by pair ``"pin->strip"``, clamp reactions by strip, and positions ``(s, 2)`` of the free ends'
+        section means by strip [m].
     newton_iterations
-        Linear solutions since the load parameter before, sub-steps and cut-backs included, ``(s,)``.
+        Number of linear solutions for each load parameter, including sub-steps and rejected attempts, ``(s,)``.
     cutbacks
-        Number of attempts that were given up.
+        Total number of rejected attempts.
     substeps
-        Accepted states in all, those between the load parameters included.
+        Total number of accepted states, including sub-steps.
     index
         Number of negative eigenvalues of the energy's Hessian over the displacements that supports and closed contacts
-        admit, ``(s,)``: zero is stable; -1 where a contact is closed without force and the two sides differ.
+        admit, ``(s,)``. Zero is stable. -1 if a closed contact without force makes the index ambiguous.
     critical
-        Critical points on the way, those between load parameters included.
+        Critical points on the path, including sub-steps.
     unknowns
-        Number of unclamped degrees of freedom.
+        Number of unknown displacements.
     wall_seconds
-        Time of the solution, without building the model [s].
+        Wall time of the solution without model generation [s].
     mesh_points
         Reference positions of the nodes, ``(n, 2)`` [m].
     mesh_cells
-        Nodes of the elements ``(e, k)`` by VTK's type, ``"quad"`` or ``"quad9"``, in VTK's order.
+        Nodes of the elements ``(e, k)`` by meshio cell type, ``"quad"`` or ``"quad9"``, in VTK's order.
     displacement
         Nodal displacements, ``(s, n, 2)`` [m].
     model, states
-        The discrete model and its accepted states, each strip in its own frame.
+        The discrete model, and the accepted states with displacements in the frames of the strips.
     """
 
     status: Status
@@ -113,7 +114,7 @@ class Result:
 
 
 class SolveError(RuntimeError):
-    """A solution that stopped early; ``result`` holds what was reached."""
+    """The solution stopped early; ``result`` is the incomplete solution."""
 
     def __init__(self, result: Result) -> None:
         super().__init__(result.message)

@@ -1,4 +1,4 @@
-"""Shape functions at any points of a strip."""
+"""Shape functions at arbitrary points of a strip, and Gauss points of its sections."""
 
 from dataclasses import dataclass
 
@@ -8,19 +8,22 @@ from scipy.sparse import csr_matrix
 from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.mesh import Discretisation
 
+SECTION_LAYERS = 8
+"""Layers of Gauss points over the height by which a section of a user's mesh is integrated."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sample:
-    """Elements found at p points, and their shape functions there.
+    """Shape functions of the elements that contain p given points.
 
     Parameters
     ----------
     cells
-        Nodes of the element at each point ``(p, k)``.
+        Nodes of the element that contains each point ``(p, k)``.
     values
         Shape functions ``(p, k)``.
     gradients
-        Their gradients ``(p, 2, k)`` [1/m].
+        Shape-function gradients ``(p, 2, k)`` [1/m].
     """
 
     cells: Ints
@@ -28,7 +31,7 @@ class Sample:
     gradients: Floats
 
     def rows(self, nodes: int) -> csr_matrix:
-        """Values at the points as weights of all nodes, ``(p, nodes)``."""
+        """Interpolation matrix ``(p, nodes)`` from nodal values to values at the points."""
         points = np.repeat(np.arange(len(self.cells)), self.cells.shape[1])
         return csr_matrix((self.values.ravel(), (points, self.cells.ravel())), shape=(len(self.cells), nodes))
 
@@ -39,7 +42,7 @@ class Sample:
 
 
 def sample(mesh: Discretisation, points: Floats) -> Sample:
-    """Find the elements at ``points`` ``(p, 2)``, in the strip's frame.
+    """Evaluate the shape functions at ``points`` ``(p, 2)`` in the strip's frame.
 
     Raises
     ------
@@ -50,13 +53,35 @@ def sample(mesh: Discretisation, points: Floats) -> Sample:
 
 
 def sample_basis(basis: object, cells: Ints, points: Floats) -> Sample:
-    """As `sample`, from scikit-fem's basis and the nodes of its elements ``(e, k)``."""
-    found = basis.mesh.element_finder()(*points.T)  # type: ignore[attr-defined]  # scikit-fem has no types
+    """Evaluate the shape functions of a scikit-fem basis; ``cells`` ``(e, k)`` are the nodes of its elements."""
+    containing = basis.mesh.element_finder()(*points.T)  # type: ignore[attr-defined]  # scikit-fem has no types
     mapping, element = basis.mapping, basis.elem  # type: ignore[attr-defined]
-    local = mapping.invF(points.T[:, :, None], tind=found)
-    shapes = [element.gbasis(mapping, local, i, tind=found)[0] for i in range(cells.shape[1])]
+    local = mapping.invF(points.T[:, :, None], tind=containing)
+    shapes = [element.gbasis(mapping, local, i, tind=containing)[0] for i in range(cells.shape[1])]
     values = [np.broadcast_to(np.asarray(shape), (len(points), 1))[:, 0] for shape in shapes]
     gradients = [np.broadcast_to(shape.grad, (2, len(points), 1))[:, :, 0].T for shape in shapes]
     return Sample(
-        cells=cells[found], values=np.stack(values, axis=-1), gradients=np.stack(gradients, axis=-1)
+        cells=cells[containing], values=np.stack(values, axis=-1), gradients=np.stack(gradients, axis=-1)
     )
+
+
+def section_points(
+    nodes: Floats, edges: dict[str, Ints], stations: Floats, layers: int
+) -> tuple[Floats, Floats, Floats]:
+    """Three-point Gauss rules in equal layers of the sections at ``stations`` ``(m,)``.
+
+    Returns
+    -------
+    points : (m q, 2)
+        Gauss points, section after section [m].
+    shares : (q,)
+        Weights of the points of a section; they sum to one.
+    heights : (m,)
+        Distances of the two faces [m].
+    """
+    low, high = (np.interp(stations, *nodes[edges[name]].T) for name in ("right", "left"))
+    points, weights = np.polynomial.legendre.leggauss(3)
+    fractions = (np.arange(layers)[:, None] + (1 + points) / 2).ravel() / layers
+    y = low[:, None] + fractions * (high - low)[:, None]
+    x = np.broadcast_to(stations[:, None], y.shape)
+    return np.stack([x.ravel(), y.ravel()], axis=1), np.tile(weights / 2, layers) / layers, high - low

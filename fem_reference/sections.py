@@ -1,4 +1,4 @@
-"""Section forces and the strains at the faces, from the stress inside."""
+"""Section forces from the stress in the solid, and strains of the faces."""
 
 from dataclasses import dataclass
 
@@ -7,27 +7,27 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.body import Body
 from fem_reference.result import Result
-from fem_reference.sampling import sample
-
-_POINTS = 3
+from fem_reference.sampling import SECTION_LAYERS, sample, section_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionForces:
-    """Stress resultants over undeformed sections, what the part beyond exerts, ``(m,)`` each.
+    """Stress resultants of undeformed sections: the action of the part towards the end on the part towards the start.
+
+    All arrays have the shape ``(m,)`` unless stated.
 
     Parameters
     ----------
     stations
         Undeformed axial coordinates [m].
     N, V
-        Force along the section's normal, in tension, and along its height, upwards [N].
+        Normal force, positive in tension, and shear force, positive to the left of the axis [N].
     M
-        Moment about the section mean, anticlockwise positive on the part beyond's side [N m].
+        Moment about the section mean, anticlockwise positive [N m].
     rotation
-        Rotation of the section [rad].
+        Rotation of the section from the global x axis [rad].
     force
-        The same force in the global frame, ``(m, 2)`` [N].
+        Resultant of N and V in the global frame, ``(m, 2)`` [N].
     """
 
     stations: Floats
@@ -41,25 +41,27 @@ class SectionForces:
 def section_forces(result: Result, strip: str, k: int, stations: Floats | None = None) -> SectionForces:
     """Integrate the stress over sections of a strip at the accepted load parameter ``k``.
 
-    With ``P`` the first Piola-Kirchhoff stress, ``p = P e_1`` the traction of an undeformed section and ``x_m`` its mean
-    position, ``f = integral p dA`` and ``M = integral (x - x_m) x p dA``. N and V are the components of f on the section's
-    axes, turned by the rotation that fits ``x - x_m`` to the undeformed section best.
+    The first Piola-Kirchhoff stress P gives the traction ``p = P e_1`` of an undeformed section with mean position ``x_m``.
+    Force and moment are ``f = integral p dA`` and ``M = integral (x - x_m) x p dA``. N and V are the components of f on
+    the axes of the rotated section. The rotation is the least-squares fit of ``x - x_m`` to the undeformed section.
 
     Parameters
     ----------
     result, strip, k
         Solution, name of the strip and number of the load parameter.
     stations
-        Undeformed axial coordinates; by default the points of two-point Gauss rules in the elements along the strip, where
-        the stress of biquadratic elements is best.
+        Undeformed axial coordinates [m]; None for the two Gauss points of each element along the strip, at which the
+        stress of biquadratic elements is most accurate.
     """
     body, part = result.model.body(strip)
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
-    points, weights = _section_points(body, X)
+    layers = body.strip.mesh[1] if body.strip.mesh_file is None else SECTION_LAYERS
+    points, shares, heights = section_points(body.mesh.nodes, body.mesh.edges, X, layers)
+    weights = body.strip.width * heights[:, None] * shares
     u = result.states[k].u[part]
-    found = sample(body.mesh, points)
-    P = body.law.stress(found.deformation_gradient(u))
-    x = points + found.rows(len(u)) @ u
+    sampled = sample(body.mesh, points)
+    P = body.law.stress(sampled.deformation_gradient(u))
+    x = points + sampled.rows(len(u)) @ u
     shape = (X.size, -1)
     p = P[:, 0].T.reshape(*shape, 2)
     mean = (weights[:, :, None] * x.reshape(*shape, 2)).sum(axis=1) / weights.sum(axis=1)[:, None]
@@ -81,7 +83,7 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
 
 
 def gauss_stations(body: Body) -> Floats:
-    """Points of two-point Gauss rules between the corners of the elements on the right face, ``(2 n,)`` [m]."""
+    """Axial coordinates ``(2 n,)`` of two-point Gauss rules between the element corners on the right face [m]."""
     corners = np.unique(body.mesh.cells[:, :4])
     face = body.mesh.edges["right"]
     x = body.mesh.nodes[face[np.isin(face, corners)], 0]
@@ -90,27 +92,15 @@ def gauss_stations(body: Body) -> Floats:
     return stations
 
 
-def _section_points(body: Body, X: Floats) -> tuple[Floats, Floats]:
-    """Points ``(m q, 2)`` of three-point Gauss rules, one to a row of elements, and weights ``(m, q)`` [m^2]."""
-    mesh = body.mesh
-    low, high = (np.interp(X, *mesh.nodes[mesh.edges[name]].T) for name in ("right", "left"))
-    layers = body.strip.mesh[1] if body.strip.mesh_file is None else 8
-    gauss, weights = np.polynomial.legendre.leggauss(_POINTS)
-    fractions = (np.arange(layers)[:, None] + (1 + gauss) / 2).ravel() / layers
-    y = low[:, None] + fractions * (high - low)[:, None]
-    areas = body.strip.width * (high - low)[:, None] * np.tile(weights / 2, layers) / layers
-    return np.stack([np.broadcast_to(X[:, None], y.shape).ravel(), y.ravel()], axis=1), areas
-
-
 def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, Floats]]:
-    """Stretches less one along the two faces at the accepted load parameter ``k``.
+    """Engineering strains along the two faces at the accepted load parameter ``k``.
 
     Returns
     -------
     stations : (m,)
-        The points of `gauss_stations` [m].
+        Axial coordinates from `gauss_stations` [m].
     strains : dict
-        By face, ``"right"`` and ``"left"``: ``|F T| - 1`` with the face's unit tangent T in the undeformed strip, ``(m,)``.
+        ``|F T| - 1`` ``(m,)`` by face, ``"right"`` and ``"left"``, with the unit tangent T of the undeformed face.
     """
     body, part = result.model.body(strip)
     X = gauss_stations(body)

@@ -1,4 +1,4 @@
-"""How a problem is solved."""
+"""Tolerances and limits of the solution."""
 
 from dataclasses import dataclass
 
@@ -12,36 +12,37 @@ class Settings:
     Parameters
     ----------
     tolerance
-        Largest nodal residual accepted, relative to the larger of contact force and ``E I / L^2``; the round-off of
-        a nodal force is added.
+        Largest accepted nodal residual, relative to the largest of the contact forces, the end loads and ``E I / L^2``.
+        The round-off of a nodal force is added.
     max_iterations
-        Newton iterations with one set of closed contacts. Next to a buckling load 30 are needed: bending that overshoots into
-        stretch changes the sign of what resists it.
+        Largest number of Newton iterations with one set of closed contacts. Near a buckling load 30 are needed, because a
+        large bending correction also stretches the strip and changes the sign of its lateral stiffness.
     largest_growth, smallest_damping
-        A correction that the next one exceeds by this factor is halved, down to this part of it. Bending that overshoots
-        into stretch makes a good correction's successor grow too: a factor near one costs more than it saves.
+        A correction is halved if the next correction exceeds it by the factor ``largest_growth``. It is halved at most
+        down to the part ``smallest_damping``. A factor near one also rejects corrections that converge.
     max_contact_changes
-        Changes of the set of closed contacts in one attempt.
+        Largest number of changes of the set of closed contacts in one attempt.
     max_augmentations
-        Augmented Lagrangian steps in one attempt.
+        Largest number of augmented Lagrangian steps in one attempt.
     max_penetration
-        Largest penetration accepted, relative to the strip's length.
+        Largest accepted penetration, relative to the strip's length.
     balance_tolerance
-        Largest accepted mismatch of clamp reactions and contact forces, relative as above.
+        Largest accepted imbalance of clamp reactions, contact forces and end loads, relative to the same force as
+        ``tolerance``.
     min_step
         Smallest step of the load parameter.
     max_attempts
-        Steps tried between two load parameters. The double beam takes 82 where one step is asked for.
+        Largest number of attempts between two requested load parameters. The double beam needs 82 from 0 to 1.
     predictor_order
-        Degree of the polynomial in the load parameter that extrapolates accepted states and their rates, at most 5.
+        Degree, at most 5, of the polynomial in the load parameter that extrapolates accepted states and their rates.
     first_step
-        First step of the load parameter, unless the first load parameter is smaller.
+        First step of the load parameter, unless the first requested load parameter is smaller.
     largest_departure
-        Largest distance of a step from the tangents at its ends, relative to its length, that is accepted.
+        Largest accepted distance of a step from the tangents at its ends, relative to the step's length.
     branch
-        What happens at a critical point. ``"stop"``: the path ends there by name; ``"stable"``: at a bifurcation it turns to
-        the stable branch of less energy; ``"primary"``: it goes on where the rate does, and the index says what is unstable.
-        At a limit point no path goes on with the load parameter: it ends.
+        Continuation at a bifurcation. ``"stop"``: the path ends; ``"stable"``: it continues on the stable branch of lower
+        energy; ``"primary"``: it continues on the same branch, whose index counts the unstable modes. At a limit
+        point every path ends.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Solve a problem: march, and collect what was reached."""
+"""Solve a problem and collect the histories."""
 
 from collections.abc import Callable
 from time import perf_counter
@@ -12,11 +12,11 @@ from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import State, clamp_reactions, push
+from fem_reference.state import State, clamp_reactions, contact_force
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
-VTK_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
+CELL_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
 def solve(
@@ -26,20 +26,20 @@ def solve(
     throw: bool = True,
     watch: Callable[[Step], None] | None = None,
 ) -> Result:
-    """Solve a problem at given load parameters.
+    """Solve a problem at prescribed load parameters.
 
     Parameters
     ----------
     problem
-        Strips, pins and contacts.
+        Strips, pins, contacts and end loads.
     load_parameters
-        Increasing values in (0, 1], each reached exactly, ``(n,)``.
+        Increasing values in (0, 1], ``(n,)``. Each is reached exactly.
     settings
-        Tolerances and limits; the defaults if None.
+        Tolerances and limits; None for the defaults.
     throw
-        Whether a solution that stops early raises.
+        Whether to raise an error if the solution stops early.
     watch
-        Called with the step to every load parameter.
+        Function that is called with the `fem_reference.march.Step` to every load parameter.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def solve(
     ValueError
         If the load parameters are not a one-dimensional increasing array in (0, 1].
     SolveError
-        If the solution stops early and ``throw`` is set; its ``result`` holds what was reached.
+        If the solution stops early and ``throw`` is set; ``SolveError.result`` is the incomplete solution.
     """
     loads = _checked(load_parameters)
     settings = settings or Settings()
@@ -84,9 +84,9 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
     status, message = _outcome(model, steps[-1])
     slips = dict(reversed([slip for step in steps for slip in step.slips]))
     displacement = np.zeros((len(states), model.nodes, 2))
-    for body, part in model.each():
-        for row, at in zip(displacement, states, strict=True):
-            row[part] = at.u[part] @ body.strip.frame.T
+    for body, part in model.bodies_and_nodes():
+        for row, state in zip(displacement, states, strict=True):
+            row[part] = state.u[part] @ body.strip.frame.T
     return Result(
         status=status,
         message=message,
@@ -114,28 +114,31 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
 
 
 def _outcome(model: Model, last: Step) -> tuple[Status, str]:
-    """Status of the whole solution and its sentence, from its last step."""
+    """Status and message of the solution from the last step."""
     if last.status is Status.CONVERGED:
         return Status.COMPLETED, Status.COMPLETED.value
     pair = "" if last.pair is None else f" ({model.pairs[last.pair].name})"
     cause = "" if last.cause is last.status else f" because {last.cause.value}"
-    place = "at" if last.status in EVENTS else "after"
-    return last.status, f"{last.status.value}{cause}{pair}, {place} load parameter {last.load_parameter:.9g}"
+    preposition = "at" if last.status in EVENTS else "after"
+    return (
+        last.status,
+        f"{last.status.value}{cause}{pair}, {preposition} load parameter {last.load_parameter:.9g}",
+    )
 
 
 def _contact_history(states: tuple[State, ...], number: int, slip_off: float) -> ContactHistory:
-    touches = [at.touches[number] for at in states]
+    touches = [state.touches[number] for state in states]
     return ContactHistory(
         force=np.array([touch.force for touch in touches]),
         arc_position=np.array([touch.projection.zeta if touch.closed else np.nan for touch in touches]),
-        gap=np.array([touch.shown_gap for touch in touches]),
-        vector=np.array([push(touch) for touch in touches]).reshape(-1, 2),
+        gap=np.array([touch.reported_gap for touch in touches]),
+        vector=np.array([contact_force(touch) for touch in touches]).reshape(-1, 2),
         slip_off=slip_off,
     )
 
 
 def _supports(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
-    reactions = [clamp_reactions(model, at) for at in states]
+    reactions = [clamp_reactions(model, state) for state in states]
     return {
         body.strip.name: SupportHistory(
             force=np.array([row[number][0] for row in reactions]).reshape(-1, 2),
@@ -147,12 +150,12 @@ def _supports(model: Model, states: tuple[State, ...]) -> dict[str, SupportHisto
 
 def _tips(model: Model, strip: str, states: tuple[State, ...]) -> Floats:
     body, _ = model.body(strip)
-    return np.array([section_means(model, at, strip)[body.free_end] for at in states]).reshape(-1, 2)
+    return np.array([section_means(model, state, strip)[body.free_end] for state in states]).reshape(-1, 2)
 
 
 def _cells(model: Model) -> dict[str, Ints]:
-    """Cells of all bodies by VTK type."""
-    found: dict[str, list[Ints]] = {}
-    for body, part in model.each():
-        found.setdefault(VTK_TYPES[body.strip.element], []).append(body.mesh.cells + part.start)
-    return {name: np.concatenate(cells) for name, cells in found.items()}
+    """Cells of all bodies by meshio cell type."""
+    cells: dict[str, list[Ints]] = {}
+    for body, part in model.bodies_and_nodes():
+        cells.setdefault(CELL_TYPES[body.strip.element], []).append(body.mesh.cells + part.start)
+    return {name: np.concatenate(parts) for name, parts in cells.items()}

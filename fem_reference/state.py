@@ -1,4 +1,4 @@
-"""A state of the model and the forces in it."""
+"""States of the model: displacements with contacts, and the forces in them."""
 
 from dataclasses import dataclass, replace
 
@@ -12,18 +12,19 @@ from fem_reference.model import Model
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """What is decided about a contact, rather than computed from displacements.
+    """Variables of a contact that do not follow from the displacements.
 
     Parameters
     ----------
     closed
-        Whether the contact acts.
+        Whether the contact is active.
     armed
-        Whether it may: not after its node has left the strip over an end, until it is back on its side.
+        Whether the contact may close. It may not after its node left the strip over an end, until the node has returned
+        to its side.
     force
-        Contact force lam, pushing the two apart; zero if open [N].
+        Contact force lam, positive in compression; zero if open [N].
     multiplier
-        Force lam_0 of the augmented Lagrangian, found before; zero for the penalty alone [N].
+        Multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N].
     """
 
     closed: bool = False
@@ -32,20 +33,20 @@ class Condition:
     multiplier: float = 0.0
 
     def opened(self, *, armed: bool) -> "Condition":
-        """Return the open contact."""
+        """Return the condition of the contact after opening."""
         return Condition(closed=False, armed=armed)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Touch:
-    """One contact in a state.
+    """A contact in a state.
 
     Parameters
     ----------
     pair, condition
-        The contact and what is decided about it.
+        The contact and its condition.
     projection
-        The node seen from the contact curve.
+        Projection of the node on the contact curve.
     slopes, curvature
         Factors ``U (2 n, 3)`` and ``H (3, 3)`` of the gap's derivatives, see `fem_reference.contact`.
     """
@@ -58,7 +59,7 @@ class Touch:
 
     @property
     def closed(self) -> bool:
-        """Whether the contact acts."""
+        """Whether the contact is active."""
         return self.condition.closed
 
     @property
@@ -68,34 +69,34 @@ class Touch:
 
     @property
     def gap(self) -> float:
-        """Signed distance of node and strip, whether or not the closest point is on the strip [m]."""
+        """Signed distance of the node from the contact curve or its continuation beyond an end [m]."""
         return float(self.pair.gap(self.projection))
 
     @property
-    def shown_gap(self) -> float:
-        """The gap; beyond an end of the strip, the distance to that end [m]."""
-        beyond = self.projection.end_distance - self.pair.radius
-        return self.gap if self.projection.inside else float(beyond)
+    def reported_gap(self) -> float:
+        """Gap; for a node beyond an end of the strip the distance from this end [m]."""
+        end_gap = self.projection.end_distance - self.pair.radius
+        return self.gap if self.projection.inside else float(end_gap)
 
     @property
-    def mismatch(self) -> float:
-        """``g + (lam - lam_0) / eps`` [m], zero if open."""
+    def gap_residual(self) -> float:
+        """Residual ``g + (lam - lam_0) / eps`` of the contact equation; zero if open [m]."""
         added = self.force - self.condition.multiplier
         return self.gap + added / self.pair.penalty if self.closed else 0.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
-    """Displacements with their contacts.
+    """Displacements and contacts at a load parameter.
 
     Parameters
     ----------
     u
         Nodal displacements ``(n, 2)``, each in the frame of its strip [m].
     t
-        Load parameter, which places the pins.
+        Load parameter.
     touches
-        The contacts, in the order of the model's pairs.
+        Contacts, in the order of the model's pairs.
     """
 
     u: Floats
@@ -104,82 +105,95 @@ class State:
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """What is decided about the contacts."""
+        """Conditions of all contacts."""
         return tuple(touch.condition for touch in self.touches)
 
     @property
     def closed(self) -> tuple[Touch, ...]:
-        """The contacts that act."""
+        """Closed contacts."""
         return tuple(touch for touch in self.touches if touch.closed)
 
+    @property
+    def contact_set(self) -> tuple[bool, ...]:
+        """Whether each contact is closed."""
+        return tuple(touch.closed for touch in self.touches)
 
-def state(model: Model, u: Floats, t: float, conditions: tuple[Condition, ...]) -> State:
-    """Project the nodes and collect the state."""
+
+def build_state(model: Model, u: Floats, t: float, conditions: tuple[Condition, ...]) -> State:
+    """Build the state at given displacements: project the nodes and differentiate the gaps."""
     touches = []
     for pair, condition in zip(model.pairs, conditions, strict=True):
         projection = pair.project(u, t)
         U, H = pair.gap_derivatives(projection)
-        kept = condition if condition.closed else condition.opened(armed=condition.armed)
-        touches.append(Touch(pair=pair, condition=kept, projection=projection, slopes=U, curvature=H))
+        consistent = condition if condition.closed else condition.opened(armed=condition.armed)
+        touches.append(Touch(pair=pair, condition=consistent, projection=projection, slopes=U, curvature=H))
     return State(u=u, t=t, touches=tuple(touches))
 
 
 def at_rest(model: Model, t: float = 0.0) -> State:
-    """The undeformed state with every contact open."""
-    return state(model, np.zeros((model.nodes, 2)), t, (Condition(),) * len(model.pairs))
+    """Return the undeformed state with all contacts open."""
+    return build_state(model, np.zeros((model.nodes, 2)), t, (Condition(),) * len(model.pairs))
 
 
-def with_conditions(at: State, conditions: tuple[Condition, ...]) -> State:
-    """Return the same displacements with other contact conditions."""
-    touches = zip(at.touches, conditions, strict=True)
-    return replace(at, touches=tuple(replace(touch, condition=condition) for touch, condition in touches))
+def with_conditions(state: State, conditions: tuple[Condition, ...]) -> State:
+    """Return the state with other contact conditions at the same displacements."""
+    touches = zip(state.touches, conditions, strict=True)
+    return replace(state, touches=tuple(replace(touch, condition=condition) for touch, condition in touches))
 
 
-def residual(model: Model, at: State) -> Floats:
-    """Internal force minus end loads and contact forces, ``(n, 2)``; in equilibrium, the clamps' forces [N]."""
-    R = model.internal_force(at.u) - at.t * model.load
-    for touch in at.closed:
+def residual(model: Model, state: State) -> Floats:
+    """Internal forces minus end loads and contact forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
+    R = model.internal_force(state.u) - state.t * model.load
+    for touch in state.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
     return R
 
 
-def push(touch: Touch) -> Floats:
-    """Force ``-s lam n`` of the node on the strip, ``(2,)``, in the global frame [N]."""
+def contact_force(touch: Touch) -> Floats:
+    """Force ``-s lam n`` ``(2,)`` of the node on the strip, in the global frame [N]."""
     return np.asarray(-touch.pair.contact.sign * touch.force * touch.projection.normal)
 
 
-def clamp_reactions(model: Model, at: State) -> list[tuple[Floats, float]]:
-    """Force ``(2,)`` [N] of each clamp on its strip, in the global frame, and its moment about the clamped point [N m]."""
-    R, found = residual(model, at), []
-    for body, part in model.each():
+def clamp_reactions(model: Model, state: State) -> list[tuple[Floats, float]]:
+    """Force ``(2,)`` of each clamp on its strip, in the global frame [N], and moment about the clamped point [N m]."""
+    R, reactions = residual(model, state), []
+    for body, part in model.bodies_and_nodes():
         edge = body.clamped_edge
         forces = R[part][edge]
-        arm = body.mesh.nodes[edge] + at.u[part][edge] - body.clamped_point
-        moment = float((arm[:, 0] * forces[:, 1] - arm[:, 1] * forces[:, 0]).sum())
-        found.append((np.asarray(body.strip.frame @ forces.sum(axis=0)), moment))
-    return found
+        arm = body.mesh.nodes[edge] + state.u[part][edge] - body.clamped_point
+        reactions.append((np.asarray(body.strip.frame @ forces.sum(axis=0)), _moment(arm, forces)))
+    return reactions
 
 
-def imbalance(model: Model, at: State) -> float:
-    """Largest component of the clamps' reactions plus pins' forces and end loads, moments about the first strip's start over L [N]."""
-    strips = model.problem.strips
+def imbalance(model: Model, state: State) -> float:
+    """Largest component of the sum of all external forces and moments [N].
+
+    External are the clamp reactions, the forces of the pins and the end loads. Moments refer to the start of the first
+    strip and are divided by the length of the longest one.
+    """
+    origin = np.array(model.problem.strips[0].start)
     total, moment = np.zeros(2), 0.0
-    for (force, own), body in zip(clamp_reactions(model, at), model.bodies, strict=True):
-        place = np.array(body.strip.start) - strips[0].start
-        total += force
-        moment += own + _cross(place + body.strip.frame @ body.clamped_point, force)
-    for touch in at.closed:
+    for (force, clamp_moment), (body, part) in zip(
+        clamp_reactions(model, state), model.bodies_and_nodes(), strict=True
+    ):
+        start = np.array(body.strip.start) - origin
+        points = start + (body.mesh.nodes + state.u[part]) @ body.strip.frame.T
+        loads = state.t * model.load[part] @ body.strip.frame.T
+        total += force + loads.sum(axis=0)
+        moment += clamp_moment + _moment(start + body.strip.frame @ body.clamped_point, force)
+        moment += _moment(points, loads)
+    for touch in state.closed:
         if len(touch.pair.strips) == 1:
-            total += push(touch)
-            moment += _cross(touch.pair.position(at.u, at.t), push(touch))
-    for body, part in model.each():
-        loads = at.t * model.load[part] @ body.strip.frame.T
-        place = np.array(body.strip.start) - strips[0].start
-        points = place + (body.mesh.nodes + at.u[part]) @ body.strip.frame.T
-        total += loads.sum(axis=0)
-        moment += float((points[:, 0] * loads[:, 1] - points[:, 1] * loads[:, 0]).sum())
+            total += contact_force(touch)
+            moment += _moment(touch.pair.position(state.u, state.t), contact_force(touch))
     return float(np.abs([*total, moment / model.length]).max())
 
 
-def _cross(arm: Floats, force: Floats) -> float:
-    return float(arm[0] * force[1] - arm[1] * force[0])
+def contact_energy(state: State) -> float:
+    """Energy ``eps g^2 / 2`` of all closed contacts [J]."""
+    return sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
+
+
+def _moment(arms: Floats, forces: Floats) -> float:
+    """Moment of forces ``(..., 2)`` with their arms ``(..., 2)`` [N m]."""
+    return float((arms[..., 0] * forces[..., 1] - arms[..., 1] * forces[..., 0]).sum())

@@ -1,10 +1,10 @@
-"""How a solution or one of its steps can end."""
+"""Outcomes of a solution and of its steps."""
 
 from enum import Enum
 
 
 class Status(Enum):
-    """Outcome of a solution or of one of its steps; the value is its sentence."""
+    """Outcome of a solution or of one of its steps; the value is the message for the user."""
 
     COMPLETED = "every load parameter was reached, and every accepted state was checked"
     CONVERGED = "the residual is below its tolerance and the state was checked"
@@ -13,15 +13,13 @@ class Status(Enum):
     SINGULAR = "the tangent stiffness could not be factorised"
     LOST_CONTACT = "the pin passed the end of the strip"
     UNDECIDED_CONTACT = "the contacts kept changing between open and closed"
-    CYCLING = "the contacts came back to a set of open and closed ones that was tried before"
+    CYCLING = "the contacts returned to a set of open and closed ones that was tried before"
     TOO_DEEP = "the penalty leaves a penetration above its limit"
     AUGMENTATION_LIMIT = "augmented Lagrangian steps did not reach the requested penetration"
     UNBALANCED = "the clamps' reactions do not balance the contact forces"
     CUTBACK_FLOOR = "the load step fell below its floor"
-    STEP_LIMIT = (
-        "the load steps stayed so short that the next load parameter was not reached within their limit"
-    )
-    ANOTHER_BRANCH = "the state found is not on the branch of the one before"
+    STEP_LIMIT = "the largest number of load steps was used before the next load parameter was reached"
+    ANOTHER_BRANCH = "the converged state is not on the branch of the previous state"
     LIMIT_POINT = "the load parameter has a limit on this branch: beyond it there is no equilibrium nearby"
-    BIFURCATION = "the path divides: beyond this load parameter the branch that was followed is unstable"
-    LINE_CONTACT = "the strip bends as the round pin does: from here it touches along a line, not at a point"
+    BIFURCATION = "the path bifurcates: beyond this load parameter the followed branch is unstable"
+    LINE_CONTACT = "the strip is as curved as the round pin: beyond this point they touch along a line"

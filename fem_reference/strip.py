@@ -1,4 +1,4 @@
-"""A strip of material: its place, section, law, clamp and mesh."""
+"""A strip: geometry, section, material, clamp and mesh."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -12,22 +12,23 @@ from fem_reference.material import MATERIALS, PLANES
 ELEMENTS = ("Q1", "Q2", "Q2-full")
 
 LARGEST_MEMORY = 2 * 2.0**30
-"""Largest memory that the mesh of a strip may need [bytes]."""
+"""Largest estimated memory for the mesh of a strip [bytes]."""
 LARGEST_WORK = 1e11
-"""Largest number of operations that one factorisation may need: about half a minute."""
+"""Largest estimated number of operations in one factorisation, about half a minute."""
 
 
 def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
-    """Memory [bytes] and operations of a factorisation that a mesh needs, before anything is allocated.
+    """Estimate the memory [bytes] and the operations of one factorisation of a structured mesh.
 
-    Measured: 36 kB to a biquadratic element, 9.4 kB to a bilinear one, and two bands ``m (w + 1)``. With r nodes to a section the
-    band's width w is ``4 r + 5``, bilinear ``2 r + 3``; the factorisation takes ``m w^2`` operations.
+    A biquadratic element takes 36 kB and a bilinear one 9.4 kB (measured). Two bands of ``m (w + 1)`` numbers are added.
+    With r nodes on a section the bandwidth w is ``4 r + 5``, or ``2 r + 3`` for bilinear elements. The factorisation takes
+    ``m w^2`` operations.
     """
     nx, ny = map(float, mesh)
-    order, each = (1, 9.4e3) if element == "Q1" else (2, 36e3)
+    order, element_memory = (1, 9.4e3) if element == "Q1" else (2, 36e3)
     r = order * ny + 1
     m, width = 2 * r * (order * nx + 1), 2 * order * r + 2 * order + 1
-    return each * nx * ny + 16 * m * (width + 1), m * width**2
+    return element_memory * nx * ny + 16 * m * (width + 1), m * width**2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +38,7 @@ class Strip:
     Parameters
     ----------
     name
-        How results refer to it.
+        Name of the strip in contacts, loads and results.
     start, end
         Ends of the axis [m]; its direction is from start to end.
     height, width
@@ -47,27 +48,27 @@ class Strip:
     clamped
         The clamped end, ``("start",)`` or ``("end",)``.
     clamp
-        ``"rod"``: no axial displacement on the edge, no transverse one at its middle (the clamp of a rod; Poisson's
-        contraction stays free). ``"full"``: both displacements vanish on the edge.
+        ``"rod"``: the edge has no axial displacement and its middle no transverse displacement, as a clamped rod with
+        free lateral contraction. ``"full"``: both displacements vanish on the edge.
     mesh
         Numbers of elements along the axis (at least 2) and over the height.
     element
-        ``"Q2"``, biquadratic with two Gauss points along the strip and three across; ``"Q2-full"``, three each way;
-        ``"Q1"``, bilinear (which locks in bending where it is longer than high).
+        ``"Q2"``: biquadratic with two Gauss points along the strip and three across. ``"Q2-full"``: biquadratic with
+        three by three Gauss points. ``"Q1"``: bilinear; elements that are longer than high lock in bending.
     grading
-        Length of the last element along the axis over that of the first.
+        Length ratio of the last element along the axis to the first.
     mesh_file
-        A mesh of quadrilaterals in the strip's frame, in place of ``mesh`` and ``grading``; see
+        File with a mesh of quadrilaterals in the strip's frame, which replaces ``mesh`` and ``grading``; see
         `fem_reference.mesh_file.read_mesh`.
     material
         A key of `fem_reference.material.MATERIALS`.
     plane
-        ``"stress"``: free to contract out of the plane; ``"strain"``: not.
+        ``"stress"``: plane stress; ``"strain"``: plane strain.
 
     Raises
     ------
     ValueError
-        If a value breaks its rule, or the mesh needs more than `LARGEST_MEMORY` or `LARGEST_WORK`.
+        If a value is out of range, or the mesh needs more than `LARGEST_MEMORY` or `LARGEST_WORK`.
     """
 
     name: str
@@ -133,11 +134,11 @@ class Strip:
         return np.array([[c, -s], [s, c]])
 
     def to_local(self, points: Array) -> Array:
-        """Points ``(..., 2)`` from the global frame to the strip's."""
+        """Transform points ``(..., 2)`` from the global frame to the strip's frame."""
         local: Array = (points - np.array(self.start)) @ self.frame
         return local
 
     def to_global(self, points: Array) -> Array:
-        """Points ``(..., 2)`` from the strip's frame to the global one."""
+        """Transform points ``(..., 2)`` from the strip's frame to the global frame."""
         placed: Array = points @ self.frame.T + np.array(self.start)
         return placed

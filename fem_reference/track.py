@@ -1,73 +1,80 @@
-"""Accepted states of a path: their tangents, what they predict, and whether a step stays on its branch."""
+"""Accepted states of a path: prediction of the next state, and the check that a step stays on its branch."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.active_set import equilibrium
 from fem_reference.arrays import Array, Floats
 from fem_reference.model import Model
 from fem_reference.newton import force_scale
 from fem_reference.settings import Settings
-from fem_reference.state import State, state
+from fem_reference.state import State, build_state
+from fem_reference.status import Status
 from fem_reference.tangent import Correction, Tangent, linearise
 
-KEPT = 3
-"""Accepted states that a prediction uses at most."""
+TRACK_LENGTH = 3
+"""Largest number of accepted states in a prediction."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Accepted:
-    """An accepted state.
+    """An accepted state with its tangent and index.
 
     Parameters
     ----------
     at
         The state.
     tangent
-        Its linearisation.
+        Linearisation at the state.
     index
-        Number of negative eigenvalues of the energy's Hessian, -1 where it is not defined.
+        Number of negative eigenvalues of the energy's Hessian; -1 if undefined, see `Tangent.index`.
     """
 
-    at: State
+    state: State
     tangent: Tangent
     index: int
 
-    @property
-    def closed(self) -> tuple[bool, ...]:
-        """Which contacts act."""
-        return tuple(touch.closed for touch in self.at.touches)
-
     def rate(self, before: float, after: float) -> Correction:
-        """Change per load parameter with the pins' mean velocity between two load parameters; nan if undetermined."""
-        found = self.tangent.rate(before, after)
-        if found is None:
-            return Correction(u=np.full_like(self.at.u, np.nan), forces=np.full(len(self.at.closed), np.nan))
-        return found
+        """Change per load parameter with the mean velocity of the pins between two load parameters; nan if singular."""
+        rate = self.tangent.rate(before, after)
+        if rate is None:
+            return Correction(
+                u=np.full_like(self.state.u, np.nan), forces=np.full(len(self.state.closed), np.nan)
+            )
+        return rate
 
 
-def accept(model: Model, at: State, settings: Settings) -> Accepted | None:
+def accept(model: Model, state: State, settings: Settings) -> Accepted | None:
     """Linearise at a state; None if its tangent is singular."""
-    tangent = linearise(model, at)
+    tangent = linearise(model, state)
     if tangent is None:
         return None
-    weak = settings.tolerance * force_scale(model, at)
-    return Accepted(at=at, tangent=tangent, index=tangent.index(weak))
+    force_tolerance = settings.tolerance * force_scale(model, state)
+    return Accepted(state=state, tangent=tangent, index=tangent.index(force_tolerance))
+
+
+def accepted_state(
+    model: Model, states: tuple[Accepted, ...], t: float, settings: Settings
+) -> Accepted | None:
+    """Equilibrium at ``t`` from the linear extrapolation of the last state; None if it does not converge."""
+    attempt = equilibrium(model, predict(model, states, t, 1), settings)
+    return accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
 
 
 def departure(a: Accepted, b: Accepted, floor: float) -> float:
-    """Distance of a step from its tangents, relative to its length.
+    """Distance of a step from the tangents at its ends, relative to the length of the step.
 
     With ``d = u_b - u_a`` and the rates v at both ends it is the larger of ``|d - dt v_a| / |d|`` and ``|d - dt v_b| / |d|``.
-    Where the set of closed contacts changes on the way, the path has a corner: then the best of
-    ``|d - dt ((1 - tau) v_a + tau v_b)| / |d|``, tau between 0 and 1. Norms are root mean squares over the nodes;
-    differences below ``floor`` [m] are none.
+    If the set of closed contacts changes, the path has a corner, and the distance is the minimum of
+    ``|d - dt ((1 - tau) v_a + tau v_b)| / |d|`` over tau between 0 and 1. Norms are root mean squares over the nodes.
+    Differences below ``floor`` [m] count as zero.
     """
-    before, after = sorted((a.at.t, b.at.t))
-    dt = b.at.t - a.at.t
-    d = b.at.u - a.at.u
-    va, vb = (dt * one.rate(before, after).u for one in (a, b))
-    if a.closed == b.closed:
+    before, after = sorted((a.state.t, b.state.t))
+    dt = b.state.t - a.state.t
+    d = b.state.u - a.state.u
+    va, vb = (dt * accepted.rate(before, after).u for accepted in (a, b))
+    if a.state.contact_set == b.state.contact_set:
         errors = [_size(d - va), _size(d - vb)]
     else:
         between = vb - va
@@ -82,36 +89,41 @@ def _size(u: Floats) -> float:
 
 
 def predict(model: Model, states: tuple[Accepted, ...], t: float, degree: int) -> State:
-    """State at ``t`` by Hermite's polynomial through values and rates of the last states, contacts as in the last.
+    """Extrapolate the last states to ``t`` by Hermite's polynomial, with the contact set of the last state.
 
-    The degree is lower where fewer states are known since the last change of the set of closed contacts.
+    Only states with this contact set are used, so that the degree may be lower than ``degree``.
     """
     last = states[-1]
-    same = [one for one in states[-KEPT:] if one.closed == last.closed]
+    same = [
+        accepted
+        for accepted in states[-TRACK_LENGTH:]
+        if accepted.state.contact_set == last.state.contact_set
+    ]
     if degree == 0:
-        return state(model, last.at.u, t, last.at.conditions)
+        return build_state(model, last.state.u, t, last.state.conditions)
     nodes, values, rates = [], [], []
-    following = [*(one.at.t for one in same[1:]), t]
-    for one, after in zip(same, following, strict=True):
-        rate = one.rate(one.at.t, after)
-        nodes.append(one.at.t)
-        values.append(np.append(one.at.u.ravel(), [touch.force for touch in one.at.closed]))
+    following = [*(accepted.state.t for accepted in same[1:]), t]
+    for accepted, after in zip(same, following, strict=True):
+        rate = accepted.rate(accepted.state.t, after)
+        nodes.append(accepted.state.t)
+        values.append(np.append(accepted.state.u.ravel(), [touch.force for touch in accepted.state.closed]))
         rates.append(np.append(rate.u.ravel(), rate.forces))
-    found = hermite(nodes[::-1], values[::-1], rates[::-1], t, degree)
-    u = found[: last.at.u.size].reshape(-1, 2)
-    forces = iter(found[last.at.u.size :])
+    extrapolated = hermite(nodes[::-1], values[::-1], rates[::-1], t, degree)
+    u = extrapolated[: last.state.u.size].reshape(-1, 2)
+    forces = iter(extrapolated[last.state.u.size :])
     conditions = []
-    for touch in last.at.touches:
+    for touch in last.state.touches:
         force = float(next(forces)) if touch.closed else 0.0
-        kept = touch.closed and touch.pair.contact.penetration is not None
-        conditions.append(replace(touch.condition, force=force, multiplier=force if kept else 0.0))
-    return state(model, u, t, tuple(conditions))
+        augmented = touch.closed and touch.pair.contact.penetration is not None
+        conditions.append(replace(touch.condition, force=force, multiplier=force if augmented else 0.0))
+    return build_state(model, u, t, tuple(conditions))
 
 
 def hermite(nodes: list[float], values: list[Array], rates: list[Array], t: float, degree: int) -> Array:
-    """Value at ``t`` of the polynomial with the values and rates at the nodes, the first ``degree + 1`` of them in turn.
+    """Evaluate Hermite's interpolation polynomial at ``t`` by Newton's form with every node repeated.
 
-    Newton's form with every node twice.
+    The polynomial takes the first ``degree + 1`` conditions in the order value and rate at the first node, value and rate
+    at the second node, and so on.
 
     >>> hermite([0.0, 1.0], [np.array([0.0]), np.array([1.0])], [np.array([0.0]), np.array([3.0])], 2.0, 3)
     array([8.])
@@ -131,8 +143,8 @@ def hermite(nodes: list[float], values: list[Array], rates: list[Array], t: floa
     return total
 
 
-def vanishing(values: list[tuple[float, float]]) -> float:
-    """Load parameter at which a value vanishes, by inverse interpolation of ``(value, t)``."""
+def root_by_inverse_interpolation(values: list[tuple[float, float]]) -> float:
+    """Load parameter at which a quantity vanishes, by inverse interpolation of pairs ``(value, t)``."""
     total = 0.0
     for number, (value, t) in enumerate(values):
         others = [other for k, (other, _) in enumerate(values) if k != number]

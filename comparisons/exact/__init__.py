@@ -1,4 +1,4 @@
-"""Exact answers: the elastica in closed form and the Reissner rod under a pin."""
+"""Exact solutions: the elastica in closed form and the Reissner rod under a pin."""
 
 from comparisons.exact.elastica import ElasticaState, elastica_under_pin
 from comparisons.exact.outcome import Outcome

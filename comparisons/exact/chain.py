@@ -1,14 +1,14 @@
-"""A chain of Reissner rods from support to support under one dead load: frames that snap through.
+"""A chain of rigidly joined Reissner rods between two supports under one dead load, for frames that snap through.
 
-Rods of one section are rigidly joined. Along each, with the angle `a` of its undeformed axis and the rotation theta of its sections,
-`d1 = (cos(a + theta), sin(a + theta))`, `d2` to the left of it and the internal force n:
+All rods have the same section. A rod has the angle `a` of its undeformed axis, the rotation theta of its sections, the section axes
+`d1 = (cos(a + theta), sin(a + theta))` and `d2` to the left of d1, and the internal force n:
 
     theta' = m/EI,   r' = (1 + n.d1/EA) d1 + (n.d2/GA) d2,   m' = -r' x n
 
-n is constant but for the joint that carries the load `(0, -P)`, where it grows by `(0, P)`. Shooting: from the first support the equations are
-integrated to the last, by spectral collocation. What is not known there, n and the moment (or the rotation, of a hinge), and P are the four unknowns; the last support's
-place, its rotation (or moment) and the prescribed deflection of the loaded joint are the four equations. The deflection is prescribed and
-the load follows, so that limit points of the load are ordinary points.
+n is constant, except that it changes by `(0, P)` at the joint with the load `(0, -P)`. The equations are solved by shooting. They
+are integrated from the first support to the last by spectral collocation. The four unknowns are n and the moment (at a hinge the
+rotation) at the first support, and P. The four equations prescribe the position of the last support, its rotation (at a hinge
+the moment) and the deflection of the loaded joint. With a prescribed deflection, limit points of the load are regular points.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.checks import require_positive
+from comparisons.exact.checks import require_positive, require_stiffness
 from comparisons.exact.reissner import COMPLEX_STEP, Flexibility
 from comparisons.exact.section import Section, integrate
 
@@ -31,11 +31,11 @@ class Chain:
     Attributes
     ----------
     joints : tuple of (float, float)
-        From support to support.
+        Positions from the first support to the last.
     loaded : int
-        Number of the joint that is pressed down.
+        Index of the loaded joint.
     clamped : bool
-        Whether both supports are clamps; else they are hinges.
+        Whether both supports are clamped; otherwise they are hinges.
     EA, GA, EI : float
         Stiffnesses of all rods; `inf` is rigid.
 
@@ -54,15 +54,13 @@ class Chain:
 
     def __post_init__(self) -> None:
         require_positive(EI=self.EI)
-        for name, value in (("EA", self.EA), ("GA", self.GA)):
-            if not value > 0.0:
-                raise ValueError(f"{name} = {value}: must be positive")
+        require_stiffness(EA=self.EA, GA=self.GA)
         if not 0 < self.loaded < len(self.joints) - 1:
             raise ValueError(f"loaded = {self.loaded}: must be a joint between the supports")
 
     @property
     def size(self) -> float:
-        """Length of all rods: the unit of lengths in the equations, EI/size^2 that of forces."""
+        """Total length of the rods. The equations have the units `size` of length and `EI/size^2` of force."""
         return float(np.hypot(*np.diff(self.joints, axis=0).T).sum())
 
 
@@ -72,7 +70,7 @@ def load_path(chain: Chain, deflections: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ArithmeticError
-        If shooting finds no equilibrium; smaller steps of the deflection may.
+        If shooting does not converge; smaller steps of the deflection may help.
 
     Examples
     --------
@@ -81,19 +79,20 @@ def load_path(chain: Chain, deflections: ArrayLike) -> NDArray[np.float64]:
     192.0
     """
     unknowns: Array = np.zeros(4)
-    found: list[Array] = []
+    path: list[Array] = []
     for deflection in np.asarray(deflections, dtype=np.float64):
-        ahead = 2.0 * found[-1] - found[-2] if len(found) > 1 else unknowns
-        unknowns = _equilibrium(chain, ahead, float(deflection) / chain.size)
-        found.append(unknowns)
-    return np.array(found).reshape(-1, 4)[:, 3] * chain.EI / chain.size**2
+        predicted = 2.0 * path[-1] - path[-2] if len(path) > 1 else unknowns
+        unknowns = _equilibrium(chain, predicted, float(deflection) / chain.size)
+        path.append(unknowns)
+    return np.array(path).reshape(-1, 4)[:, 3] * chain.EI / chain.size**2
 
 
 def _equilibrium(chain: Chain, unknowns: Array, deflection: float) -> Array:
+    """Return the unknowns (4,) at a deflection in units of `size`, by Newton's method from nearby ones."""
     for _ in range(30):
         steps = unknowns[:, None] + 1j * COMPLEX_STEP * np.eye(4)
-        matrix = _misses(chain, steps, deflection).imag / COMPLEX_STEP
-        change = np.linalg.solve(matrix, -_misses(chain, unknowns[:, None] + 0j, deflection).real[:, 0])
+        matrix = _end_residual(chain, steps, deflection).imag / COMPLEX_STEP
+        change = np.linalg.solve(matrix, -_end_residual(chain, unknowns[:, None] + 0j, deflection).real[:, 0])
         unknowns = unknowns + change
         if np.abs(change).max() <= 1e-11 * (1.0 + np.abs(unknowns).max()):
             return unknowns
@@ -103,23 +102,23 @@ def _equilibrium(chain: Chain, unknowns: Array, deflection: float) -> Array:
 
 
 @np.errstate(invalid="ignore", over="ignore")
-def _misses(chain: Chain, unknowns: Array, deflection: float) -> Array:
-    """What the four equations miss at columns of unknowns (4, c), in units of size and EI; shape (4, c)."""
+def _end_residual(chain: Chain, unknowns: Array, deflection: float) -> Array:
+    """Residual (4, c) of the four equations for columns of unknowns (4, c), in units of `size` and EI."""
     start, nx, ny, load = unknowns
-    joints, nothing = np.array(chain.joints) / chain.size, np.zeros_like(start)
+    joints, zero = np.array(chain.joints) / chain.size, np.zeros_like(start)
     rods = np.diff(joints, axis=0)
     angles = np.arctan2(*rods.T[::-1])
     scale = chain.EI / chain.size**2
     flexibility = Flexibility(stretch=scale / chain.EA, shear=scale / chain.GA)
-    rotation, moment = (nothing, start) if chain.clamped else (start, nothing)
-    at = Section(joints[0, 0] + nothing, joints[0, 1] + nothing, rotation, moment)
-    missed = nothing
+    rotation, moment = (zero, start) if chain.clamped else (start, zero)
+    section = Section(joints[0, 0] + zero, joints[0, 1] + zero, rotation, moment)
+    excess = zero
     for k, (rod, angle) in enumerate(zip(rods, angles, strict=True)):
-        turned = at._replace(theta=at.theta + angle)
-        at = integrate(turned, (nx, ny), np.hypot(*rod) + nothing, flexibility)
-        at = at._replace(theta=at.theta - angle)
+        start_of_rod = section._replace(theta=section.theta + angle)
+        section = integrate(start_of_rod, (nx, ny), np.hypot(*rod) + zero, flexibility)
+        section = section._replace(theta=section.theta - angle)
         if k + 1 == chain.loaded:
-            missed = at.y - joints[k + 1, 1] + deflection
+            excess = section.y - joints[k + 1, 1] + deflection
             ny = ny + load
-    last = at.theta if chain.clamped else at.moment
-    return np.stack([at.x - joints[-1, 0], at.y - joints[-1, 1], last, missed])
+    last = section.theta if chain.clamped else section.moment
+    return np.stack([section.x - joints[-1, 0], section.y - joints[-1, 1], last, excess])

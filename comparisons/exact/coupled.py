@@ -1,10 +1,11 @@
 """Two cantilevers in contact: a pin pushes the first rod, whose tip pushes the second.
 
-Both rods are clamped at x = 0, lie along +x and are alike; the first at y = 0, the second at y = spacing. The pin moves from (pin_x, 0) in
-the direction of +y, so y here is the depth. Between the touch of the second rod and the hand-over of the pin both contacts are closed.
-The second rod is a single rod under a pin, solved by the quadratures of `comparisons.exact.reissner` in its unknowns `(q, ell)`. The first
-carries the force n from its clamp to the pin and minus the tip force T from the pin to its tip; its equations are integrated by spectral
-collocation. The six unknowns `q, ell, m(0), n_x, n_y, s` solve, with `P = n + T` the force of the pin,
+Both rods have the same section and length, are clamped at x = 0 and lie along +x, the first at y = 0 and the second at y = spacing.
+The pin moves from (pin_x, 0) along +y, so that its depth is y. In the coupled stage both contacts are closed. It begins when the
+first rod's tip touches the second rod. The second rod is a single rod under a pin, solved by the quadratures of
+`comparisons.exact.reissner` with the unknowns `(q, ell)`. The first rod carries the force n from its clamp to the pin and minus
+the tip force T from the pin to its tip. Its equations are integrated by spectral collocation. With the force `P = n + T` of the
+pin and its arc position s, the six unknowns `q, ell, m(0), n_x, n_y, s` satisfy
 
     r(s) = pin,   P.(r'_- + r'_+) = 0,   m(L) = 0,   r(L) = point of the second rod under the tip
 """
@@ -29,7 +30,7 @@ _SMALLEST_STEP = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class CoupledPath:
-    """States with both contacts closed at the `s` given depths; nan at depths outside that stage.
+    """States of the coupled stage at `s` depths of the pin; nan at depths outside this stage.
 
     Attributes
     ----------
@@ -40,16 +41,16 @@ class CoupledPath:
     pin_arc, tip_arc : ndarray, shape (s,)
         Arc position of the pin on the first rod, and of the tip on the second.
     clamp_moments : ndarray, shape (s, 2)
-        Moments of the clamps on the first and the second rod, positive from x to y.
+        Moments of the clamps on the first and the second rod, positive from x towards y.
     tip : ndarray, shape (s, 2)
         Tip of the first rod.
     touch_depth : float
-        Depth of the pin at which the first rod's tip meets the second rod.
+        Depth of the pin at which the first rod's tip touches the second rod.
     end_depth : float
-        Depth at which the stage ends, whether or not the given depths reach it.
+        Depth at which the stage ends, even if it is beyond the requested depths.
     end : str
-        What ends it: "pin at the tip" (it leaves the first rod for the second), "tip released" (no force on the second rod),
-        "tip slipped" (off the second rod), or "lost" (no equilibrium found beyond `end_depth`).
+        Event that ends the stage: "pin at the tip" (the pin leaves the first rod), "tip released" (no force on the second rod),
+        "tip slipped" (off the second rod), or "lost" (no equilibrium beyond `end_depth`).
     """
 
     depth: NDArray[np.float64]
@@ -73,7 +74,7 @@ class _Pair(NamedTuple):
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def residual(self, z: Array, depth: float) -> Array:
-        """Six conditions; `z` has shape (6, ...), the result (..., 6)."""
+        """Residual (..., 6) of the six equations at the unknowns `z` (6, ...)."""
         q, ell, moment, nx, ny, s = (np.asarray(value, dtype=np.complex128) for value in z)
         second = loaded_part(q, ell, self.flexibility)
         under_tip = position(second)
@@ -88,7 +89,7 @@ class _Pair(NamedTuple):
         return np.stack([pin.x - self.pin_x, pin.y - depth, slide, tip.moment, *gap], axis=-1)
 
     def solve(self, z: Array, depth: float) -> Array | None:
-        """Unknowns at a depth nearby; None unless the corrections fall monotonically from a small first one."""
+        """Unknowns at a depth, from nearby ones; None unless Newton's corrections decrease monotonically from below 1."""
         last = 1.0
         for _ in range(12):
             steps = z[:, None] + 1j * COMPLEX_STEP * np.eye(6)
@@ -106,13 +107,13 @@ class _Pair(NamedTuple):
         return None
 
     def margins(self, z: Array) -> dict[str, float]:
-        """Events that end the stage, and how far off they are: positive before."""
+        """Margins of the events that end the stage, positive before the event."""
         tip_arc = float(loaded_part(z[0], z[1], self.flexibility).arc.real)
         return {"pin at the tip": 1.0 - z[5], "tip released": z[0], "tip slipped": 1.0 - tip_arc}
 
 
 def _touch(single: Callable[[float], RodPath], spacing: float) -> float:
-    """Depth at which the first rod's tip meets the second rod."""
+    """Depth at which the first rod's tip touches the second rod."""
 
     def excess(depth: float) -> float:
         return float(single(depth).tip[-1, 1]) - spacing
@@ -125,7 +126,7 @@ def _touch(single: Callable[[float], RodPath], spacing: float) -> float:
 
 
 def _advance(pair: _Pair, z: Array, depth: float, target: float) -> tuple[Array, float, str]:
-    """Unknowns at the target, or where the stage ends before; the depth there, and what ends it."""
+    """Unknowns at the target, or at the end of the stage before it, with the depth and the event."""
     step = target - depth
     while depth < target:
         following = target if depth + step >= target else depth + step
@@ -160,7 +161,7 @@ def _locate(pair: _Pair, z: Array, bracket: tuple[float, float], event: str) -> 
 def coupled_rods(
     depths: ArrayLike, *, pin_x: float, spacing: float, EA: float, GA: float, EI: float, length: float
 ) -> CoupledPath:
-    """Follow the pair from the touch of the second rod to the end of the coupled stage.
+    """Follow the two rods through the coupled stage.
 
     Parameters
     ----------
@@ -171,7 +172,7 @@ def coupled_rods(
     spacing : float
         Distance of the rods.
     EA, GA, EI, length : float
-        Stiffnesses and length of either rod, as in `comparisons.exact.rod.rod_under_pin`.
+        Stiffnesses and length of each rod, as in `comparisons.exact.rod.rod_under_pin`.
 
     Returns
     -------
@@ -225,7 +226,7 @@ def coupled_rods(
 def _collect(
     pair: _Pair, depths: Array, rows: Array, stage: tuple[float, float, str], EI: float, length: float
 ) -> CoupledPath:
-    """Quantities in the caller's units."""
+    """Return the path in the units of the input."""
     second = loaded_part(rows[:, 0], rows[:, 1], pair.flexibility)
     tip_force = (second.force[:, None] * normal(second)).real
     return CoupledPath(

@@ -1,14 +1,15 @@
-"""The elastica: an inextensible, shear-rigid cantilever in closed form.
+"""The elastica, an inextensible, shear-rigid cantilever, in closed form.
 
-Clamp at the origin, undeformed beam along +x, a frictionless pin below pushes to +y. The part between clamp and pin
-carries the constant force `F (-sin tc, cos tc)`, normal to the tangent at the pin; the tail beyond the pin is straight.
-With `u = tc - theta` the bending energy integral is `EI theta'^2 = 2 F sin u`, hence, with `lam = sqrt(EI / 2F)`,
+The clamp is at the origin and the undeformed beam lies along +x. A frictionless pin below it pushes to +y. The part between
+clamp and pin carries the constant force `F (-sin tc, cos tc)`, normal to the tangent at the pin. The tail beyond the pin is
+straight. With `u = tc - theta` the first integral of the moment equation is `EI theta'^2 = 2 F sin u`. With
+`lam = sqrt(EI / 2F)` it follows
 
     I0 = int_0^tc du/sqrt(sin u),   I1 = int_0^tc cos u/sqrt(sin u) du = 2 sqrt(sin tc),   I2 = int_0^tc sqrt(sin u) du
     s = lam I0,   x = lam (cos tc I1 + sin tc I2),   y = lam (sin tc I1 - cos tc I2)
 
-so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` up to a fold beyond `tc = 2.49` (the pin
-then is a little behind the clamp): the branch below the fold is the one that starts at the straight beam.
+so that the polar angle of the pin is `tc - arctan(I2/I1)`. It grows with `tc` up to the fold at `fold_angle()`, where the pin
+is a little behind the clamp. The branch below the fold starts at the straight beam.
 """
 
 from dataclasses import dataclass
@@ -27,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 class LimitPoint(NamedTuple):
-    """Largest load along a path of growing displacement."""
+    """Maximum of the load along a path of increasing displacement."""
 
     load: float
     displacement: float
@@ -40,7 +41,7 @@ class ElasticaState:
     Attributes
     ----------
     outcome : Outcome
-        Whether the pin touches; if it does not, the beam is straight and all forces are zero (`LOST`: not computed).
+        State of contact. Without contact the beam is straight and all forces are zero; `LOST` is not computed.
     tangent_angle : float
         Angle `tc` of the tangent at the pin and of the tail [rad].
     arc_position : float
@@ -67,7 +68,7 @@ class ElasticaState:
     length: float
 
     def shape(self, n: int) -> Array:
-        """Points of the axis at `n` equal distances along it, clamp and tip included.
+        """Points of the axis at `n` equal distances from the clamp to the tip.
 
         Between clamp and pin `sqrt(sin u)` is the lemniscate sine of `(s - arc)/(2 lam)`.
 
@@ -89,7 +90,7 @@ class ElasticaState:
 
 
 def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
-    """`I0, I1, I2` for `0 <= u <= pi`, as Carlson's symmetric elliptic integrals of `z = sqrt(sin u)`."""
+    """Return `I0, I1, I2` for `0 <= u <= pi` by Carlson's symmetric elliptic integrals of `z = sqrt(sin u)`."""
     sine = np.abs(np.sin(u))
     below = np.cos(u) ** 2 / (1.0 + sine)
     z = np.sqrt(sine)
@@ -107,7 +108,7 @@ def _integrals(u: NDArray[np.float64] | float) -> tuple[Array, Array, Array]:
 
 
 def _chord(tc: float, u: NDArray[np.float64] | float) -> Array:
-    """Vector from the point with `theta = tc - u` to the pin, in units of `lam`; shape (..., 2)."""
+    """Vector (..., 2) from the point with `theta = tc - u` to the pin, in units of `lam`."""
     _, I1, I2 = _integrals(u)
     c, s = np.cos(tc), np.sin(tc)
     return np.stack([c * I1 + s * I2, s * I1 - c * I2], axis=-1)
@@ -121,9 +122,9 @@ def _polar_angle(tc: float) -> float:
 
 @cache
 def fold_angle() -> float:
-    """Tangent angle `tc` at which the polar angle of the pin is largest: the end of the branch from the straight beam.
+    """Tangent angle `tc` of the largest polar angle of the pin, at the end of the branch from the straight beam.
 
-    Root of `1 + 2 k^2 + k cot tc = 0`, `k = I2/I1`, which is the derivative of `tc - arctan k`.
+    Root of `1 + 2 k^2 + k cot tc = 0` with `k = I2/I1`, where the derivative of `tc - arctan k` vanishes.
 
     Examples
     --------
@@ -156,8 +157,8 @@ def _straight(outcome: Outcome, length: float, arc_position: float = np.nan) -> 
 def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1.0) -> ElasticaState:
     """Equilibrium of the elastica under a frictionless pin at `(x, y)`.
 
-    The state is the one connected with the straight beam through growing `y/x`: `0 < tc < fold_angle()`. It depends
-    on the pin's position alone: `SLIPPED` also stands for a pin that is beyond the tip from the start.
+    The state is on the branch from the straight beam, `0 < tc < fold_angle()`, on which `y/x` increases. It depends only on
+    the position of the pin. A pin that has never touched the beam is `SLIPPED` too if it is beyond the tip.
 
     Parameters
     ----------
@@ -214,7 +215,9 @@ def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1
 
 
 def slip_off_displacement(x: float, *, length: float = 1.0) -> float:
-    """Height at which a pin raised at `x` leaves the beam over its tip: `s = length`, so `x/length = X(tc)/I0(tc)`.
+    """Height at which a pin raised at `x` leaves the beam over its tip.
+
+    There `s = length`, hence `x/length = X(tc)/I0(tc)`.
 
     Raises
     ------
@@ -235,10 +238,15 @@ def slip_off_displacement(x: float, *, length: float = 1.0) -> float:
     return float(length * _chord(tc, tc)[1] / _integrals(tc)[0])
 
 
-def contact_force_limit(x: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
-    """Largest contact force of a pin raised at `x` under a beam long enough, and the height where it occurs.
+def _slope_of_x(tc: float) -> float:
+    """Derivative `X'` of the pin's distance in units of `lam`."""
+    return float(np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc))
 
-    `F = EI X(tc)^2 / (2 x^2)` is stationary where `X' = cos(2 tc)/sqrt(sin tc) + I2 cos tc = 0`.
+
+def contact_force_limit(x: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
+    """Largest contact force of a pin raised at `x` under a beam without end, and the height at which it occurs.
+
+    `F = EI X(tc)^2 / (2 x^2)` is stationary at `X' = cos(2 tc)/sqrt(sin tc) + I2 cos tc = 0`.
 
     Examples
     --------
@@ -246,23 +254,16 @@ def contact_force_limit(x: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
     1.178533619
     """
     require_positive(x=x, EI=EI)
-    tc = float(
-        brentq(
-            lambda tc: np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc),
-            0.1,
-            1.5,
-            xtol=1e-15,
-        )
-    )
+    tc = float(brentq(_slope_of_x, 0.1, 1.5, xtol=1e-15))
     X, Y = _chord(tc, tc)
     return LimitPoint(float(EI * X**2 / (2.0 * x**2)), float(x * Y / X))
 
 
 def three_point_bending_limit(half_span: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
-    """Largest mid-span load `P` on a long beam over two frictionless pins, and the deflection where it occurs.
+    """Largest mid-span load `P` on a long beam over two frictionless pins, and the deflection at which it occurs.
 
-    Each half is a cantilever under a pin at `half_span`, so `P = 2 F cos tc = EI cos tc X^2 / half_span^2`, stationary
-    where `2 X' cos tc = X sin tc`.
+    Each half is a cantilever under a pin at `half_span`. The load `P = 2 F cos tc = EI cos tc X^2 / half_span^2` is
+    stationary at `2 X' cos tc = X sin tc`.
 
     Examples
     --------
@@ -273,8 +274,7 @@ def three_point_bending_limit(half_span: float = 1.0, *, EI: float = 1.0) -> Lim
     require_positive(half_span=half_span, EI=EI)
 
     def slope(tc: float) -> float:
-        growth = np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc)
-        return float(2.0 * growth * np.cos(tc) - _chord(tc, tc)[0] * np.sin(tc))
+        return float(2.0 * _slope_of_x(tc) * np.cos(tc) - _chord(tc, tc)[0] * np.sin(tc))
 
     tc = float(brentq(slope, 0.1, 1.5, xtol=1e-15))
     X, Y = _chord(tc, tc)

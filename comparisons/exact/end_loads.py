@@ -1,4 +1,4 @@
-"""The elastica clamped at the origin along +x and loaded at its free tip: dead load, moment."""
+"""The elastica, clamped at the origin along +x, under a dead load or a moment at its free tip."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ def tip_under_dead_load(load: float, *, EI: float = 1.0, length: float = 1.0) ->
     Raises
     ------
     ValueError
-        If `load length^2 / EI` exceeds 1e5: the beam then is a straight vertical line to five digits.
+        If `load length^2 / EI` exceeds 1e5, where the beam is a straight vertical line to five digits.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def tip_under_dead_load(load: float, *, EI: float = 1.0, length: float = 1.0) ->
 
 
 def tip_under_moment(moment: float, *, EI: float = 1.0, length: float = 1.0) -> Array:
-    """Tip position of the cantilever rolled up by a moment at its tip: an arc of the angle `t = moment length / EI`.
+    """Tip position of the cantilever under a moment at its tip, an arc of the angle `t = moment length / EI`.
 
     Returns
     -------

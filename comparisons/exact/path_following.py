@@ -1,9 +1,9 @@
-"""Equilibrium of a dimensionless rod followed along the path of a pin: touch, contact, release, slip-off.
+"""Equilibrium of a dimensionless rod along the path of a pin, with touch, release and slip-off.
 
-At every position `p` of the pin the unknowns `z = (q, ell)` of `comparisons.exact.reissner` solve `r(z) - offset f(z) = p`, with r the
-point of the axis under the pin and f the direction of the contact force. Newton's method with complex-step derivatives starts from the
-last position; a step along the path is halved unless the corrections fall monotonically from a small first one, so that the branch
-from the straight rod is never left.
+At the position `p` of the pin the unknowns `z = (q, ell)` of `comparisons.exact.reissner` satisfy `r(z) - offset f(z) = p`. Here r
+is the point of the axis under the pin and f the direction of the contact force. Newton's method with complex-step derivatives
+starts from the last position. A step along the path is accepted only if the corrections decrease monotonically from a small
+first one, and halved otherwise, so that the solution stays on the branch from the straight rod.
 """
 
 from typing import NamedTuple
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 _TOUCH = 1e-12  # distance, in lengths of the rod, below which the pin touches
 _SMALLEST_STEP = 1e-9
-_MOST_ITERATIONS = 3000  # on a straight piece: one that needs more closes in on a place without equilibrium
+_MOST_ITERATIONS = 3000  # on a straight piece; more are spent only near a position without equilibrium
 
 
 class State(NamedTuple):
@@ -36,7 +36,7 @@ class Rod(NamedTuple):
     offset: float
 
     def residual(self, z: NDArray[np.complex128] | Array, pin: Array) -> NDArray[np.complex128]:
-        """Distance from the pin to where the unknowns put it; `z` has shape (2, ...), the result (..., 2)."""
+        """Residual (..., 2) of the pin's position at the unknowns `z` (2, ...)."""
         part = loaded_part(z[0], z[1], self.flexibility)
         return np.asarray(position(part) - self.offset * normal(part) - pin, dtype=np.complex128)
 
@@ -51,7 +51,7 @@ class Rod(NamedTuple):
 
 
 def newton(rod: Rod, z: Array, pin: Array) -> tuple[Array, int, bool]:
-    """Unknowns for a pin nearby, iterations, and whether the corrections fell monotonically from a small first one."""
+    """Unknowns at a position of the pin from nearby ones, iterations, and whether the corrections were accepted."""
     last = 0.5
     for iteration in range(1, 13):
         residual = rod.residual(z, pin)
@@ -74,7 +74,10 @@ def newton(rod: Rod, z: Array, pin: Array) -> tuple[Array, int, bool]:
 
 
 def _touch(outcome: Outcome, start: Array, end: Array, offset: float) -> float | None:
-    """Fraction of the way at which the pin reaches the straight rod from below, or leaves its surface, along which it came, upwards."""
+    """Fraction of a piece of the path at which the pin touches the straight rod from below; None without touch.
+
+    A pin that slid along the surface without force also touches when it moves upwards.
+    """
     gap_start, gap_end = -(start[1] + offset), -(end[1] + offset)
     along = outcome is Outcome.OPEN and abs(gap_start) <= _TOUCH and gap_end < -_TOUCH
     if not along and (gap_start <= _TOUCH or gap_end > _TOUCH):
@@ -85,12 +88,12 @@ def _touch(outcome: Outcome, start: Array, end: Array, offset: float) -> float |
 
 
 def _touching(x: float) -> State:
-    """Contact without force at `x`."""
+    """State of contact without force at `x`."""
     return State(Outcome.CONTACT, np.array([0.0, min(x, 1.0) / np.sqrt(np.pi)]))
 
 
 def first_state(rod: Rod, pin: Array) -> State:
-    """State at the start of the path."""
+    """State at the first position of the pin."""
     x, gap = pin[0], -(pin[1] + rod.offset)
     if gap > _TOUCH or x > 1.0 + _TOUCH:
         return State(Outcome.OPEN)
@@ -102,7 +105,7 @@ def first_state(rod: Rod, pin: Array) -> State:
 
 
 def advance(rod: Rod, state: State, start: Array, end: Array) -> tuple[State, int, float]:
-    """State after a straight piece of the path, Newton iterations, and the fraction of the piece at slip-off or nan."""
+    """State at the end of a straight piece of the path, Newton iterations, and the fraction of slip-off or nan."""
     done, step, spent, slip = 0.0, 1.0, 0, np.nan
     while done < 1.0:
         here = start + done * (end - start)

@@ -1,6 +1,6 @@
 """A Reissner rod under a pin that moves along a path.
 
-Clamp at the origin, undeformed rod along +x, a frictionless pin below pushes to +y.
+The clamp is at the origin and the undeformed rod lies along +x. A frictionless pin below it pushes to +y.
 """
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.checks import require_positive
+from comparisons.exact.checks import path_points, require_positive, require_stiffness
 from comparisons.exact.outcome import Outcome
 from comparisons.exact.path_following import Rod, State, advance, first_state
 from comparisons.exact.reissner import COMPLEX_STEP, Flexibility, loaded_part, normal, position
@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class RodPath:
-    """States of the rod at the `s` given positions of the pin.
+    """States of the rod at `s` positions of the pin.
 
-    Without contact the rod is straight and everything but `arc_position` (nan) is zero; where no equilibrium was found
-    (`Outcome.LOST`) everything is nan.
+    Without contact the rod is straight, `arc_position` is nan and all other arrays are zero. Without equilibrium
+    (`Outcome.LOST`) all arrays are nan.
 
     Attributes
     ----------
@@ -43,13 +43,13 @@ class RodPath:
     tip_rotation : ndarray, shape (s,)
         Rotation of the section at the tip [rad].
     iterations : ndarray of int, shape (s,)
-        Newton iterations spent since the position before, rejected steps included.
+        Newton iterations since the previous position, including rejected steps.
     slip_off : float
-        Fraction of the path's length at which the pin first leaves the rod over its tip; nan if it does not.
+        Fraction of the path's length at which the pin first leaves the rod over its tip; nan without slip-off.
     unknowns : ndarray, shape (s, 2)
         `(q, ell / length)` of `comparisons.exact.reissner`.
     flexibility : Flexibility
-        Of the rod.
+        Flexibility of the rod.
     length : float
         Undeformed length.
     """
@@ -69,7 +69,7 @@ class RodPath:
     length: float
 
     def shape(self, k: int, n: int) -> Array:
-        """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis, clamp and tip included.
+        """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis from the clamp to the tip.
 
         Returns
         -------
@@ -92,7 +92,7 @@ class RodPath:
 
 
 def _fraction_at(share: Array, q: float, ell: float, flexibility: Flexibility) -> Array:
-    """Return the fraction of `psi` at which the part from the pin has the given share of the whole loaded arc."""
+    """Return the fraction of `psi` at which the part from the pin has a share of the whole loaded arc."""
     whole = loaded_part(q, ell, flexibility).arc.real
     fraction = share.copy()
     for _ in range(50):
@@ -104,16 +104,6 @@ def _fraction_at(share: Array, q: float, ell: float, flexibility: Flexibility) -
     return fraction
 
 
-def _check(points: Array, offset: float, EA: float, GA: float) -> None:
-    for name, value in (("EA", EA), ("GA", GA)):
-        if not value > 0.0:
-            raise ValueError(f"{name} = {value}: must be positive")
-    if not (np.isfinite(offset) and offset >= 0.0):
-        raise ValueError(f"offset = {offset}: must be finite and not negative")
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
-        raise ValueError(f"points, shape {points.shape}: must be finite and of shape (s, 2), s >= 1")
-
-
 def rod_under_pin(
     points: ArrayLike, *, EA: float, GA: float, EI: float, length: float, offset: float = 0.0
 ) -> RodPath:
@@ -122,8 +112,8 @@ def rod_under_pin(
     Parameters
     ----------
     points : array_like, shape (s, 2)
-        Vertices of the path, joined by straight lines. The first must not be inside or above the rod: give the start of the
-        pin as well as the positions of interest.
+        Vertices of the path, joined by straight lines. The first is the start of the pin and must not be inside or above
+        the rod.
     EA, GA : float
         Stretch stiffness and shear stiffness `GA_e`; `inf` is rigid.
     EI : float
@@ -148,12 +138,13 @@ def rod_under_pin(
     >>> round(float(path.magnitude[1]), 12), round(float(path.arc_position[1]), 12)
     (8.182128140184, 0.89572169201)
     """
-    points = np.asarray(points, dtype=np.float64)
     require_positive(EI=EI, length=length)
-    _check(points, offset, EA, GA)
+    require_stiffness(EA=EA, GA=GA)
+    if not (np.isfinite(offset) and offset >= 0.0):
+        raise ValueError(f"offset = {offset}: must be finite and not negative")
     flexibility = Flexibility(stretch=EI / length**2 / EA, shear=EI / length**2 / GA)
     rod = Rod(flexibility, offset / length)
-    pins = points / length
+    pins = path_points(points) / length
     distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
     states, iterations, slip_off = [first_state(rod, pins[0])], [0], np.nan
     for k, (start, end) in enumerate(pairwise(pins)):
@@ -173,7 +164,7 @@ def _collect(
     EI: float,
     length: float,
 ) -> RodPath:
-    """Quantities in the caller's units."""
+    """Return the path in the units of the input."""
     outcome = tuple(state.outcome for state in states)
     z = np.array([state.unknowns for state in states])
     contact = np.array([item is Outcome.CONTACT for item in outcome])

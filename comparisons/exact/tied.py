@@ -1,23 +1,23 @@
-"""A Reissner rod whose tip is tied to a point that moves along a path.
+"""A Reissner rod whose tip is hinged to a point that moves along a path.
 
-Clamp at the origin, undeformed rod along +x; the tip turns freely, so the internal force n is constant and the moment ends at zero:
+The clamp is at the origin and the undeformed rod lies along +x. The internal force n is constant, and the moment vanishes at the
+tip:
 
     theta(s) = int_0^s m,   m(s) = int_s^1 r' x n,   r' = (1 + N/EA) d1 + (Q/GA) d2,   N = n.d1,  Q = n.d2
 
-with lengths in units of the rod's length L, forces in EI/L^2, moments in EI/L. At Gauss points both integrals are matrices; the
-unknowns are m at the points and n, the equations those above and `int_0^1 (r' - e1) = tip - e1` (differences, since a slender rod's
-axial force is its stretch, 1e-7 L, times EA). They make an energy stationary, at a saddle point:
+with lengths in units of the rod's length L, forces in EI/L^2 and moments in EI/L. The unknowns are m at Gauss points, where both
+integrals are matrices, and n. The equations are the two integrals and `int_0^1 (r' - e1) = tip - e1`. The difference to e1 keeps the
+digits of the stretch, which is about 1e-7 for a slender rod. The equations are the stationarity conditions of the energy
 
     Pi(m, n) = 1/2 int m^2 - int (N + N^2/2 EA + Q^2/2 GA) + n.tip
 
-For every m the energy is largest in n. Where the rod is stable this largest value is least in m; with n held it need not be. So the
-state is stable among its neighbours with the same tip if and only if the Hessian has just two negative eigenvalues. The
-solution is analytic, so the error falls faster than any power of the number of points; a taut rod bends in a layer
-`1/sqrt(n)` at the clamp, where a slender rod therefore has more of them.
+The energy is a maximum in n for every m. A state is stable at a fixed tip if this maximum is a minimum in m, that is, if and only
+if the Hessian has exactly two negative eigenvalues. The solution is analytic, so that the error decreases faster than any power of
+the number of points. A taut rod bends in a layer `1/sqrt(n)` at the clamp; the points are graded towards the clamp accordingly.
 
-A compressed rod buckles sideways within a thousandth of its length, and a long step would miss that: a step is shortened until the
-prediction along the tangent to the path is small, and halved unless the first correction is smaller, every other at most half
-of the one before, and the Hessian at every iterate that of a stable state.
+A compressed rod buckles sideways within a thousandth of its length, which a long step could pass over. Therefore a step is
+shortened until the prediction along the tangent to the path is small. It is halved unless the first correction is small, every
+later correction is at most half the previous one, and the Hessian at every iterate belongs to a stable state.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from comparisons.exact.checks import require_positive
+from comparisons.exact.checks import path_points, require_positive, require_stiffness
 from comparisons.exact.graded import GradedGrid, graded_grid
 from comparisons.exact.outcome import Outcome
 from comparisons.exact.reissner import Flexibility
@@ -35,19 +35,19 @@ from comparisons.exact.reissner import Flexibility
 Array = NDArray[np.float64]
 
 _POINTS = 64
-_SMALLEST_STEP = 1e-14  # part of what is done of a piece of the path, of 1e-12 at least
-_PREDICTION = 0.1  # rad, or a part of the force
-_CORRECTION = 0.05
+_SMALLEST_STEP = 1e-14  # relative to the completed fraction of a piece of the path, or to 1e-12 if larger
+_PREDICTION = 0.1  # rotation [rad] or relative change of the force
+_CORRECTION = 0.05  # the same measure
 
 
 @dataclass(frozen=True, kw_only=True)
 class TiedPath:
-    """States of the rod at the `s` given positions of its tip; nan where no equilibrium was found (`Outcome.LOST`).
+    """States of the rod at `s` positions of its tip; nan without equilibrium (`Outcome.LOST`).
 
     Attributes
     ----------
     outcome : tuple of Outcome
-        `CONTACT`, or `LOST` from the first position on that no stable equilibrium connected with the straight rod reaches.
+        `CONTACT`, or `LOST` from the first position that has no stable equilibrium connected with the straight rod.
     force : ndarray, shape (s, 2)
         Force on the tip.
     clamp_force : ndarray, shape (s, 2)
@@ -59,11 +59,11 @@ class TiedPath:
     tip_rotation : ndarray, shape (s,)
         Rotation of the section at the tip [rad].
     iterations : ndarray of int, shape (s,)
-        Newton iterations spent since the position before, rejected steps included.
+        Newton iterations since the previous position, including rejected steps.
     unknowns : ndarray, shape (s, points + 2)
         Moments at the Gauss points in units of `EI/length` and the force in units of `EI/length^2`.
     flexibility : Flexibility
-        Of the rod.
+        Flexibility of the rod.
     length : float
         Undeformed length.
     """
@@ -80,7 +80,7 @@ class TiedPath:
     length: float
 
     def shape(self, k: int, n: int) -> Array:
-        """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis, clamp and tip included.
+        """Position and rotation `x, y, theta` at `n` equal distances along the undeformed axis from the clamp to the tip.
 
         Returns
         -------
@@ -94,22 +94,23 @@ class TiedPath:
 
 
 class _Rod(NamedTuple):
-    """Dimensionless rod and where its moments are."""
+    """Dimensionless rod with the grid of its moments."""
 
     flexibility: Flexibility
     grid: GradedGrid
 
 
 def _rod(flexibility: Flexibility) -> _Rod:
-    """Grade the points so that a rod stretched to twice its length bends over as many of them as 1/12 of even ones."""
+    """Grade the grid so that the bending layer of a rod stretched to twice its length is resolved."""
     slenderness = min(flexibility.stretch**-0.5, 1e6) if flexibility.stretch > 0.0 else 1e6
     return _Rod(flexibility, graded_grid(_POINTS, float(np.log1p(slenderness / 12.0))))
 
 
 class _Fields(NamedTuple):
-    """At the Gauss points: `r' - e1` (n, 2), its derivatives in theta (n, 2) and in n (n, 2, 2); `r' x n` (n,) and its derivative in theta.
+    """Fields at the Gauss points.
 
-    The derivative of `r' x n` in n is that of r' in theta.
+    `strain` is `r' - e1` (n, 2), `turned` its derivative in theta (n, 2) and `by_force` its derivative in n (n, 2, 2). `torque` is
+    `r' x n` (n,) and `stiffening` its derivative in theta. The derivative of `r' x n` in n is `turned`.
     """
 
     strain: Array
@@ -120,6 +121,7 @@ class _Fields(NamedTuple):
 
 
 def _fields(z: Array, rod: _Rod) -> _Fields:
+    """Evaluate the fields at the unknowns `z` (n + 2,)."""
     a, b = rod.flexibility.stretch, rod.flexibility.shear
     theta, force = rod.grid.from_left @ z[:-2], z[-2:]
     d1 = np.stack([np.cos(theta), np.sin(theta)], axis=1)
@@ -152,7 +154,7 @@ def _equations(z: Array, displacement: Array, rod: _Rod) -> tuple[Array, Array]:
 
 
 def _stable(hessian: Array) -> bool:
-    """Whether the energy is least in the moments for the given tip; rows are scaled, since EA and EI are far apart."""
+    """Whether a Hessian belongs to a stable state; rows are scaled, since EA and EI differ by orders of magnitude."""
     largest = np.abs(hessian).max(axis=1)
     if not np.all(np.isfinite(hessian)) or largest.min() == 0.0:
         return False
@@ -162,13 +164,13 @@ def _stable(hessian: Array) -> bool:
 
 
 def _size(change: Array, z: Array, rod: _Rod) -> float:
-    """Largest change of a rotation, or of the force over itself."""
+    """Largest change of a rotation [rad], or relative change of the force if larger."""
     rotation = np.abs(rod.grid.from_left @ change[:-2]).max()
     return float(max(rotation, np.hypot(*change[-2:]) / (1.0 + np.hypot(*z[-2:]))))
 
 
 def _correct(z: Array, displacement: Array, rod: _Rod) -> tuple[Array | None, int]:
-    """Unknowns for a displacement of the tip from nearby ones, None if they are too far off, and Newton iterations."""
+    """Unknowns at a displacement of the tip from nearby ones, None if the step is rejected, and Newton iterations."""
     allowed = _CORRECTION
     for iteration in range(1, 13):
         gradient, hessian = _equations(z, displacement, rod)
@@ -186,21 +188,22 @@ def _correct(z: Array, displacement: Array, rod: _Rod) -> tuple[Array | None, in
 
 
 def _advance(z: Array, start: Array, end: Array, rod: _Rod) -> tuple[Array | None, int]:
-    """Unknowns after a straight piece of the tip's displacement, None if not reached, and Newton iterations."""
+    """Unknowns at the end of a straight piece of the tip's path, None if not reached, and Newton iterations."""
     done, step, spent = 0.0, 1.0, 0
-    ahead = np.zeros(len(z))
-    ahead[-2:] = start - end
+    right = np.zeros(len(z))
+    right[-2:] = start - end
     while done < 1.0:
         _, hessian = _equations(z, start + done * (end - start), rod)
         if step < _SMALLEST_STEP * max(done, 1e-12) or not _stable(hessian):
             return None, spent
-        tangent = np.asarray(np.linalg.solve(hessian, ahead), dtype=np.float64)
+        tangent = np.asarray(np.linalg.solve(hessian, right), dtype=np.float64)
         step = min(step, _PREDICTION / max(_size(tangent, z, rod), _PREDICTION))
         following = done + step if step < 1.0 - done else 1.0
-        found, iterations = _correct(z + (following - done) * tangent, start + following * (end - start), rod)
+        predicted, displacement = z + (following - done) * tangent, start + following * (end - start)
+        corrected, iterations = _correct(predicted, displacement, rod)
         spent += iterations
-        if found is not None:
-            z, done, step = found, following, 2.0 * step
+        if corrected is not None:
+            z, done, step = corrected, following, 2.0 * step
         else:
             step = (following - done) / 2.0
     return z, spent
@@ -233,12 +236,9 @@ def rod_with_tied_tip(points: ArrayLike, *, EA: float, GA: float, EI: float, len
     >>> round(1e6 * float(path.force[1, 1]), 6)
     3.0
     """
-    points = np.asarray(points, dtype=np.float64)
     require_positive(EA=EA, EI=EI, length=length)
-    if not GA > 0.0:
-        raise ValueError(f"GA = {GA}: must be positive")
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0 or not np.all(np.isfinite(points)):
-        raise ValueError(f"points, shape {points.shape}: must be finite and of shape (s, 2), s >= 1")
+    require_stiffness(GA=GA)
+    points = path_points(points)
     if np.hypot(*(points[0] - [length, 0.0])) > 1e-12 * length:
         raise ValueError(f"points[0] = {points[0]}: must be the undeformed tip, ({length}, 0)")
     flexibility = Flexibility(stretch=EI / length**2 / EA, shear=EI / length**2 / GA)
@@ -260,7 +260,7 @@ def _collect(
     EI: float,
     length: float,
 ) -> TiedPath:
-    """Quantities in the caller's units."""
+    """Return the path in the units of the input."""
     z = np.array([np.full(_POINTS + 2, np.nan) if state is None else state for state in states])
     force = z[:, -2:] * EI / length**2
     tip = np.where(np.isnan(force), np.nan, points)
@@ -268,7 +268,7 @@ def _collect(
         outcome=tuple(Outcome.LOST if state is None else Outcome.CONTACT for state in states),
         force=force,
         clamp_force=-force,
-        clamp_moment=(0.0 - np.array([_fields(one, rod).torque for one in z]) @ rod.grid.weights)
+        clamp_moment=(0.0 - np.array([_fields(state, rod).torque for state in z]) @ rod.grid.weights)
         * EI
         / length,
         tip=tip,

@@ -1,24 +1,24 @@
-"""The referee: the exact equilibrium of a scene's rods next to any answer, independent of every model, and certificates by it."""
+"""The referee: it computes the exact equilibrium of a scene's rods near an answer and certifies the answer, whatever the model."""
 
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.certify import certify, default_allowance
 from comparisons.referee.distance import Distance
-from comparisons.referee.equilibrium import Found
-from comparisons.referee.start import Given, given_by
+from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.start import AnswerState, answer_state
 from comparisons.referee.state import Contact, Equilibrium, Shape, equilibrium
 
 __all__ = [
+    "AnswerState",
     "Certificate",
     "Contact",
     "Distance",
     "Equilibrium",
-    "Found",
-    "Given",
     "Judgement",
+    "SearchStatus",
     "Shape",
     "Verdict",
+    "answer_state",
     "certify",
     "default_allowance",
     "equilibrium",
-    "given_by",
 ]

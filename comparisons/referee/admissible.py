@@ -1,4 +1,4 @@
-"""Whether an equilibrium is one of unilateral contact: forces push, and no node or round pin is inside a beam, anywhere along it."""
+"""Admissibility of an equilibrium under unilateral contact: contact forces push, and no node or round pin is inside a beam."""
 
 import math
 from collections.abc import Iterator
@@ -13,16 +13,16 @@ from comparisons.scene import ContactSpec, Scene
 Array = NDArray[np.float64]
 
 INSIDE = 1e-9
-"""Largest penetration, over the beam's length: round-off of the models' own contacts."""
+"""Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
 PULL = 1e-9
-"""Largest pulling force of a contact at its release, over EI/L^2: round-off of the models."""
+"""Largest accepted tensile contact force over EI/L^2, for the round-off of the models at a release."""
 _POINTS = 201
 _BESIDE = 1e-12
-"""Part of an arc position that is beside it for certain, and as good as there."""
+"""Relative distance of two arc positions on either side of a contact."""
 
 
 def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
-    """Yield a sentence for everything that a frictionless unilateral contact does not admit."""
+    """Yield a sentence for every violation of frictionless unilateral contact."""
     for spec in scene.contacts:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)
@@ -38,11 +38,11 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
 
 
 def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
-    """Return the smallest gap of a pair at the feet on the stated side and where it is; infinite where there is none.
+    """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point.
 
-    A foot is where the distance from the node to the axis is least between the beam's ends. At the contact itself shear bends the axis
-    sharply, by an angle 2 a, and the contact is normal to the mean of its two directions; so a round pin is inside the beam beside it, at
-    the distance d by ``a d - (1/offset - curvature) d^2/2``. What exceeds a d is line contact, and only that counts.
+    Gaps are evaluated at the local minima of the distance between node and axis. At a contact the axis has a kink of the angle 2 a by
+    shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
+    beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
     """
     beam, node = scene.beam(spec.beam), _node(scene, exact, spec)
     offset, side = scene.offset(spec), 1.0 if spec.side == "left" else -1.0
@@ -68,19 +68,20 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
 
 
 def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
-    """Angle between the axis' directions before and behind a contact."""
+    """Angle between the directions of the axis before and behind a contact."""
     a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
     return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
 
 
 def _node(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Array:
+    """Position of a pair's node in the exact equilibrium."""
     if "." in spec.node:
         return exact.ends[spec.node]
     return np.array(scene.pin(spec.node).position(exact.load_parameter))
 
 
 def _foot(exact: Equilibrium, beam: str, node: Array, low: float, high: float) -> float:
-    """Where between two arc positions the axis is nearest, to 1e-6 of the way between them, where the distance is level."""
+    """Arc position of the closest point between two arc positions, to 1e-6 of their distance."""
     for _ in range(8):
         arcs = np.linspace(low, high, 11)
         away = np.hypot(*(exact.shape(beam, arcs).position - node).T)

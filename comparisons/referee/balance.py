@@ -1,27 +1,27 @@
-"""The balance of everything that acts on the whole structure, from what an answer states alone."""
+"""Global balance of the forces and moments of an answer."""
 
 import numpy as np
 
 from comparisons.referee.distance import LAST_PLACES, LEAST, UNRESOLVED, least_force, node_place
-from comparisons.referee.start import Given
+from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
 
 BALANCE = 1e-6
-"""Largest unbalanced part of the largest force: Newton's tolerances are far below."""
+"""Largest imbalance over the largest force; the models' tolerances are far smaller."""
 
 
-def unbalanced(scene: Scene, given: Given) -> str:
-    """Return a sentence where forces or moments do not cancel, else nothing; contacts between beams are internal.
+def unbalanced(scene: Scene, answer: AnswerState) -> str:
+    """Return a sentence if forces or moments do not balance, otherwise an empty string.
 
-    ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M, the forces F
-    of the pins at their touching points on the pin's surface and the dead loads P and m.
+    ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the reactions R and M, the pins'
+    forces F, whose lines of action pass through the pins' centres x_F, and the dead loads P and m. Contacts between beams are internal.
     """
-    t, origin = given.load_parameter, np.array(scene.beams[0].start)
-    acting = [(end, np.array([x, y]), moment) for end, (x, y, moment) in given.reactions.items()]
+    t, origin = answer.load_parameter, np.array(scene.beams[0].start)
+    acting = [(end, np.array([x, y]), moment) for end, (x, y, moment) in answer.reactions.items()]
     acting += [(load.node, t * np.array(load.force), t * load.moment) for load in scene.loads]
-    pins = [spec for spec in scene.contacts if spec.pair in given.forces and "." not in spec.node]
-    acting += [(spec.node, np.array(given.forces[spec.pair]), 0.0) for spec in pins]
-    places = [node_place(scene, given, node) - origin for node, _, _ in acting]
+    pins = [spec for spec in scene.contacts if spec.pair in answer.forces and "." not in spec.node]
+    acting += [(spec.node, np.array(answer.forces[spec.pair]), 0.0) for spec in pins]
+    places = [node_place(scene, answer, node) - origin for node, _, _ in acting]
     length = max(beam.length for beam in scene.beams)
     sizes = [max(float(np.hypot(*force)), abs(moment) / length) for _, force, moment in acting]
     largest = max([*sizes, LEAST * least_force(scene)])

@@ -1,8 +1,8 @@
-"""Shape functions of the rotation on an element: two linear ones and integrated Legendre polynomials up to a high degree.
+"""Shape functions of the rotation on an element: two linear functions and integrated Legendre polynomials.
 
-With ``xi`` in [-1, 1]: ``(1 - xi)/2``, ``(1 + xi)/2`` and ``(P_j - P_(j-2))/(2 j - 1)``, j = 2..p, which vanish at both ends and whose
-derivatives ``P_(j-1)`` are orthogonal. So the bending stiffness of their coefficients is a diagonal matrix, whatever the degree, and the
-size of the last coefficients shows whether the element is small enough (Szabo and Babuska, Finite Element Analysis, 1991).
+On ``xi`` in [-1, 1] they are ``(1 - xi)/2``, ``(1 + xi)/2`` and the bubbles ``(P_j - P_(j-2))/(2 j - 1)``, j = 2..p. The bubbles vanish at
+both ends and have orthogonal derivatives ``P_(j-1)``, so that their bending stiffness is diagonal. The size of the last
+coefficients shows whether the element is small enough (Szabo and Babuska, Finite Element Analysis, 1991).
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ POINTS = DEGREE + 4
 
 
 def shapes(xi: Array) -> tuple[Array, Array]:
-    """Return the shape functions and their derivatives in xi, each of shape (..., p + 1); first the two linear ones."""
+    """Return the shape functions and their derivatives in xi, each (..., p + 1), beginning with the two linear functions."""
     legendre = legvander(xi, DEGREE)
     j = np.arange(2, DEGREE + 1)
     half = np.full(np.shape(xi), 0.5)
@@ -30,16 +30,16 @@ def shapes(xi: Array) -> tuple[Array, Array]:
 
 GAUSS, WEIGHTS = leggauss(POINTS)
 VALUES, SLOPES = shapes(GAUSS)
-"""At the Gauss points, shape (points, p + 1)."""
+"""Shape functions and derivatives at the Gauss points, (points, p + 1)."""
 AMPLITUDE = 2.0 / (2.0 * np.arange(2, DEGREE + 1) - 1.0)
-"""Bound of the bubble functions j = 2..p."""
+"""Bounds of the bubbles j = 2..p."""
 
 
 _COEFFICIENTS = np.linalg.inv(legvander(GAUSS, POINTS - 1))
 
 
 def up_to(xi: Array) -> Array:
-    """Return the table (m, points) of the integrals from -1 to xi (m,) of what has given values at the Gauss points."""
+    """Return the matrix (m, points) from values at the Gauss points to the integrals from -1 to xi (m,)."""
     table = legvander(xi, POINTS)
     j = np.arange(1, POINTS)
     integrals = np.column_stack([xi + 1.0, (table[:, 2:] - table[:, :-2]) / (2.0 * j + 1.0)])

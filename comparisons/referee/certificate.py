@@ -1,4 +1,4 @@
-"""Certificates: what an answer is worth, judged by the exact equilibrium next to it."""
+"""Certificates: verdicts on an answer by comparison with the exact equilibrium near it."""
 
 import math
 from dataclasses import asdict, dataclass, field
@@ -6,17 +6,17 @@ from enum import Enum
 from typing import Any
 
 from comparisons.referee.distance import Distance
-from comparisons.referee.equilibrium import Found
+from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.state import Equilibrium
 
 
 class Verdict(Enum):
-    """What an answer is."""
+    """Verdict on an answer; the value is its meaning."""
 
     CERTIFIED = "within its allowance of a stable, admissible equilibrium"
-    UNSTABLE = "next to an equilibrium that is unstable, or on another branch than it began"
-    INADMISSIBLE = "next to an equilibrium that unilateral contact does not admit"
-    NOT_AN_EQUILIBRIUM = "not next to an equilibrium"
+    UNSTABLE = "near an unstable equilibrium, or not on the branch from the undeformed state"
+    INADMISSIBLE = "near an equilibrium that violates unilateral contact"
+    NOT_AN_EQUILIBRIUM = "not near an equilibrium"
     NOT_JUDGED = "not judged"
 
 
@@ -27,22 +27,21 @@ class Judgement:
     Attributes
     ----------
     load_parameter : float
-        Where.
+        Load parameter of the answer.
     verdict : Verdict
-        What the answer is.
+        The verdict.
     reason : str
-        In one line.
+        Reason of the verdict in one line.
     distance : Distance or None
-        From the exact equilibrium, None if none was found.
+        Differences from the exact equilibrium; None without one.
     index : int
-        Of the exact equilibrium, -1 if none was found.
+        Index of the exact equilibrium; -1 without one.
     residual : float
-        Relative error of the exact equilibrium itself.
+        Estimated relative error of the exact equilibrium itself.
     friction : float
-        Sum of the tangential contact forces that the answer's reactions at a clamp show by the balance of material force, over the
-        largest contact force; nan where it does not hold.
+        Sum of the tangential contact forces over the largest contact force, see `comparisons.referee.material.friction`.
     exact : Equilibrium or None
-        The equilibrium.
+        The exact equilibrium.
     """
 
     load_parameter: float
@@ -57,22 +56,22 @@ class Judgement:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Certificate:
-    """What an answer is worth along its path.
+    """The verdict on an answer along its path.
 
     Attributes
     ----------
     verdict : Verdict
-        The gravest of all.
+        The most serious verdict.
     reason : str
-        Of the verdict, in one line.
+        Reason of the verdict in one line.
     allowance : float
-        Largest distance allowed.
+        Largest difference allowed.
     judged : tuple of Judgement
-        The load parameters that were judged, in order.
+        The judged load parameters, in order.
     path : tuple of str
-        What is wrong between the load parameters, a sentence each.
+        Violations between the load parameters, one sentence each.
     seconds : float
-        Spent.
+        Wall time [s].
     """
 
     verdict: Verdict
@@ -97,13 +96,14 @@ class Certificate:
             "verdict": self.verdict.name,
             "reason": self.reason,
             "allowance": self.allowance,
-            "judged": [_stated(item) for item in self.judged],
+            "judged": [_as_dict(item) for item in self.judged],
             "path": list(self.path),
             "seconds": self.seconds,
         }
 
 
-def _stated(item: Judgement) -> dict[str, Any]:
+def _as_dict(item: Judgement) -> dict[str, Any]:
+    """Return a judgement by the names of the JSON file."""
     exact = item.exact
     values: dict[str, Any] = {
         "load_parameter": item.load_parameter,
@@ -114,7 +114,7 @@ def _stated(item: Judgement) -> dict[str, Any]:
         "residual": item.residual,
         "friction": item.friction,
     }
-    if exact is not None and exact.found is Found.FOUND:
+    if exact is not None and exact.status is SearchStatus.FOUND:
         values["exact"] = {
             "contacts": {
                 pair: {"force": list(map(float, here.force)), "arc_position": here.arc_position}

@@ -1,4 +1,4 @@
-"""The certificate of an answer: load parameters judged one by one, and what happens between them."""
+"""The certificate of an answer: judgements at load parameters, and checks of the path between them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.equilibrium import Found
+from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.follow import at_rest, departs
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
@@ -19,7 +19,7 @@ from comparisons.response import Response
 from comparisons.scene import Scene
 
 ALLOWED = 1e-2
-"""Largest distance of an answer, unless it is given: what the eye takes for the same."""
+"""Default of the largest difference allowed; smaller differences are not visible in a plot."""
 
 
 def certify(
@@ -30,14 +30,14 @@ def certify(
     Parameters
     ----------
     response : Response
-        The answer of any model, complete or not.
+        The answer of any model, complete or incomplete.
     scene : Scene
-        What was asked.
+        The scene that was solved.
     at : sequence of int, optional
-        Numbers of the load parameters to judge, negative ones from the end: the last and those beside events if not given. Between
-        neighbours without an event the path is followed as well.
+        Indices of the load parameters to judge; negative ones count from the end. The default are the last one and the ones
+        next to events. Between neighbours without an event the path is followed too.
     allowance : float, optional
-        Largest distance allowed: `default_allowance` if not given.
+        Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
     response = replace(response, axis_line=cache(response.axis_line))
@@ -70,7 +70,7 @@ _GRAVITY = (
 
 
 def _worst(states: Sequence[Judgement], path: Sequence[str], steps: int) -> tuple[Verdict, str]:
-    """Return the gravest verdict and its reason."""
+    """Return the most serious verdict and its reason."""
     if not states:
         what = "asked for" if steps else "reached"
         return Verdict.NOT_JUDGED, f"no load parameter was {what}"
@@ -78,15 +78,15 @@ def _worst(states: Sequence[Judgement], path: Sequence[str], steps: int) -> tupl
     if path and worst.verdict is not Verdict.NOT_AN_EQUILIBRIUM:
         return Verdict.INADMISSIBLE, path[0]
     if worst.verdict is Verdict.CERTIFIED:
-        return Verdict.CERTIFIED, _good(states, steps)
+        return Verdict.CERTIFIED, _certified_reason(states, steps)
     return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
 
 
 def default_allowance(response: Response, scene: Scene) -> float:
-    """Return the largest distance allowed to a model: `ALLOWED`; a solid is a rod only to its height over its length, which is added.
+    """Return the largest difference allowed to a model: `ALLOWED`, and for a solid the height over the length in addition.
 
-    The disturbance of a support or a contact fades over the height (Saint-Venant's principle), so that a rod leaves out
-    a part of the deflection of that order.
+    The local field at a support or a contact decays within the height (Saint-Venant's principle), and a rod neglects the
+    corresponding part of the deflection.
     """
     if not response.continuum:
         return ALLOWED
@@ -97,7 +97,7 @@ def default_allowance(response: Response, scene: Scene) -> float:
 
 
 def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
-    """Return the numbers of the last load parameter and of those beside events, the latest if there are more than `most`."""
+    """Return the indices of the last load parameter and of the ones next to events, the latest ones up to `most`."""
     steps = len(response.load_parameter)
     if not steps:
         return ()
@@ -111,13 +111,13 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
     return tuple(sorted(numbers))
 
 
-def _good(states: Sequence[Judgement], steps: int) -> str:
+def _certified_reason(states: Sequence[Judgement], steps: int) -> str:
     name, size = max((item.distance.largest for item in states if item.distance), key=lambda item: item[1])
     return f"{name} off by {size:.2g}, index 0, admissible, at {len(states)} of {steps} load parameters"
 
 
 def _path(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield what is wrong between load parameters; only of an answer that states what the scene has."""
+    """Yield violations between load parameters, if the answer has the load parameters, pairs and supports of the scene."""
     steps = range(len(response.load_parameter))
     if not steps or any(next(impossible(response, scene, k), "") for k in steps):
         return
@@ -138,35 +138,35 @@ def _event_times(response: Response) -> list[float]:
 def _intervals(
     response: Response, states: Sequence[Judgement], numbers: Sequence[int]
 ) -> Iterator[tuple[Equilibrium, Equilibrium]]:
-    """Yield neighbouring equilibria with the same contacts, in the same order along the beams, and no event between them.
+    """Yield neighbouring equilibria with the same contacts in the same order along the beams and without an event between them.
 
-    Where two contacts pass each other, the part between them has no length, and the path is not followed.
+    The path is not followed where two contacts pass each other, since the part between them has no length.
     """
     times = _event_times(response)
     for (j, a), (k, b) in pairwise(zip(numbers, states, strict=True)):
-        one, other = a.exact, b.exact
-        if one is None or other is None or k != j + 1 or one.contacts.keys() != other.contacts.keys():
+        first, last = a.exact, b.exact
+        if first is None or last is None or k != j + 1 or first.contacts.keys() != last.contacts.keys():
             continue
-        if _order(one) == _order(other) and not any(
-            one.load_parameter <= t <= other.load_parameter for t in times
+        if _order(first) == _order(last) and not any(
+            first.load_parameter <= t <= last.load_parameter for t in times
         ):
-            yield one, other
+            yield first, last
 
 
 def _order(exact: Equilibrium) -> list[tuple[int, ...]]:
-    """Contacts along the beams: the stations between parts."""
+    """Order of the contacts along the beams, as the stations of the parts."""
     return [(part.beam, part.first, part.last) for part in exact.solution.layout.parts]
 
 
 def _departures(
     response: Response, scene: Scene, states: Sequence[Judgement], numbers: Sequence[int]
 ) -> Iterator[str]:
-    """Yield why an answer is not on the branch that it began on, from the undeformed state on and between judged neighbours."""
-    first = states[0].exact
+    """Yield reasons why an answer is not on the branch from the undeformed state, or changes its branch between neighbours."""
+    start = states[0].exact
     smooth = not any(t <= states[0].load_parameter for t in _event_times(response))
-    if numbers[0] == 0 and smooth and first is not None and not first.contacts:
+    if numbers[0] == 0 and smooth and start is not None and not start.contacts:
         rest = at_rest(scene)
-        if rest.found is Found.FOUND:
-            yield from filter(None, [departs(scene, rest, first.solution)])
-    for one, other in _intervals(response, states, numbers):
-        yield from filter(None, [departs(scene, one.solution, other.solution)])
+        if rest.status is SearchStatus.FOUND:
+            yield from filter(None, [departs(scene, rest, start.solution)])
+    for first, last in _intervals(response, states, numbers):
+        yield from filter(None, [departs(scene, first.solution, last.solution)])

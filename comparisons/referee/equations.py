@@ -1,12 +1,12 @@
-"""The rods' energy with its gradient and Hessian, exact, the unknowns inside the elements condensed.
+"""Energy of the rods with its exact gradient and Hessian; the unknowns inside the elements are condensed.
 
-With the constant force n of a part in the beam's own frame, ``N = n_x cos th + n_y sin th``, ``Q = -n_x sin th + n_y cos th``:
+With the constant force n of a part in the frame of the beam, ``N = n_x cos th + n_y sin th``, ``Q = -n_x sin th + n_y cos th``:
 
     Pi = sum_parts n.(r_b - r_a - l e) + int EI th'^2/2 - (n.(d - e) + N^2/2EA + Q^2/2GA) ds  -  loads
 
-stationary in the rotation th, the stations' positions, the contacts' arc positions (which move the mesh) and, as a maximum, in n. The
-forces as unknowns keep their digits however large EA and GA are, and nothing locks. Stationary in an arc position s it says that
-``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` does not jump there, which is ``F.(r'_- + r'_+) = 0``: no friction.
+is stationary in the rotation th, the stations' positions, the contacts' arc positions (which move the mesh) and, as a maximum, in n.
+With the forces as unknowns, large EA and GA cause neither round-off nor locking. Stationarity in an arc position means that
+``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without friction.
 """
 
 from typing import NamedTuple
@@ -27,11 +27,11 @@ _OUTER = 5
 class Mesh(NamedTuple):
     """Elements of all parts, in order.
 
-    part, first (e,): number of the part, and of the vertex at the start; the vertex at the end is the next one.
-    start, share (e,): where the element begins and how long it is, as fractions of the part.
-    vertices (v,): number of the unknown rotation at each vertex, `NONE` where it is given.
-    turned (v,): rotations that are given.
-    unknowns: number of unknowns with the vertices inside the parts, without those inside the elements.
+    part, first (e,): indices of the part and of the vertex at the start; the vertex at the end is the next one.
+    start, share (e,): start and length of the element as fractions of the part.
+    vertices (v,): index of the unknown rotation at each vertex; `NONE` if it is prescribed.
+    prescribed (v,): prescribed rotations.
+    unknowns: number of unknowns including the vertices inside the parts, without the bubbles.
     """
 
     part: Ints
@@ -39,12 +39,12 @@ class Mesh(NamedTuple):
     start: Array
     share: Array
     vertices: Ints
-    turned: Array
+    prescribed: Array
     unknowns: int
 
 
 def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
-    """Return the elements between the fractions `grids`, from 0 to 1, of every part."""
+    """Return the elements between the fractions `grids` of every part, each from 0 to 1."""
     part: list[int] = []
     first: list[int] = []
     vertices: list[int] = []
@@ -55,8 +55,8 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
         part += [number] * (inner + 1)
         first += list(range(len(vertices), len(vertices) + inner + 1))
         ends = [layout.stations[k] for k in (item.first, item.last)]
-        vertices += [ends[0].turn, *range(count, count + inner), ends[1].turn]
-        turned += [ends[0].turned, *[0.0] * inner, ends[1].turned]
+        vertices += [ends[0].rotation_unknown, *range(count, count + inner), ends[1].rotation_unknown]
+        turned += [ends[0].prescribed_rotation, *[0.0] * inner, ends[1].prescribed_rotation]
         count += inner
     return Mesh(
         part=np.array(part),
@@ -64,18 +64,18 @@ def mesh_of(layout: Layout, grids: list[Array]) -> Mesh:
         start=np.concatenate([grid[:-1] for grid in grids]),
         share=np.concatenate([np.diff(grid) for grid in grids]),
         vertices=np.array(vertices),
-        turned=np.array(turned),
+        prescribed=np.array(turned),
         unknowns=count,
     )
 
 
-def moved(layout: Layout, mesh: Mesh) -> Mesh:
-    """Return the same elements for the layout of another load parameter, where given rotations are others."""
+def mesh_for(layout: Layout, mesh: Mesh) -> Mesh:
+    """Return the same elements for the layout of another load parameter, which has other prescribed rotations."""
     return mesh_of(layout, [np.append(mesh.start[mesh.part == k], 1.0) for k in range(len(layout.parts))])
 
 
 class Properties(NamedTuple):
-    """Of every element's part, each (e,), and the numbers of its force unknowns."""
+    """EI, 1/EA and 1/GA of every element (e,), and the index of the first force unknown of its part."""
 
     EI: Array
     stretch: Array
@@ -84,20 +84,20 @@ class Properties(NamedTuple):
 
 
 def properties(layout: Layout, mesh: Mesh) -> Properties:
-    """Return what the elements are made of."""
+    """Return the stiffness data of the elements."""
     table = np.array([(item.EI, item.stretch, item.shear) for item in layout.parts])[mesh.part]
     force = np.array([item.force for item in layout.parts])[mesh.part]
     return Properties(table[:, 0], table[:, 1], table[:, 2], force)
 
 
 def rotations(mesh: Mesh, z: Array, bubbles: Array) -> Array:
-    """Coefficients (e, p + 1) of the rotation."""
-    there = np.where(mesh.vertices == NONE, mesh.turned, z[mesh.vertices])
+    """Coefficients (e, p + 1) of the rotation in the shape functions."""
+    there = np.where(mesh.vertices == NONE, mesh.prescribed, z[mesh.vertices])
     return np.column_stack([there[mesh.first], there[mesh.first + 1], bubbles])
 
 
 class Fields(NamedTuple):
-    """Section forces of a rotation th at given places in the beam's own frame, and ``r'`` less the undeformed direction."""
+    """Section forces N and Q, and ``tangent``, the derivative ``r'`` minus the undeformed direction, in the beam's frame."""
 
     N: Array
     Q: Array
@@ -105,7 +105,7 @@ class Fields(NamedTuple):
 
 
 def fields(theta: Array, n: Array, stretch: Array | float, shear: Array | float) -> Fields:
-    """Return the fields; n (..., 2), the others of one shape."""
+    """Return the fields at rotations (...) under forces n (..., 2)."""
     c, s = np.cos(theta), np.sin(theta)
     N, Q = n[..., 0] * c + n[..., 1] * s, n[..., 1] * c - n[..., 0] * s
     x = -2.0 * np.sin(theta / 2.0) ** 2 + stretch * N * c - shear * Q * s
@@ -116,7 +116,7 @@ def fields(theta: Array, n: Array, stretch: Array | float, shear: Array | float)
 class Elements(NamedTuple):
     """Gradient (e, p + 4) and Hessian of the elements' energy in `theta_a, theta_b, n_x, n_y, l` and the bubbles; energy (e,).
 
-    The energy is the strain energy; the rest of the stationary function is not needed.
+    ``energy`` is the strain energy alone.
     """
 
     gradient: Array
@@ -124,11 +124,11 @@ class Elements(NamedTuple):
     energy: Array
 
 
-def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, n: Array) -> Elements:
+def elements(mesh: Mesh, rods: Properties, extents: Array, coefficients: Array, n: Array) -> Elements:
     """Evaluate the elements for the parts' `extents` by element (e,), the rotations (e, p + 1) and n (e, 2)."""
     half = (mesh.share * extents / 2.0)[:, None]
     theta = coefficients @ VALUES.T
-    a, c = made.stretch[:, None], made.shear[:, None]
+    a, c = rods.stretch[:, None], rods.shear[:, None]
     N, Q, tangent = fields(theta, n[:, None, :], a, c)
     stretched = 1.0 + N * (a - c)
     cos, sin = np.cos(theta), np.sin(theta)
@@ -136,7 +136,7 @@ def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, 
     d_turn2 = Q**2 * (a - c) - N * stretched
     # derivative of r' in theta: d2 (1 + N (a - c)) + d1 Q (a - c)
     cross = np.stack([-sin * stretched + cos * Q * (a - c), cos * stretched + sin * Q * (a - c)], axis=-1)
-    bend = made.EI[:, None] / half
+    bend = rods.EI[:, None] / half
     bent = coefficients @ _STIFF
     size = coefficients.shape[1]
     gradient = np.empty((len(theta), size + 3))
@@ -150,7 +150,7 @@ def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, 
     share = mesh.share
     gradient[:, turn] = bend * bent - half * by_turn
     gradient[:, 2:4] = -half * by_force
-    gradient[:, 4] = -bending * made.EI / (2.0 * half[:, 0] ** 2) * share / 2.0 - straight * share / 2.0
+    gradient[:, 4] = -bending * rods.EI / (2.0 * half[:, 0] ** 2) * share / 2.0 - straight * share / 2.0
     inner = bend[:, :, None] * _STIFF - (VALUES.T * (half * d_turn2 * w)[:, None, :]) @ VALUES
     hessian[:, turn[:, None], turn[None, :]] = inner
     mixed = -half[:, :, None] * (VALUES.T @ (cross * w[:, None]))
@@ -159,20 +159,21 @@ def elements(mesh: Mesh, made: Properties, extents: Array, coefficients: Array, 
     by_extent = -(bend / half * bent + by_turn) * (share / 2.0)[:, None]
     hessian[:, turn, 4] = hessian[:, 4, turn] = by_extent
     hessian[:, 2:4, 4] = hessian[:, 4, 2:4] = -by_force * (share / 2.0)[:, None]
-    hessian[:, 4, 4] = bending * made.EI / half[:, 0] ** 3 * share**2 / 4.0
+    hessian[:, 4, 4] = bending * rods.EI / half[:, 0] ** 3 * share**2 / 4.0
     xx = (a * cos**2 + c * sin**2) @ w
     yy = (a * sin**2 + c * cos**2) @ w
     xy = ((a - c) * sin * cos) @ w
     hessian[:, 2:4, 2:4] = -half[:, :, None] * np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
-    stored = made.EI / (2.0 * half[:, 0]) * bending + half[:, 0] * ((a * N**2 + c * Q**2) @ w) / 2.0
+    stored = rods.EI / (2.0 * half[:, 0]) * bending + half[:, 0] * ((a * N**2 + c * Q**2) @ w) / 2.0
     return Elements(gradient, hessian, stored)
 
 
 class System(NamedTuple):
-    """Gradient (u,) and Hessian (u, u) with the bubbles condensed, and what gives those back.
+    """Gradient (u,) and Hessian (u, u) with condensed bubbles, and the recovery of the bubbles.
 
-    With the change x of an element's own unknowns its bubbles change by ``-(shift + lever x)``; `ends` (e, 2) are the moments on the
-    elements' ends, from balance: a derivative of the rotation would lose digits.
+    If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``. `blocks` are the Hessians of
+    the bubbles, `local` and `sign` the indices and signs of the elements' unknowns. `ends` (e, 2) are the moments at the elements'
+    ends from the gradient, since a derivative of the rotation would lose digits.
     """
 
     gradient: Array
@@ -186,11 +187,11 @@ class System(NamedTuple):
     energy: float
 
 
-def assemble(layout: Layout, mesh: Mesh, made: Properties, z: Array, bubbles: Array) -> System:
+def assemble(layout: Layout, mesh: Mesh, rods: Properties, z: Array, bubbles: Array) -> System:
     """Return the condensed equations at the unknowns `z` and the `bubbles` (e, p - 1)."""
     extents = np.array([layout.extent(z, part) for part in layout.parts])[mesh.part]
-    n = np.stack([z[made.force], z[made.force + 1]], axis=1)
-    parts = elements(mesh, made, extents, rotations(mesh, z, bubbles), n)
+    n = np.stack([z[rods.force], z[rods.force + 1]], axis=1)
+    parts = elements(mesh, rods, extents, rotations(mesh, z, bubbles), n)
     blocks = parts.hessian[:, _OUTER:, _OUTER:]
     rhs = np.concatenate([parts.gradient[:, _OUTER:, None], parts.hessian[:, _OUTER:, :_OUTER]], axis=2)
     solved = np.linalg.solve(blocks, rhs)
@@ -198,7 +199,7 @@ def assemble(layout: Layout, mesh: Mesh, made: Properties, z: Array, bubbles: Ar
     across = parts.hessian[:, :_OUTER, _OUTER:]
     gradient = parts.gradient[:, :_OUTER] - np.einsum("eij,ej->ei", across, shift)
     hessian = parts.hessian[:, :_OUTER, :_OUTER] - across @ lever
-    local, sign = _numbers(layout, mesh, made)
+    local, sign = _numbers(layout, mesh, rods)
     spread = np.array([0, 1, 2, 3, 4, 4])
     size = mesh.unknowns + 1
     g, k = np.zeros(size), np.zeros((size, size))
@@ -222,8 +223,11 @@ def assemble(layout: Layout, mesh: Mesh, made: Properties, z: Array, bubbles: Ar
     )
 
 
-def _numbers(layout: Layout, mesh: Mesh, made: Properties) -> tuple[Ints, Array]:
-    """Numbers of the elements' unknowns, ends, force, arc positions of the part's two ends, and their signs; `NONE` is the last, dropped."""
+def _numbers(layout: Layout, mesh: Mesh, rods: Properties) -> tuple[Ints, Array]:
+    """Indices and signs of the elements' unknowns: rotations, force, and arc positions of the part's ends.
+
+    Prescribed quantities have the index after the last unknown, which is dropped.
+    """
 
     def arc(station: int) -> int:
         touch = layout.stations[station].touch
@@ -231,14 +235,14 @@ def _numbers(layout: Layout, mesh: Mesh, made: Properties) -> tuple[Ints, Array]
 
     arcs = np.array([(arc(part.first), arc(part.last)) for part in layout.parts])[mesh.part]
     local = np.column_stack(
-        [mesh.vertices[mesh.first], mesh.vertices[mesh.first + 1], made.force, made.force + 1, arcs]
+        [mesh.vertices[mesh.first], mesh.vertices[mesh.first + 1], rods.force, rods.force + 1, arcs]
     )
     local[local == NONE] = mesh.unknowns
     return local, np.tile([1.0, 1.0, 1.0, 1.0, -1.0, 1.0], (len(local), 1))
 
 
 def _add_stations(layout: Layout, z: Array, g: Array, k: Array) -> None:
-    """Add ``n.(r_b - r_a - l e)`` of the parts and the loads; the last row and column take what is not unknown."""
+    """Add ``n.(r_b - r_a - l e)`` of the parts and the loads; the last row and column collect prescribed quantities."""
     for part in layout.parts:
         rows = np.array([part.force, part.force + 1])
         n = z[rows]
@@ -266,15 +270,15 @@ def _add_stations(layout: Layout, z: Array, g: Array, k: Array) -> None:
     for there in layout.stations:
         if there.touch == NONE:
             for number, load in zip(
-                (*there.place.unknown, there.turn), (*there.force, there.moment), strict=True
+                (*there.place.unknown, there.rotation_unknown), (*there.force, there.moment), strict=True
             ):
                 g[number] -= load
 
 
 def _chord(layout: Layout, z: Array, first: int, last: int, axes: Array, extent: float) -> Array:
-    """``r_b - r_a - l e`` in the beam's frame; exactly zero for an undeformed beam."""
+    """Return ``r_b - r_a - l e`` in the beam's frame; it is exactly zero for an undeformed beam."""
     a, b = layout.stations[first], layout.stations[last]
-    moved = b.place.moved(z) - a.place.moved(z)
+    moved = b.place.displacement(z) - a.place.displacement(z)
     for there, sign in ((a, -1.0), (b, 1.0)):
         if there.touch != NONE and layout.touches[there.touch].angle != NONE:
             touch = layout.touches[there.touch]
@@ -282,5 +286,5 @@ def _chord(layout: Layout, z: Array, first: int, last: int, axes: Array, extent:
     apart = np.asarray(axes.T @ moved)
     if a.touch == NONE and b.touch == NONE:
         return apart
-    rest = axes.T @ (np.array(b.place.rest) - np.array(a.place.rest))
+    rest = axes.T @ (np.array(b.place.reference) - np.array(a.place.reference))
     return np.asarray(apart + rest - np.array([extent, 0.0]))

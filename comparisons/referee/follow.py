@@ -1,29 +1,29 @@
-"""Whether two equilibria belong to one branch: the rods are followed from one load parameter to the next in steps that cannot hide a jump."""
+"""Whether two equilibria are on one branch: the path is followed between them in steps too short to jump to another branch."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import AMPLITUDE, DEGREE
-from comparisons.referee.equations import mesh_of, moved
-from comparisons.referee.equilibrium import Found, Solution, correct, newton_step
+from comparisons.referee.equations import mesh_for, mesh_of
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct, newton_step
 from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.stability import count
+from comparisons.referee.stability import index_and_margin
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
 _NEAR = 0.2
-"""Largest correction of a prediction along the tangent, over the whole change: half a step then ends at the same equilibrium."""
+"""Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
 _ROUND_OFF = 1e-9
-"""Change, in rotations [rad] and lengths, that is nothing."""
+"""Changes of rotations [rad] and lengths below this are round-off."""
 _LITTLE = 1e-7
-"""Part of the way ahead over which the tangent is taken."""
+"""Fraction of the remaining path over which the tangent is a difference."""
 _ITERATIONS = 12
-"""Most iterations of Newton's method after a prediction."""
+"""Largest number of Newton iterations after a prediction."""
 _SMALLEST = 1e-10
-"""Smallest step of the load parameter, over the way that it has come: an imperfect column turns off within so little of it."""
+"""Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _SAME = 1e-6
-"""Largest difference between the end of the followed path and the equilibrium that it is to reach."""
+"""Largest difference between the end of the followed path and the second equilibrium."""
 
 
 def at_rest(scene: Scene) -> Solution:
@@ -34,27 +34,28 @@ def at_rest(scene: Scene) -> Solution:
 
 
 def departs(scene: Scene, first: Solution, last: Solution) -> str:
-    """Return why the path from `first` does not lead to `last`, which has the same contacts; nothing if it does.
+    """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does.
 
-    Prediction along the tangent; a step is kept if Newton's correction is small against it and the index is the first state's.
+    A step is a prediction along the tangent. It is accepted if Newton's correction is small compared with the step and the index
+    is unchanged.
     """
     closed = {
         touch.spec.pair: float(first.z[touch.arc]) * first.layout.length for touch in first.layout.touches
     }
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    now, step, index = first, (end - start) / 4.0, count(first)[0]
+    now, step, index = first, (end - start) / 4.0, index_and_margin(first)[0]
     ahead = _tangent(scene, now, closed, end)
     while now.layout.load_parameter < end:
         here = now.layout.load_parameter
         t = here + step if here + step < end - _ROUND_OFF * (end - start) else end
         z, bubbles = now.z + (t - here) * ahead[0], now.bubbles + (t - here) * ahead[1]
         layout = lay_out(scene, t, closed)
-        found = correct(layout, moved(layout, now.mesh), z, bubbles, _ITERATIONS)
-        if found.found is Found.FOUND and count(found)[0] == index:
-            off = _apart(found, z, bubbles) / (_apart(found, now.z, now.bubbles) + _ROUND_OFF)
+        corrected = correct(layout, mesh_for(layout, now.mesh), z, bubbles, _ITERATIONS)
+        if corrected.status is SearchStatus.FOUND and index_and_margin(corrected)[0] == index:
+            off = _apart(corrected, z, bubbles) / (_apart(corrected, now.z, now.bubbles) + _ROUND_OFF)
             if off < _NEAR:
                 step *= 2.0 if off < _NEAR / 3.0 else 1.0
-                now, ahead = found, _tangent(scene, found, closed, end)
+                now, ahead = corrected, _tangent(scene, corrected, closed, end)
                 continue
         step /= 2.0
         if step < _SMALLEST * max(here - start, _SMALLEST * (end - start)):
@@ -68,26 +69,26 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
 
 
 def _tangent(scene: Scene, now: Solution, closed: dict[str, float], end: float) -> tuple[Array, Array]:
-    """Rates of the unknowns by load parameter: what is given moves in a straight line over a small part of the way ahead."""
+    """Rates of the unknowns per load parameter, by a difference over a small fraction of the remaining path."""
     little = _LITTLE * (end - now.layout.load_parameter)
     if little == 0.0:
         return np.zeros_like(now.z), np.zeros_like(now.bubbles)
     layout = lay_out(scene, now.layout.load_parameter + little, closed)
-    change, inside = newton_step(layout, moved(layout, now.mesh), now.z, now.bubbles)
+    change, inside = newton_step(layout, mesh_for(layout, now.mesh), now.z, now.bubbles)
     return change / little, inside / little
 
 
-def _apart(found: Solution, z: Array, bubbles: Array) -> float:
+def _apart(corrected: Solution, z: Array, bubbles: Array) -> float:
     """Largest correction of rotations and lengths."""
-    forces = [k for part in found.layout.parts for k in (part.force, part.force + 1)]
-    own = found.layout.unknowns
-    change = float(np.abs(np.delete(found.z[:own] - z[:own], forces)).max(initial=0.0))
-    if len(found.z) != len(z):
+    forces = [k for part in corrected.layout.parts for k in (part.force, part.force + 1)]
+    count = corrected.layout.unknowns
+    change = float(np.abs(np.delete(corrected.z[:count] - z[:count], forces)).max(initial=0.0))
+    if len(corrected.z) != len(z):
         return change
     return max(
         change,
-        float(np.abs(found.z[own:] - z[own:]).max(initial=0.0)),
-        float((np.abs(found.bubbles - bubbles) * AMPLITUDE).max()),
+        float(np.abs(corrected.z[count:] - z[count:]).max(initial=0.0)),
+        float((np.abs(corrected.bubbles - bubbles) * AMPLITUDE).max()),
     )
 
 
@@ -99,7 +100,7 @@ def _difference(one: Solution, other: Solution) -> float:
         for k in range(len(stations.stations))
     ]
     turned = [
-        abs(stations.turned(one.z, k) - other.layout.turned(other.z, k))
+        abs(stations.rotation(one.z, k) - other.layout.rotation(other.z, k))
         for k in range(len(stations.stations))
     ]
     arcs = [

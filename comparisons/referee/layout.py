@@ -1,8 +1,8 @@
-"""A scene with given closed pairs as a set of rods between stations: what is unknown, and where it stands in the vector of unknowns.
+"""A scene with a set of closed contacts as rods between stations, and the numbering of the unknowns.
 
-Stations are the beams' ends, one for those that are joined, and the contacts. A part is a rod between neighbouring stations of a beam;
-with loads at ends only, its force ``n`` is constant. Lengths are in units of the longest beam and forces in units of
-``EI/L^2`` with the largest EI, so that every quantity here has no unit.
+Stations are the contacts and the ends of the beams; joined ends are one station. A part is a rod between neighbouring stations of
+a beam. Loads act at ends only, so that the force ``n`` of a part is constant. Lengths are in units of the longest beam and forces
+in units of ``EI/L^2`` with the largest EI, so that all quantities are dimensionless.
 """
 
 import math
@@ -17,54 +17,59 @@ from comparisons.scene import ContactSpec, Scene
 Array = NDArray[np.float64]
 
 NONE = -1
-"""Number of a quantity that is given and not unknown."""
+"""Index of a quantity that is prescribed and not unknown."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
-    """A position ``rest + moved``, where a component of the displacement is given or unknown.
+class Position:
+    """A position, the sum of a reference position and a displacement with prescribed or unknown components.
 
     Attributes
     ----------
-    rest, given : (float, float)
-        Undeformed position, or that of a pin, and the given displacement; apart, since the one may be far larger than the other.
+    reference : (float, float)
+        Undeformed position, or the position of a pin. It may be far larger than the displacement.
+    prescribed : (float, float)
+        Prescribed displacement.
     unknown : (int, int)
-        Numbers of the unknowns, `NONE` where the component is given.
+        Indices of the unknown displacements; `NONE` for a prescribed component.
     """
 
-    rest: tuple[float, float]
-    given: tuple[float, float] = (0.0, 0.0)
+    reference: tuple[float, float]
+    prescribed: tuple[float, float] = (0.0, 0.0)
     unknown: tuple[int, int] = (NONE, NONE)
 
-    def moved(self, z: Array) -> Array:
+    def displacement(self, z: Array) -> Array:
         """Return the displacement."""
-        return np.array([z[k] if k != NONE else g for g, k in zip(self.given, self.unknown, strict=True)])
+        return np.array(
+            [z[k] if k != NONE else g for g, k in zip(self.prescribed, self.unknown, strict=True)]
+        )
 
-    def at(self, z: Array) -> Array:
+    def position(self, z: Array) -> Array:
         """Return the position."""
-        return np.array(self.rest) + self.moved(z)
+        return np.array(self.reference) + self.displacement(z)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """A closed contact: the touching point x and the axis point ``r = x - side offset nu(phi)``, nu the left normal of the angle phi.
+    """A closed contact between a touching point x and the axis point ``r = x - side offset nu(phi)``.
 
-    The angle is an unknown where the offset is not zero: that the energy is stationary in it makes the force act along nu.
+    nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi,
+    the contact force acts along nu.
 
     Attributes
     ----------
     spec : ContactSpec
-        The pair.
-    place : Place
-        The touching point.
+        The pair in the scene.
+    place : Position
+        Position of the touching point.
     offset : float
         Distance of x from the axis, positive on the left of the beam.
     arc, angle : int
-        Numbers of the unknown arc position and of phi (`NONE` without offset).
+        Indices of the unknown arc position and of phi (`NONE` without offset).
     """
 
     spec: ContactSpec
-    place: Place
+    place: Position
     offset: float
     arc: int
     angle: int
@@ -76,23 +81,23 @@ class Station:
 
     Attributes
     ----------
-    place : Place
-        Position of the axis, that of the touching point for a contact.
-    turn : int
-        Number of the rotation, `NONE` where it is given.
-    turned : float
-        The rotation where it is given.
+    place : Position
+        Position of the axis; for a contact, position of the touching point.
+    rotation_unknown : int
+        Index of the unknown rotation; `NONE` if the rotation is prescribed.
+    prescribed_rotation : float
+        Prescribed rotation.
     force, moment
         Dead load.
     touch : int
-        Number of the contact, `NONE` for an end.
+        Index of the contact; `NONE` for an end.
     ends : tuple of str
-        The beams' ends that meet here.
+        Ends of beams at the station.
     """
 
-    place: Place
-    turn: int
-    turned: float = 0.0
+    place: Position
+    rotation_unknown: int
+    prescribed_rotation: float = 0.0
     force: tuple[float, float] = (0.0, 0.0)
     moment: float = 0.0
     touch: int = NONE
@@ -106,15 +111,15 @@ class Part:
     Attributes
     ----------
     beam : int
-        Number of the beam.
+        Index of the beam.
     first, last : int
-        Numbers of its stations.
+        Indices of the stations at the start and the end.
     force : int
-        Number of the first of the two unknown components, along the undeformed beam and to its left.
+        Index of the first of the two unknown force components, along the undeformed beam and to its left.
     axes : ndarray, shape (2, 2)
-        Columns: unit vectors along the undeformed beam and to its left.
+        Unit vectors along the undeformed beam and to its left, as columns.
     EI, stretch, shear : float
-        Bending stiffness, 1/EA and 1/GA.
+        Bending stiffness EI and flexibilities 1/EA and 1/GA.
     """
 
     beam: int
@@ -134,15 +139,15 @@ class Layout:
     Attributes
     ----------
     scene : Scene
-        In the user's units.
+        The scene in the user's units.
     load_parameter : float
-        Of supports, loads and pins.
+        Load parameter of supports, loads and pins.
     length, force : float
         Units of length and force.
     stations, touches, parts : tuple
-        Of the whole scene; the parts of a beam follow one another.
+        Stations, closed contacts and parts of the scene; the parts of a beam are consecutive and in order.
     unknowns : int
-        Number of unknowns without those inside the parts.
+        Number of unknowns without the rotations inside the parts.
     """
 
     scene: Scene
@@ -169,16 +174,18 @@ class Layout:
     def position(self, z: Array, station: int) -> Array:
         """Position of the axis at a station."""
         there = self.stations[station]
-        place = there.place.at(z)
+        place = there.place.position(z)
         if there.touch == NONE:
             return place
         touch = self.touches[there.touch]
         return place if touch.angle == NONE else place - touch.offset * normal(float(z[touch.angle]))
 
-    def turned(self, z: Array, station: int) -> float:
+    def rotation(self, z: Array, station: int) -> float:
         """Rotation at a station."""
         there = self.stations[station]
-        return there.turned if there.turn == NONE else float(z[there.turn])
+        return (
+            there.prescribed_rotation if there.rotation_unknown == NONE else float(z[there.rotation_unknown])
+        )
 
 
 def normal(angle: float) -> Array:
@@ -187,7 +194,7 @@ def normal(angle: float) -> Array:
 
 
 def lay_out(scene: Scene, load_parameter: float, closed: dict[str, float]) -> Layout:
-    """Return the layout of `scene` with the pairs `closed`, by name, at arc positions that order them along their beams."""
+    """Return the layout of `scene`; `closed` are the arc positions of the closed pairs, which order them along the beams."""
     length = max(beam.length for beam in scene.beams)
     force = max(beam.EI for beam in scene.beams) / length**2
     stations = _ends(scene, load_parameter, length, force)
@@ -202,12 +209,12 @@ def lay_out(scene: Scene, load_parameter: float, closed: dict[str, float]) -> La
             place = stations[where[spec.node]].place
         else:
             x, y = scene.pin(spec.node).position(load_parameter)
-            place = Place(rest=_relative(scene, (x, y), length))
+            place = Position(reference=_relative(scene, (x, y), length))
         offset = scene.offset(spec) / length * (1.0 if spec.side == "left" else -1.0)
         turn, arc, count = count, count + 1, count + 2
         angle, count = (count, count + 1) if offset else (NONE, count)
         on_beam[spec.beam].append((closed[spec.pair], len(stations)))
-        stations.append(Station(place=place, turn=turn, touch=len(touches)))
+        stations.append(Station(place=place, rotation_unknown=turn, touch=len(touches)))
         touches.append(Touch(spec=spec, place=place, offset=offset, arc=arc, angle=angle))
     parts: list[Part] = []
     for number, beam in enumerate(scene.beams):
@@ -244,16 +251,20 @@ def lay_out(scene: Scene, load_parameter: float, closed: dict[str, float]) -> La
 
 
 def _relative(scene: Scene, point: tuple[float, float], length: float) -> tuple[float, float]:
+    """Return a position relative to the first beam's start, in units of length."""
     x, y = scene.beams[0].start
     return (point[0] - x) / length, (point[1] - y) / length
 
 
 def _count(stations: list[Station]) -> int:
-    return 1 + max((k for item in stations for k in (*item.place.unknown, item.turn)), default=NONE)
+    """Number of unknowns of the stations."""
+    return 1 + max(
+        (k for item in stations for k in (*item.place.unknown, item.rotation_unknown)), default=NONE
+    )
 
 
 def _ends(scene: Scene, t: float, length: float, force: float) -> list[Station]:
-    """Return the stations of the beams' ends; what is free is numbered."""
+    """Return the stations of the beams' ends, with indices of the free components."""
     names: dict[tuple[float, float], list[str]] = {}
     for beam in scene.beams:
         names.setdefault(beam.start, []).append(f"{beam.name}.start")
@@ -268,11 +279,15 @@ def _ends(scene: Scene, t: float, length: float, force: float) -> list[Station]:
         for component in range(3):
             if motion[component] is None:
                 unknown[component], count = count, count + 1
-        given = (t * (motion[0] or 0.0) / length, t * (motion[1] or 0.0) / length)
+        prescribed = (t * (motion[0] or 0.0) / length, t * (motion[1] or 0.0) / length)
         station = Station(
-            place=Place(rest=_relative(scene, point, length), given=given, unknown=(unknown[0], unknown[1])),
-            turn=unknown[2],
-            turned=t * (motion[2] or 0.0),
+            place=Position(
+                reference=_relative(scene, point, length),
+                prescribed=prescribed,
+                unknown=(unknown[0], unknown[1]),
+            ),
+            rotation_unknown=unknown[2],
+            prescribed_rotation=t * (motion[2] or 0.0),
             ends=tuple(ends),
         )
         for load in scene.loads:

@@ -1,4 +1,4 @@
-"""What happens between the load parameters of an answer: nodes do not pass through beams, and contacts change at events only."""
+"""Checks between the load parameters of an answer: no node passes through a beam, and contacts change at events only."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -12,13 +12,13 @@ from comparisons.scene import ContactSpec, Scene
 Array = NDArray[np.float64]
 
 SAMPLES = 101
-"""Places on the way of a node from load parameter to load parameter at which it is looked for."""
+"""Positions of a node between two load parameters at which its side of the beam is determined."""
 _AROUND = 0.2
-"""Part of a node's way to a place beyond an end within which it may as well have come around: axes do not move straight."""
+"""Distance from an end, over the node's path, within which a node may have passed around the end."""
 
 
 def passages(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield a sentence for every open pair whose node, pin or beam's end, went through the beam."""
+    """Yield a sentence for every open pair whose node passed through the beam."""
     for spec in scene.contacts:
         through = _passed_through(response, scene, spec, response.contacts[spec.pair])
         if through is not None:
@@ -26,13 +26,13 @@ def passages(response: Response, scene: Scene) -> Iterator[str]:
 
 
 def changes(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield a sentence for every pair that closes or opens without an event, where the answer states events."""
+    """Yield a sentence for every pair that closes or opens without an event, if the answer records events."""
     if response.events is None:
         return
     times = np.concatenate([[0.0], response.load_parameter])
     for spec in scene.contacts:
         closed = response.contacts[spec.pair].force != 0.0
-        own = np.array(
+        events = np.array(
             [
                 event.load_parameter
                 for event in response.events
@@ -40,7 +40,7 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
             ]
         )
         for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
-            if not np.any((own >= times[k]) & (own <= times[k + 1])):
+            if not np.any((events >= times[k]) & (events <= times[k + 1])):
                 what = "closes" if closed[k] else "opens"
                 yield f"{spec.pair} {what} without an event up to load parameter {times[k + 1]:.6g}"
 
@@ -48,10 +48,10 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
 def _passed_through(
     response: Response, scene: Scene, spec: ContactSpec, contact: ContactHistory
 ) -> float | None:
-    """Load parameter up to which the node of an open pair went through the deflected axis, not around an end; None if it did not.
+    """Load parameter by which the node of an open pair has passed through the deflected axis; None if it has not.
 
-    Its way is followed from load parameter to load parameter, the axis and a beam's end taken to move straight. From a closed contact it
-    is followed only where it ends behind the axis, and not at all over a slip-off.
+    Between two load parameters the axis and the ends of beams are assumed to move in straight lines. After a closed contact the
+    node is followed only if it ends behind the axis, and after a slip-off it is not followed.
     """
     closed = contact.force > 0.0
     where = _whereabouts(
@@ -73,9 +73,9 @@ def _passed_through(
 
 
 def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, where: str) -> bool:
-    """Whether a node, which is first `where`, goes through the axis on the way to load parameter k and does not come back.
+    """Whether a node, first at the side `where`, passes through the axis before load parameter k and does not return.
 
-    One that comes back may have been in contact meanwhile.
+    A node that returns may have been in contact in between.
     """
     t, t_after = (0.0 if k == 0 else float(response.load_parameter[k - 1])), float(response.load_parameter[k])
     line, line_after = _line(response, scene, spec.beam, k - 1), _line(response, scene, spec.beam, k)
@@ -103,7 +103,7 @@ def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, w
 
 
 def _near_an_end(line: Array, line_after: Array, moved: Array, nodes: Array, node: Array) -> bool:
-    """Whether a node crosses the axis so near to an end that it may have gone around it."""
+    """Whether a node crosses the axis so near to an end that it may have passed around the end."""
     ends = moved[[0, -1]]
     near = np.hypot(*(node - ends).T)
     way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
@@ -111,7 +111,7 @@ def _near_an_end(line: Array, line_after: Array, moved: Array, nodes: Array, nod
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
-    """The axis of a beam at load parameter k; the undeformed one of -1 and where nothing acts on the beam."""
+    """Axis of a beam at load parameter k; undeformed for k = -1 and if nothing acts on the beam."""
     if k >= 0 and not _at_rest(response, scene, beam, k):
         return response.axis_line(beam, k)[1]
     arc, _ = response.axis_line(beam, 0)
@@ -120,10 +120,12 @@ def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
 
 
 def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
-    """Whether a beam hangs at one clamp that does not move, with no load, joint or closed contact: it is straight, at no cost."""
+    """Whether a beam has one fixed clamp and no load, joint or closed contact, so that it is straight."""
     ends, held = (f"{beam}.start", f"{beam}.end"), scene.supports_of(beam)
-    own = scene.beam(beam)
-    joined = any({own.start, own.end} & {item.start, item.end} for item in scene.beams if item is not own)
+    events = scene.beam(beam)
+    joined = any(
+        {events.start, events.end} & {item.start, item.end} for item in scene.beams if item is not events
+    )
     still = len(held) == 1 and held[0].motion == (0.0, 0.0, 0.0)
     if joined or not still or any(load.node in ends for load in scene.loads):
         return False
@@ -132,6 +134,7 @@ def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
 
 
 def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Array:
+    """Position of a node at load parameter k, or of a pin at t."""
     if "." not in node:
         return np.array(scene.pin(node).position(t))
     beam, end = node.split(".")
@@ -141,7 +144,7 @@ def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Arra
 
 
 def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
-    """Whether the way from start to end leads from the stated side through the line that a touching node is on."""
+    """Whether the segment from start to end crosses the curve of touching nodes from the pair's side."""
     near = 1e-6 * scene.beam(spec.beam).length
     side = 1.0 if spec.side == "left" else -1.0
     pieces, way = np.diff(line, axis=0), end - start
@@ -155,12 +158,13 @@ def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec
 
 
 def _cross(a: Array, b: Array) -> Array:
+    """Cross product of plane vectors (..., 2)."""
     product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return product
 
 
 def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
-    """Where a node is: "beyond" an end of the axis, "before" it, on the stated side, or "behind" it."""
+    """Position of a node: "beyond" an end of the axis, "before" the axis on the pair's side, or "behind" the axis."""
     near = 1e-6 * scene.beam(spec.beam).length
     nearest = int(np.argmin(np.hypot(*(line - node).T)))
     first, last = max(nearest - 1, 0), min(nearest + 1, len(line) - 1)

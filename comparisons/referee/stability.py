@@ -1,4 +1,4 @@
-"""The index of an equilibrium: how many directions lower the energy among those that supports and closed contacts admit."""
+"""The index of an equilibrium: number of negative eigenvalues of the Hessian on the admissible variations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,12 @@ from comparisons.referee.layout import NONE
 Array = NDArray[np.float64]
 
 
-def count(solution: Solution) -> tuple[int, float]:
-    """Return the index and the smallest eigenvalue, in size, of the scaled condensed Hessian.
+def index_and_margin(solution: Solution) -> tuple[int, float]:
+    """Return the index, and the smallest absolute eigenvalue of the scaled condensed Hessian.
 
-    The forces of the parts are maxima, two for each: their block ``-C`` is negative definite, and Haynsworth's formula gives
-    ``index = negatives(K) - 2 parts``, where the elements' condensed blocks are counted as well. A contact with offset keeps its normal
-    on the mean of the two tangent directions: the angle phi follows them, it is no direction of its own.
+    The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
+    Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
+    normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
     """
     system = solution.system
     assert system is not None, "an equilibrium has its equations"
@@ -29,7 +29,7 @@ def count(solution: Solution) -> tuple[int, float]:
 
 
 def _directions(solution: Solution) -> Array:
-    """Admissible variations as columns: of everything but the angles phi, which turn as ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
+    """Admissible variations as columns; the angles phi follow with ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
     layout, z = solution.layout, solution.z
     size = solution.mesh.unknowns
     free = np.eye(size)
@@ -41,7 +41,7 @@ def _directions(solution: Solution) -> Array:
         angles.append(angle)
         turned, forced, whole = np.zeros(2), [], np.zeros(2)
         for part in (item for item in layout.parts if number in (item.first, item.last)):
-            theta, n = float(z[station.turn]), z[part.force : part.force + 2]
+            theta, n = float(z[station.rotation_unknown]), z[part.force : part.force + 2]
             here, a, c = fields(np.array(theta), n, part.stretch, part.shear), part.stretch, part.shear
             d1 = np.array([np.cos(theta), np.sin(theta)])
             d2 = np.array([-d1[1], d1[0]])
@@ -50,7 +50,7 @@ def _directions(solution: Solution) -> Array:
             forced.append((part.force, a * np.outer(d1, d1) + c * np.outer(d2, d2)))
         across = np.array([-whole[1], whole[0]]) / (whole @ whole)
         row = np.zeros(size)
-        row[station.turn] = across @ turned
+        row[station.rotation_unknown] = across @ turned
         for force, by_force in forced:
             row[force : force + 2] = across @ by_force
         free[angle] = row

@@ -1,4 +1,4 @@
-"""The referee's equilibrium in the scene's units: what a response states, exactly, and the shape everywhere along the beams."""
+"""The exact equilibrium in the units of the scene: contacts, reactions, ends, and shapes of the beams."""
 
 from dataclasses import dataclass, field
 
@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from comparisons.referee.basis import VALUES, WEIGHTS, shapes, up_to
 from comparisons.referee.equations import fields, rotations
-from comparisons.referee.equilibrium import Found, Solution, solve
+from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.layout import NONE, Layout, Part, Touch
-from comparisons.referee.stability import count
-from comparisons.referee.start import Given
+from comparisons.referee.stability import index_and_margin
+from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -23,11 +23,11 @@ class Contact:
     Attributes
     ----------
     force : ndarray, shape (2,)
-        Force on the beam.
+        Contact force on the beam.
     push : float
-        Its part along the normal to the mean of the two tangent directions, positive where it pushes from the stated side.
+        Component of the force along the normal to the mean of the two tangent directions; positive in compression.
     drag : float
-        Its part along that mean direction, which no friction leaves at zero.
+        Component of the force along the mean of the two tangent directions; zero without friction.
     arc_position : float
         Distance along the undeformed axis from the beam's start.
     point : ndarray, shape (2,)
@@ -43,12 +43,12 @@ class Contact:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shape:
-    """Places on a beam's axis.
+    """Positions and section forces along a beam.
 
     Attributes
     ----------
     position, tangent : ndarray, shape (m, 2)
-        Position and its derivative by arc length; at a contact that behind it.
+        Position and its derivative by arc length; at a contact the derivative behind it.
     rotation, moment, N, Q : ndarray, shape (m,)
         Rotation of the section, bending moment, normal and shear force.
     """
@@ -63,37 +63,37 @@ class Shape:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Equilibrium:
-    """The exact equilibrium next to an answer, or why there is none.
+    """The exact equilibrium near an answer, or the reason why there is none.
 
     Attributes
     ----------
-    found : Found
-        How the search ended; of another end than `Found.FOUND` nothing else holds.
+    status : SearchStatus
+        Outcome of the search; the other attributes are valid for `SearchStatus.FOUND` only.
     message : str
-        In a sentence.
+        The status as a sentence.
     load_parameter : float
-        Of the answer.
+        Load parameter of the answer.
     contacts : dict of Contact
-        By pair, the closed ones.
+        Closed contacts, by pair.
     reactions : dict of ndarray, shape (3,)
-        Force and moment of every support, by the held end.
+        Force and moment of every support, by the supported end.
     ends : dict of ndarray, shape (2,)
-        Position of every beam's ends, as ``upper.end``.
+        Positions of the beams' ends, by names such as ``upper.end``.
     strain_energy : float
-        Of all rods.
+        Strain energy of all rods.
     index : int
-        Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 where there is none.
+        Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 without an equilibrium.
     margin : float
-        Smallest eigenvalue in size of the scaled Hessian: the index is uncertain where this is round-off.
+        Smallest absolute eigenvalue of the scaled Hessian; the index is uncertain if it is round-off.
     error : float
         Estimated relative error: the last correction and the last terms of the rotation.
     iterations : int
-        Of Newton's method.
+        Number of Newton iterations.
     solution : Solution
-        In the referee's own terms.
+        The solution in the units of `Layout`.
     """
 
-    found: Found
+    status: SearchStatus
     message: str
     load_parameter: float
     contacts: dict[str, Contact]
@@ -107,44 +107,44 @@ class Equilibrium:
     solution: Solution = field(repr=False)
 
     def shape(self, beam: str, arc: Array) -> Shape:
-        """Return the places at the given arc lengths of a beam."""
+        """Return the shape of a beam at arc lengths (m,)."""
         return _shape(self.solution, beam, np.asarray(arc, dtype=np.float64))
 
-    def turned(self, end: str) -> Array:
-        """Return position and rotation ``x, y, theta`` of a beam's end, ``upper.end``."""
+    def pose(self, end: str) -> Array:
+        """Return position and rotation ``x, y, theta`` of a beam's end such as ``upper.end``."""
         layout = self.solution.layout
         number = next(k for k, station in enumerate(layout.stations) if end in station.ends)
-        return np.append(self.ends[end], layout.turned(self.solution.z, number))
+        return np.append(self.ends[end], layout.rotation(self.solution.z, number))
 
     def material_force(self, beam: str, arc: Array) -> Array:
-        """Return ``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` at the given arc lengths of a beam."""
+        """Return ``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` of a beam at arc lengths (m,)."""
         there, spec = self.shape(beam, arc), self.solution.layout.scene.beam(beam)
         stretched = there.N + there.N**2 / (2.0 * spec.EA) + there.Q**2 / (2.0 * spec.GA)
         return np.asarray(there.moment**2 / (2.0 * spec.EI) + stretched)
 
 
-def equilibrium(scene: Scene, given: Given) -> Equilibrium:
-    """Return the exact equilibrium of `scene` next to `given`.
+def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
+    """Return the exact equilibrium of `scene` near an answer.
 
-    Rods between ends, joints and contacts carry a constant force; the rotation is a polynomial of degree 16 on elements that are
-    halved until their last terms are round-off; Newton's method with the exact Hessian starts from the answer.
+    Rods between ends, joints and contacts carry a constant force. Their rotation is a polynomial of degree 16 on elements that
+    are halved until its last terms are round-off. Newton's method with the exact Hessian starts from the answer.
 
     Examples
     --------
     >>> from comparisons.models import solve
-    >>> from comparisons.referee import equilibrium, given_by
+    >>> from comparisons.referee import equilibrium, answer_state
     >>> from comparisons.scene import load_scene
     >>> scene = load_scene("ks-cantilever")
-    >>> exact = equilibrium(scene, given_by(solve(scene, "tsm"), scene, -1))
+    >>> exact = equilibrium(scene, answer_state(solve(scene, "tsm"), scene, -1))
     >>> f"{exact.contacts['pin->cantilever'].push:.12e}", exact.index
     ('2.288274307175e-03', 0)
     """
-    solution = solve(scene, given)
-    if solution.found is not Found.FOUND or solution.system is None:
+    solution = solve(scene, answer)
+    if solution.status is not SearchStatus.FOUND or solution.system is None:
         return Equilibrium(
-            found=solution.found,
-            message=solution.reason or solution.found.value,
-            load_parameter=given.load_parameter,
+            status=solution.status,
+            message=solution.reason or solution.status.value,
+            load_parameter=answer.load_parameter,
             contacts={},
             reactions={},
             ends={},
@@ -157,16 +157,16 @@ def equilibrium(scene: Scene, given: Given) -> Equilibrium:
         )
     layout = solution.layout
     contacts = {touch.spec.pair: _contact(solution, touch) for touch in layout.touches}
-    index, margin = count(solution)
+    index, margin = index_and_margin(solution)
     origin = np.array(scene.beams[0].start)
     return Equilibrium(
-        found=solution.found,
-        message=solution.found.value,
-        load_parameter=given.load_parameter,
+        status=solution.status,
+        message=solution.status.value,
+        load_parameter=answer.load_parameter,
         contacts=contacts,
         reactions=_reactions(solution, contacts),
         ends={
-            end: origin + layout.length * station.place.at(solution.z)
+            end: origin + layout.length * station.place.position(solution.z)
             for station in layout.stations
             for end in station.ends
         },
@@ -180,7 +180,7 @@ def equilibrium(scene: Scene, given: Given) -> Equilibrium:
 
 
 def _parts_at(layout: Layout, touch: Touch) -> tuple[Part, Part]:
-    """Parts before and behind a contact."""
+    """Return the parts before and behind a contact."""
     number = next(
         k
         for k, item in enumerate(layout.stations)
@@ -198,12 +198,14 @@ def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
 
 
 def _tangent_at(solution: Solution, part: Part, station: int) -> Array:
-    theta = np.array(solution.layout.turned(solution.z, station))
+    """Return ``r'`` of a part at one of its stations."""
+    theta = np.array(solution.layout.rotation(solution.z, station))
     there = fields(theta, solution.z[part.force : part.force + 2], part.stretch, part.shear)
     return np.asarray(part.axes @ (there.tangent + np.array([1.0, 0.0])))
 
 
 def _contact(solution: Solution, touch: Touch) -> Contact:
+    """Return a contact in the units of the scene."""
     layout, z = solution.layout, solution.z
     before, behind = _parts_at(layout, touch)
     force = (
@@ -217,22 +219,22 @@ def _contact(solution: Solution, touch: Touch) -> Contact:
         push=float(side * (y * force[0] - x * force[1])),
         drag=float(x * force[0] + y * force[1]),
         arc_position=float(z[touch.arc]) * layout.length,
-        point=np.array(layout.scene.beams[0].start) + layout.length * touch.place.at(z),
+        point=np.array(layout.scene.beams[0].start) + layout.length * touch.place.position(z),
     )
 
 
 def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Array]:
-    """Force and moment that the supports add to balance parts, loads and contacts, zero in free components."""
+    """Reactions (3,) by supported end, from the balance of parts, loads and contacts; zero in free components."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
     assert solution.system is not None, "an equilibrium has its equations"
-    found: dict[str, Array] = {}
+    reactions: dict[str, Array] = {}
     for support in layout.scene.all_supports:
         number = next(k for k, item in enumerate(layout.stations) if support.node in item.ends)
         station = layout.stations[number]
         total = -np.array([*station.force, station.moment])
         for k, part in enumerate(layout.parts):
-            own = np.flatnonzero(mesh.part == k)
-            for end, sign, e, side in ((part.first, -1.0, own[0], 0), (part.last, 1.0, own[-1], 1)):
+            elements = np.flatnonzero(mesh.part == k)
+            for end, sign, e, side in ((part.first, -1.0, elements[0], 0), (part.last, 1.0, elements[-1], 1)):
                 if end == number:
                     total[:2] += sign * part.axes @ z[part.force : part.force + 2]
                     total[2] += solution.system.ends[e, side]
@@ -241,22 +243,23 @@ def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Ar
             if touch.spec.node in station.ends:
                 total[:2] += contacts[touch.spec.pair].force
         held = [value is not None for value in support.motion]
-        found[support.node] = np.where(held, total, 0.0)
-    return found
+        reactions[support.node] = np.where(held, total, 0.0)
+    return reactions
 
 
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
+    """Evaluate the shape of a beam at arc lengths (m,)."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
     coefficients = rotations(mesh, z, solution.bubbles)
     number = [item.name for item in layout.scene.beams].index(beam)
-    at = arc / layout.length
-    table = np.empty((len(at), 8))
-    own = [k for k, part in enumerate(layout.parts) if part.beam == number]
-    for k in own:
+    s = arc / layout.length
+    table = np.empty((len(s), 8))
+    numbers = [k for k, part in enumerate(layout.parts) if part.beam == number]
+    for k in numbers:
         part = layout.parts[k]
         first, extent = layout.arc(z, part.first, part), layout.extent(z, part)
-        here = ((at >= first) | (k == own[0])) & ((at < first + extent) | (k == own[-1]))
-        if not here.any():
+        inside = ((s >= first) | (k == numbers[0])) & ((s < first + extent) | (k == numbers[-1]))
+        if not inside.any():
             continue
         elements = np.flatnonzero(mesh.part == k)
         n = z[part.force : part.force + 2]
@@ -264,7 +267,7 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         inner = fields(coefficients[elements] @ VALUES.T, n, part.stretch, part.shear).tangent
         starts = np.zeros((len(elements) + 1, 2))
         np.cumsum(half[:, None] * (WEIGHTS @ inner), axis=0, out=starts[1:])
-        share = (at[here] - first) / extent
+        share = (s[inside] - first) / extent
         e = np.clip(np.searchsorted(mesh.start[elements], share, side="right") - 1, 0, len(elements) - 1)
         xi = 2.0 * (share - mesh.start[elements][e]) / mesh.share[elements][e] - 1.0
         values, slopes = shapes(xi)
@@ -272,10 +275,10 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         bent = np.einsum("mi,mi->m", slopes, coefficients[elements][e]) / half[e]
         N, Q, tangent = fields(theta, n, part.stretch, part.shear)
         along = starts[e] + half[e][:, None] * np.einsum("mq,mqk->mk", up_to(xi), inner[e])
-        along[:, 0] += at[here] - first
+        along[:, 0] += s[inside] - first
         tangent[:, 0] += 1.0
         position = layout.position(z, part.first) + along @ part.axes.T
-        table[here] = np.column_stack([position, tangent @ part.axes.T, theta, part.EI * bent, N, Q])
+        table[inside] = np.column_stack([position, tangent @ part.axes.T, theta, part.EI * bent, N, Q])
     unit = layout.force * layout.length
     return Shape(
         position=np.array(layout.scene.beams[0].start) + layout.length * table[:, :2],

@@ -30,7 +30,7 @@ from comparisons.files import write_text
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.translate import to_solid, to_structure
-from comparisons.referee import certify, equilibrium, given_by
+from comparisons.referee import answer_state, certify, equilibrium
 from comparisons.scene import load_scene, read_scene
 from fem_reference.tangent import linearise
 from tests.comparisons.many_beams import MANY
@@ -202,7 +202,7 @@ def index_and_certificate(gates: list[Gate], times: dict[str, float]) -> None:
     )
     response, crowd = solve(scene, "tsm"), solve(CROWD, "tsm", Options(element="exact"))
     times["certificate of ks-cantilever"], times["certificate of ten contacts"] = seconds(
-        lambda: certify(response, scene), lambda: equilibrium(CROWD, given_by(crowd, CROWD, -1))
+        lambda: certify(response, scene), lambda: equilibrium(CROWD, answer_state(crowd, CROWD, -1))
     )
     gates.append(
         Gate("seconds of a certificate with ten contacts", times["certificate of ten contacts"], 0.3, False)

@@ -30,7 +30,7 @@ import fem_reference
 from comparisons.models.translate import to_solid
 from comparisons.scene import load_scene
 from fem_reference.model import build
-from fem_reference.state import state
+from fem_reference.state import build_state
 
 Floats = NDArray[np.float64]
 TOLERANCE, MOST_ITERATIONS = 1e-10, 500
@@ -77,7 +77,7 @@ def write_systems(mesh: tuple[int, int], loads: list[float], folder: str) -> Non
         modes = np.zeros((len(nodes), 2, 3))
         modes[:, 0, 0] = modes[:, 1, 1] = 1
         modes[:, 0, 2], modes[:, 1, 2] = -place[:, 1], place[:, 0]
-        slopes = state(model, u, load, at.conditions).closed[0].slopes
+        slopes = build_state(model, u, load, at.conditions).closed[0].slopes
         save_npz(_matrix(folder, load), body.tangent(u), compressed=False)
         np.savez(
             _vectors(folder, load),

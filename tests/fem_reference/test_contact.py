@@ -6,11 +6,10 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import Curve, averaging, band_slopes, closest
+from fem_reference.curve import ContactCurve, averaging, band_slopes, closest
 from fem_reference.model import build
+from tests.fem_reference.conftest import STEP, place_pin, surfaces
 
-STEP = 1e-30
-surfaces = pytest.mark.parametrize("surface", ["axis", "face"])
 # Inside an element, at a corner and a midside node, one unit of round-off beside it, near both ends.
 PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97]
 
@@ -18,16 +17,9 @@ PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97
 @pytest.fixture
 def model(request, problem):
     """A strip turned by 0.4 in its scene, so that no frame is mistaken for another."""
-    end = (float(np.cos(0.4)), float(np.sin(0.4)))
-    return build(
-        problem(
-            height=0.2,
-            mesh=(5, 2),
-            end=end,
-            path=((2.0, 2.0), (1.0, 1.0)),
-            contact={"surface": getattr(request, "param", "axis")},
-        )
-    )
+    changes = {"end": (float(np.cos(0.4)), float(np.sin(0.4))), "height": 0.2, "mesh": (5, 2)}
+    contact = {"surface": getattr(request, "param", "axis")}
+    return build(problem(path=((2.0, 2.0), (1.0, 1.0)), contact=contact, **changes))
 
 
 def bent(model, seed=0):
@@ -79,33 +71,35 @@ def test_curve_derivatives_by_complex_steps(model):
         np.testing.assert_allclose(B[2], step[1], atol=1e-10)
 
 
+def curve_through(stations, offsets, kernel):
+    rows = eye_array(stations.size, format="csr")
+    slopes = band_slopes(stations)
+    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
+
+
 @pytest.mark.parametrize("spread", [0.0, 1e-4])
 def test_curve_converges_with_fourth_order(spread):
     """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
 
     def error(n):
         s = np.linspace(0, 1, n + 1)
-        slopes = band_slopes(s)
-        offsets, kernel = averaging(spread, 1 / n)
-        curve = Curve(
-            stations=s, slopes=slopes, rows=eye_array(n + 1, format="csr"), offsets=offsets, kernel=kernel
-        )
+        curve = curve_through(s, *averaging(spread, 1 / n))
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
 
     assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
 
 
 @pytest.mark.parametrize("m", [3, 46, 300, 700])
-def test_slopes_window_by_window_are_those_of_the_whole_spline(m):
+def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
     rng = np.random.default_rng(m)
     s = np.cumsum(rng.uniform(0.5, 2, m))
     values = rng.standard_normal(m)
     band = band_slopes(s)
     half = band.shape[1] // 2
-    found = [
+    slopes = [
         band[k, max(0, half - k) : half + m - k] @ values[max(0, k - half) : k + half + 1] for k in range(m)
     ]
-    np.testing.assert_allclose(found, CubicSpline(s, values)(s, 1), atol=1e-13)
+    np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), atol=1e-13)
 
 
 def test_average_leaves_cubics_and_reaches_no_further():
@@ -117,7 +111,7 @@ def test_average_leaves_cubics_and_reaches_no_further():
 
 
 def test_contact_is_spread_over_a_stated_length(problem):
-    """By default 1.5 heights to either side, at most a tenth of the length; never beyond what is asked for."""
+    """By default 1.5 heights to either side, at most a tenth of the length; never beyond the given spread."""
     for height, spread, expected in ((0.02, None, 0.03), (0.2, None, 0.1), (0.02, 0.05, 0.05)):
         curve = build(problem(height=height, contact={"spread": spread})).pairs[0].curve
         assert expected * 0.95 < np.abs(curve.offsets).max() < expected
@@ -125,9 +119,9 @@ def test_contact_is_spread_over_a_stated_length(problem):
 
 @pytest.mark.parametrize("zeta", PLACES)
 @pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
-def test_projection_finds_the_foot_of_the_normal(model, with_pin, zeta, distance):
+def test_projection_finds_the_foot_of_the_normal(model, zeta, distance):
     u = bent(model)
-    at = with_pin(model, near(model, u, zeta, distance)).pairs[0].project(u, 0.0)
+    at = place_pin(model, near(model, u, zeta, distance)).pairs[0].project(u, 0.0)
     assert at.stationary
     assert at.inside
     assert at.zeta == pytest.approx(zeta, abs=1e-13)
@@ -138,10 +132,10 @@ def test_projection_finds_the_foot_of_the_normal(model, with_pin, zeta, distance
 @pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
 @pytest.mark.parametrize("zeta", PLACES)
 @pytest.mark.parametrize("model", ["axis", "face"], indirect=True)
-def test_gap_derivatives_by_complex_steps(model, with_pin, zeta, distance, side):
+def test_gap_derivatives_by_complex_steps(model, zeta, distance, side):
     """Both derivatives, at and beside the nodes of the curve, with the pin off it and on it."""
     u = bent(model)
-    pair = with_pin(model, near(model, u, zeta, distance), radius=0.01).pairs[0]
+    pair = place_pin(model, near(model, u, zeta, distance), radius=0.01).pairs[0]
     check_derivatives(replace(pair, contact=replace(pair.contact, side=side)), u)
 
 
@@ -155,7 +149,7 @@ def check_derivatives(pair, u):
 
 
 def two_strips(strip, surface="face"):
-    """An upper strip whose end comes down on a lower one that points the other way."""
+    """An upper strip whose end lies above a lower strip of the opposite direction."""
     upper = strip(name="upper", start=(0.0, 0.3), end=(0.8, 0.25), height=0.1, mesh=(4, 2))
     lower = strip(name="lower", start=(1.1, 0.0), end=(0.1, 0.1), height=0.1, mesh=(5, 1), clamped=("start",))
     contact = fr.Contact(node="upper.end", strip="lower", side="right", surface=surface)
@@ -185,11 +179,11 @@ def test_action_and_reaction_of_two_strips_cancel(strip):
 
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("radius", [0.0, 0.01, 0.03])
-def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin, radius, side):
+def test_penalty_energy_has_the_reduced_force_and_tangent(model, radius, side):
     """``eps (W^T W - c c^T / D - R g'')`` of the penalty alone is ``eps (g' g'^T + g g'')``, the derivative of ``eps g g'``."""
     u = bent(model)
     point = near(model, u, 0.37, 0.02)
-    pair = with_pin(model, point, radius=radius).pairs[0]
+    pair = place_pin(model, point, radius=radius).pairs[0]
     pair = replace(pair, contact=replace(pair.contact, side=side))
     at = pair.project(u, 0.0)
     U, H = pair.gap_derivatives(at)
@@ -197,7 +191,8 @@ def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin, radiu
     r, r1, r2 = at.basis @ pair.carrier.points(u)
     d = r - point
     W, W1 = (
-        np.stack([pair.carrier.pull(at.basis[row], axis).ravel() for axis in np.eye(2)]) for row in range(2)
+        np.stack([pair.carrier.nodal_forces(at.basis[row], axis).ravel() for axis in np.eye(2)])
+        for row in range(2)
     )
     c = W.T @ r1 + W1.T @ d
     of_the_axis = W.T @ W - np.outer(c, c) / (r1 @ r1 + d @ r2)
@@ -215,51 +210,45 @@ def test_penalty_energy_has_the_reduced_force_and_tangent(model, with_pin, radiu
 
 
 @pytest.mark.parametrize("axial", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
-def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, with_pin, axial):
-    pair = with_pin(model, model.problem.strips[0].to_global(np.array([axial, 0.0]))).pairs[0]
+def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, axial):
+    pair = place_pin(model, model.problem.strips[0].to_global(np.array([axial, 0.0]))).pairs[0]
     at = pair.project(np.zeros((model.nodes, 2)), 0.0)
     assert at.inside
     assert pair.gap(at) == pytest.approx(0, abs=2e-16)
 
 
 @pytest.mark.parametrize(("pin", "distance"), [((1.5, -0.3), np.hypot(0.5, 0.3)), ((-0.4, 0.3), 0.5)])
-def test_pin_beyond_an_end_is_not_on_the_strip(model, with_pin, pin, distance):
-    moved = with_pin(model, model.problem.strips[0].to_global(np.array(pin)))
+def test_pin_beyond_an_end_is_not_on_the_strip(model, pin, distance):
+    moved = place_pin(model, model.problem.strips[0].to_global(np.array(pin)))
     at = moved.pairs[0].project(np.zeros((model.nodes, 2)), 0.0)
     assert not at.inside
     assert at.end_distance == pytest.approx(distance)
 
 
-def test_radius_moves_the_gap_by_itself(model, with_pin):
+def test_radius_moves_the_gap_by_itself(model):
     u = bent(model)
     point = near(model, u, 0.6, -0.05)
-    sharp, round_ = (with_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
+    sharp, round_ = (place_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
     assert sharp.gap(sharp.project(u, 0.0)) - round_.gap(round_.project(u, 0.0)) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize("length", [1e-18, 1e18])
 def test_a_curve_of_three_stations_at_any_length(problem, length):
-    """The slopes of one element's curve scale with its length; scipy warned of a matrix that was ill-conditioned by units alone."""
-    sizes = {"height": 0.02, "width": 0.02, "end": (1.0, 0.0)}
-    scaled = {"height": 0.02 * length, "width": 0.02 * length, "end": (length, 0.0)}
-    path = ((1.0, 0.0), (0.5, 0.5))
-    unit = build(problem(path=path, mesh=(2, 1), element="Q1", **sizes)).pairs[0].curve
-    far = tuple((length * x, length * y) for x, y in path)
-    other = build(problem(path=far, mesh=(2, 1), element="Q1", **scaled)).pairs[0].curve
-    np.testing.assert_allclose(other.slopes * length, unit.slopes, atol=1e-12)
+    """The slopes scale with the length; in raw units SciPy warns of an ill-conditioned matrix."""
+
+    def slopes(size):
+        changes = {"height": 0.02 * size, "width": 0.02 * size, "end": (size, 0.0)}
+        path = ((size, 0.0), (0.5 * size, 0.5 * size))
+        return build(problem(path=path, mesh=(2, 1), element="Q1", **changes)).pairs[0].curve.slopes
+
+    np.testing.assert_allclose(slopes(length) * length, slopes(1.0), atol=1e-12)
 
 
 @pytest.mark.parametrize("point", [(0.521, 0.105), (0.480, 0.104), (0.522, 0.107), (0.478, 0.107)])
 def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
-    """Newton's slope nearly vanishes at the start, and its step would leave the foot: Gauss-Newton's does not."""
+    """Newton's slope nearly vanishes at the start, so that a full Newton step would miss the closest point."""
     s = np.linspace(0, 1, 6)
-    curve = Curve(
-        stations=s,
-        slopes=band_slopes(s),
-        rows=eye_array(6, format="csr"),
-        offsets=np.zeros(1),
-        kernel=np.ones(1),
-    )
+    curve = curve_through(s, np.zeros(1), np.ones(1))
     X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
     zeta, stationary = closest(curve, X, np.array(point))
     places = np.linspace(0, 1, 4001)

@@ -1,13 +1,16 @@
-"""Round pins: contact at a point ends by name where the strip bends as the pin does."""
+"""Round pins: contact at a point ends where the strip is as curved as the pin."""
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 
 import fem_reference as fr
 from fem_reference.curve import closest
 from fem_reference.line_contact import clearance
 from fem_reference.model import build
-from fem_reference.state import Condition, state
+from fem_reference.state import Condition, build_state
+from tests.fem_reference.conftest import loads, place_pin
 
 PAIR = "drum->cantilever"
 
@@ -26,7 +29,7 @@ def drum(strip, load, radius=0.5, height=0.005, mesh=(40, 1)):
 
 @pytest.mark.slow
 def test_strip_bent_round_a_drum_ends_as_line_contact(strip):
-    result = fr.solve(drum(strip, 12.0), np.arange(1, 5) / 4, throw=False)
+    result = fr.solve(drum(strip, 12.0), loads(4), throw=False)
     assert result.status is fr.Status.LINE_CONTACT
     assert f"({PAIR}), at load parameter" in result.message
     assert 0.25 < result.reached < 0.5
@@ -38,9 +41,9 @@ def test_strip_bent_round_a_drum_ends_as_line_contact(strip):
 
 @pytest.mark.slow
 def test_line_contact_does_not_depend_on_steps_or_on_the_load_at_the_end(strip):
-    """The load at which it begins: within 1e-7 on paths to 12 N in 25 load parameters and to 30 N in 10."""
+    """Within 1e-7 on paths to 12 N in 25 load parameters and to 30 N in 10."""
     begins = [
-        load * fr.solve(drum(strip, load, mesh=(100, 1)), np.arange(1, n + 1) / n, throw=False).reached
+        load * fr.solve(drum(strip, load, mesh=(100, 1)), loads(n), throw=False).reached
         for load, n in ((12.0, 25), (30.0, 10))
     ]
     assert begins[0] == pytest.approx(begins[1], rel=1e-7)
@@ -48,10 +51,7 @@ def test_line_contact_does_not_depend_on_steps_or_on_the_load_at_the_end(strip):
 
 @pytest.mark.slow
 def test_line_contact_begins_where_the_beams_curvature_reaches_the_drums(strip):
-    """A Bernoulli beam bent by contact and tip: ``m_c / EI = 1 / (R + h / 2)`` at the contact, by shooting: .13 % of the load."""
-    from scipy.integrate import solve_ivp
-    from scipy.optimize import fsolve
-
+    """A Bernoulli beam bent by contact and tip: ``m_c / EI = 1 / (R + h / 2)`` at the contact, by shooting; .13 % of the load."""
     R, h, EI = 0.5, 0.005, 4.8e9 * 0.02 * 0.005**3 / 12
     center = np.array([0.3, -h / 2 - R])
 
@@ -94,22 +94,21 @@ def test_line_contact_begins_where_the_beams_curvature_reaches_the_drums(strip):
     assert begins == pytest.approx(x[0], rel=2e-3)
 
 
-def test_sharp_pin_has_no_line_contact_and_clearance_is_that_of_the_curvature(problem, with_pin):
+def test_sharp_pin_has_no_line_contact_and_clearance_follows_the_curvature(problem):
     """A strip bent to an arc of radius 2 with a pin below its middle: ``1 - R / 2``."""
     model = build(problem(mesh=(20, 1)))
     X = model.bodies[0].mesh.nodes
     angle = (X[:, 0] - 0.5) / 2
     x = np.stack([(2 + X[:, 1]) * np.sin(angle), (2 + X[:, 1]) * np.cos(angle)], axis=1)
     for radius in (0.0, 0.5, 1.9):
-        placed = with_pin(model, (0.0, 2 - radius), radius=radius)
-        at = state(placed, x - X, 0.0, (Condition(closed=True, force=1.0),))
+        placed = place_pin(model, (0.0, 2 - radius), radius=radius)
+        at = build_state(placed, x - X, 0.0, (Condition(closed=True, force=1.0),))
         assert clearance(at.touches[0]) == pytest.approx(1 - radius / 2, abs=1e-4)
 
 
 def test_closest_point_is_found_up_to_the_centre_of_curvature(problem):
-    """``(r - x_c) . r' = 0`` on an arc of radius 2, its centre approached to a millionth: the root stays stationary."""
-    model = build(problem(mesh=(20, 1)))
-    pair = model.pairs[0]
+    """``(r - x_c) . r' = 0`` on an arc of radius 2 for points up to a millionth from the centre of curvature."""
+    pair = build(problem(mesh=(20, 1))).pairs[0]
     s = pair.curve.stations
     angle = (s - 0.5) / 2
     arc = np.stack([2 * np.sin(angle), 2 * np.cos(angle)], axis=1)

@@ -5,20 +5,15 @@ from scipy.optimize import brentq
 
 from fem_reference.arrays import Array
 from fem_reference.material import MATERIALS, PLANES, elastic_law, in_plane_lam, lame_constants
+from tests.fem_reference.conftest import NU, STEP, E, rotation
 
-E, NU = 2.1e4, 0.3
 LAM, MU = lame_constants(E, NU)
-STEP = 1e-30
 
 
 @pytest.fixture(params=[(name, plane) for name in MATERIALS for plane in PLANES], ids="-".join)
 def law(request):
     name, plane = request.param
     return elastic_law(name, E, NU, plane)
-
-
-def rotation(angle: float) -> Array:
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def gradients(points: int = 5) -> Array:

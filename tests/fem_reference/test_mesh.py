@@ -1,9 +1,11 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.body import build_body
-from fem_reference.discretise import discretise
+from fem_reference.body import build_body, discretise
+from fem_reference.model import build
 from fem_reference.strip import ELEMENTS, solution_cost
 
 
@@ -25,14 +27,9 @@ def test_weights_sum_to_the_volume_and_edges_order_the_nodes(strip):
     d = discretise(strip(mesh=(7, 3)))
     assert d.weights.sum() == pytest.approx(1 * 0.02 * 0.02, rel=1e-14)
     np.testing.assert_allclose(d.stations, np.linspace(0, 1, 15), atol=1e-15)
-    for name, x, y in (
-        ("right", None, -0.01),
-        ("left", None, 0.01),
-        ("start", 0.0, None),
-        ("end", 1.0, None),
-    ):
-        along = np.linspace(0, 1, 15) if x is None else np.linspace(-0.01, 0.01, 7)
-        expected = np.stack(np.broadcast_arrays(along if x is None else x, along if y is None else y), 1)
+    x, y = np.linspace(0, 1, 15), np.linspace(-0.01, 0.01, 7)
+    for name, line in {"right": (x, -0.01), "left": (x, 0.01), "start": (0.0, y), "end": (1.0, y)}.items():
+        expected = np.stack(np.broadcast_arrays(*line), 1)
         np.testing.assert_allclose(d.nodes[d.edges[name]], expected, atol=1e-15)
 
 
@@ -90,10 +87,6 @@ def test_estimated_cost_is_that_of_the_band(strip, mesh, element):
 
 
 def test_memory_is_what_was_estimated(strip):
-    import tracemalloc
-
-    from fem_reference.model import build
-
     mesh = (1000, 2)
     strip(mesh=(2, 1))
     tracemalloc.start()

@@ -1,13 +1,15 @@
+import os
+import re
+
 import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.body import build_body
-from fem_reference.discretise import discretise
+from fem_reference.body import build_body, discretise
 from fem_reference.sampling import sample
+from tests.fem_reference.conftest import PAIR, loads, rotation, surfaces
 
 meshio = pytest.importorskip("meshio")
-PAIR = "pin->cantilever"
 
 
 def parts(nx=20, ny=2, length=1.0, height=0.02, tilt=0.2):
@@ -22,15 +24,15 @@ def parts(nx=20, ny=2, length=1.0, height=0.02, tilt=0.2):
 
 
 def write(path, points, quads, lines):
-    tags = {name: tag for tag, name in enumerate(lines, 1)}
-    cells = [("quad", quads), *(("line", part) for part in lines.values())]
-    marks = [np.full(len(quads), 9), *(np.full(len(part), tags[name]) for name, part in lines.items())]
-    mesh = meshio.Mesh(
-        points,
-        cells,
-        cell_data={"gmsh:physical": marks, "gmsh:geometrical": marks},
-        field_data={name: np.array([tag, 1]) for name, tag in tags.items()},
-    )
+    """Gmsh's text format 2.2."""
+    cells = [
+        ("quad9" if quads.shape[1] == 9 else "quad", quads),
+        *(("line", part) for part in lines.values()),
+    ]
+    marks = [np.full(len(part), tag or 9) for tag, (_, part) in enumerate(cells)]
+    names = {name: np.array([tag, 1]) for tag, name in enumerate(lines, 1)}
+    data = {"gmsh:physical": marks, "gmsh:geometrical": marks}
+    mesh = meshio.Mesh(points, cells, cell_data=data, field_data=names)
     meshio.write(path, mesh, file_format="gmsh22", binary=False)
     return str(path)
 
@@ -57,31 +59,34 @@ def write_4(path, points, quads, lines):
     path.write_text("\n".join([*text, "$EndElements", ""]))
 
 
+def refused(strip, path):
+    """The message of one line with which a mesh file is refused."""
+    with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh_file = ") as caught:
+        discretise(strip(mesh_file=str(path)))
+    assert len(str(caught.value).splitlines()) == 1
+    return str(caught.value)
+
+
 @pytest.mark.parametrize("element", fr.ELEMENTS)
 def test_mesh_of_the_users_own_has_the_strips_edges_and_sections(strip, tmp_path, element):
     file = write(tmp_path / "a.msh", *parts(height=0.3))
     d = discretise(strip(mesh_file=file, element=element, height=0.3))
-    per_side = 1 if element == "Q1" else 2
-    assert {name: nodes.size for name, nodes in d.edges.items()} == {
-        "start": 2 * per_side + 1,
-        "end": 2 * per_side + 1,
-        "right": 20 * per_side + 1,
-        "left": 20 * per_side + 1,
-    }
+    order = 1 if element == "Q1" else 2
+    sizes = {name: (nodes.size - 1) // order for name, nodes in d.edges.items()}
+    assert sizes == {"start": 2, "end": 2, "right": 20, "left": 20}
     assert d.weights.sum() == pytest.approx(0.3 * 0.02)
     np.testing.assert_allclose(d.sections @ d.nodes, np.stack([d.stations, 0 * d.stations], 1), atol=1e-12)
 
 
-def test_ks_cantilever_on_a_mesh_of_the_users_own(problem, tmp_path):
-    """Slanted elements against straight ones, on axis and face."""
-    file = write(tmp_path / "a.msh", *parts(nx=50))
-    for surface in ("axis", "face"):
-        own, built_in = (
-            fr.solve(problem(contact={"surface": surface}, **changes), np.arange(1, 11) / 20).contacts[PAIR]
-            for changes in ({"mesh_file": file}, {})
-        )
-        np.testing.assert_allclose(own.force, built_in.force, rtol=1e-3)
-        np.testing.assert_allclose(own.arc_position, built_in.arc_position, rtol=5e-4)
+@surfaces
+def test_ks_cantilever_on_a_mesh_of_the_users_own(problem, tmp_path, surface):
+    """Slanted elements against straight ones."""
+    slanted, straight = (
+        fr.solve(problem(contact={"surface": surface}, mesh_file=file), loads(20)[:10]).contacts[PAIR]
+        for file in (write(tmp_path / "a.msh", *parts(nx=50)), None)
+    )
+    np.testing.assert_allclose(slanted.force, straight.force, rtol=1e-3)
+    np.testing.assert_allclose(slanted.arc_position, straight.arc_position, rtol=5e-4)
 
 
 def quad9(nx=4):
@@ -96,23 +101,13 @@ def quad9(nx=4):
 
 def test_midsides_are_read_and_must_be_straight(strip, tmp_path):
     points, quads, lines = quad9()
-    for bow in (0.0, 1e-3):
-        points[quads[2, 4], 1] += bow
-        mesh = meshio.Mesh(points, [("quad9", quads), *(("line", part) for part in lines.values())])
-        mesh.cell_data["gmsh:physical"] = [np.full(8, 9)] + [
-            np.full(len(part), number) for number, part in enumerate(lines.values(), 1)
-        ]
-        mesh.cell_data["gmsh:geometrical"] = mesh.cell_data["gmsh:physical"]
-        mesh.field_data = {name: np.array([number, 1]) for number, name in enumerate(lines, 1)}
-        path = tmp_path / "a.msh"
-        meshio.write(path, mesh, file_format="gmsh22", binary=False)
-        if bow:
-            with pytest.raises(ValueError, match="element 2 must have straight sides"):
-                discretise(strip(mesh_file=str(path)))
-        else:
-            d = discretise(strip(mesh_file=str(path)))
-            assert d.cells.shape == (8, 9)
-            assert d.weights.sum() == pytest.approx(0.02 * 0.02)
+    d = discretise(strip(mesh_file=write(tmp_path / "a.msh", points, quads, lines)))
+    assert d.cells.shape == (8, 9)
+    assert d.weights.sum() == pytest.approx(0.02 * 0.02)
+    points[quads[2, 4], 1] += 1e-3
+    assert "element 2 must have straight sides" in refused(
+        strip, write(tmp_path / "b.msh", points, quads, lines)
+    )
 
 
 def flipped(points, quads, lines):
@@ -141,20 +136,31 @@ def upside_down(points, quads, lines):
     return points, quads, {**lines, "right": lines["left"], "left": lines["right"]}
 
 
-def turned(angle):
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+def moved(change):
+    return lambda points, quads, lines: (change(points), quads, lines)
 
 
-def bowed(points, quads, lines):
+def bow(points):
     """The left face is a bow of a hundredth of the height."""
-    y = points[:, 1:2]
-    return points + (y > 0.005) * np.sin(np.pi * points[:, :1]) * 2e-4 * [0, 1, 0], quads, lines
+    return points + (points[:, 1:2] > 0.005) * np.sin(np.pi * points[:, :1]) * 2e-4 * [0, 1, 0]
 
 
 def short(points, quads, lines):
     """The start names only the lower of its two lines."""
     return points, quads, {**lines, "start": lines["start"][:1]}
+
+
+def off_boundary(points, quads, lines):
+    return points, quads, {**lines, "end": quads[3:4, [0, 2]]}
+
+
+def with_hole(points, quads, lines):
+    return points, np.delete(quads, 7, axis=0), lines
+
+
+def concave(points, quads, lines):
+    """The middle node of a section lies far ahead of its neighbours."""
+    return points + (np.arange(len(points)) == 31)[:, None] * [0.07, 0, 0], quads, lines
 
 
 @pytest.mark.parametrize(
@@ -165,56 +171,37 @@ def short(points, quads, lines):
         (parted, "falls into 2 parts"),
         (without, 'must name the lines of the edge "end", it names'),
         (upside_down, 'the edge "right" must lie below'),
-        (lambda *all_: (all_[0] + [0.1, 0, 0], *all_[1:]), 'the edge "start" must lie at x = 0'),
-        (lambda *all_: (0.5 * all_[0], *all_[1:]), 'the edge "end" must lie at x = 1'),
+        (moved(lambda p: np.add(p, [0.1, 0, 0])), 'the edge "start" must lie at x = 0'),
+        (moved(lambda p: 0.5 * p), 'the edge "end" must lie at x = 1'),
+        (moved(lambda p: p * [1, 3, 1]), r'the edge "right" must lie at y = -0\.01'),
         (
-            lambda p, q, lines: (p, q, {**lines, "end": q[3:4, [0, 2]]}),
-            'the edge "end" must lie on the boundary',
-        ),
-        (lambda p, q, lines: (p * [1, 3, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
-        (
-            lambda p, q, lines: (p + np.array([0, 0.006, 0]), q, lines),
+            moved(lambda p: np.add(p, [0, 0.006, 0])),
             r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004',
         ),
-        (lambda p, q, lines: (p * [1, 0.5, 1], q, lines), r'the edge "right" must lie at y = -0\.01'),
-        (lambda p, q, lines: (p @ turned(0.1), q, lines), 'the edge "start" must lie at x = 0'),
+        (moved(lambda p: p * [1, 0.5, 1]), r'the edge "right" must lie at y = -0\.01'),
         (
-            lambda p, q, lines: (p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1], q, lines),
-            r"node 32 must have z = 0, it has 0\.001",
+            moved(lambda p: np.pad(p[:, :2] @ rotation(0.1), ((0, 0), (0, 1)))),
+            'the edge "start" must lie at x = 0',
         ),
-        (
-            lambda p, q, lines: (np.concatenate([p, [[0.3, 0.0, 0.0]]]), q, lines),
-            "node 63 must belong to a quadrilateral",
-        ),
-        (lambda p, q, lines: (p, np.delete(q, 7, axis=0), lines), "the (boundary from|edge)"),
-        (bowed, 'the edge "left" must lie at y = 0.01'),
+        (moved(lambda p: p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1]), r"node 32 must have z = 0, it has 0\.001"),
+        (moved(lambda p: np.concatenate([p, [[0.3, 0.0, 0.0]]])), "node 63 must belong to a quadrilateral"),
+        (off_boundary, 'the edge "end" must lie on the boundary'),
+        (with_hole, "the (boundary from|edge)"),
+        (concave, "element .* is not convex"),
+        (moved(bow), 'the edge "left" must lie at y = 0.01'),
         (short, "the boundary from .* must belong to an edge"),
     ],
 )
 def test_mesh_that_breaks_a_rule_costs_one_line(strip, tmp_path, change, rule):
-    path = write(tmp_path / "bad.msh", *change(*parts()))
-    with pytest.raises(
-        ValueError, match=r"Strip\('cantilever'\)\.mesh_file = .*bad\.msh.*: " + rule
-    ) as caught:
-        discretise(strip(mesh_file=path))
-    assert len(str(caught.value).splitlines()) == 1
+    message = refused(strip, write(tmp_path / "bad.msh", *change(*parts())))
+    assert re.search(r"bad\.msh.*: " + rule, message)
 
 
 def test_mesh_of_triangles_and_files_that_are_not_there_are_refused(strip, tmp_path):
     mesh = meshio.Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [("triangle", np.array([[0, 1, 2]]))])
     meshio.write(tmp_path / "a.vtu", mesh)
-    with pytest.raises(ValueError, match='it has cells of type "triangle"'):
-        discretise(strip(mesh_file=str(tmp_path / "a.vtu")))
-    with pytest.raises(ValueError, match="cannot be read"):
-        discretise(strip(mesh_file=str(tmp_path / "nothing.msh")))
-
-
-def refused(strip, path):
-    with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh_file = ") as caught:
-        discretise(strip(mesh_file=str(path)))
-    said = str(caught.value)
-    assert len(said.splitlines()) == 1
-    return said
+    assert 'it has cells of type "triangle"' in refused(strip, tmp_path / "a.vtu")
+    assert "cannot be read" in refused(strip, tmp_path / "nothing.msh")
 
 
 @pytest.mark.parametrize("version", ["2", "4"])
@@ -230,15 +217,13 @@ def test_every_broken_line_of_a_mesh_text_is_named(strip, tmp_path, version):
     for number in range(begin + 1, end):
         for spoilt in ([*lines[:number], lines[number] + " x", *lines[number + 1 :]], lines[:number]):
             path.write_text("\n".join(spoilt) + "\n")
-            said = refused(strip, path)
-            assert "line " in said or "ends before" in said, (number, said)
+            message = refused(strip, path)
+            assert "line " in message or "ends before" in message, (number, message)
 
 
 @pytest.mark.parametrize("section", ["$Nodes", "$Elements"])
 @pytest.mark.parametrize("number", ["9999999999", "-1", "1e3", ""])
-def test_numbers_that_a_mesh_text_states_but_does_not_hold_are_refused_before_anything_is_allocated(
-    strip, tmp_path, section, number
-):
+def test_counts_without_their_lines_are_refused(strip, tmp_path, section, number):
     path = tmp_path / "a.msh"
     write(path, *parts())
     lines = path.read_text().splitlines()
@@ -248,8 +233,6 @@ def test_numbers_that_a_mesh_text_states_but_does_not_hold_are_refused_before_an
 
 
 def test_only_regular_files_of_at_most_16_mb_are_read(strip, tmp_path):
-    import os
-
     fifo, large, folder = tmp_path / "fifo.msh", tmp_path / "large.msh", tmp_path / "folder.msh"
     os.mkfifo(fifo)
     folder.mkdir()

@@ -2,15 +2,16 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
+from tests.fem_reference.conftest import PAIR, STRIP, rotation
 
 
 def test_axis_line_runs_from_the_clamp_to_the_tip(ks_axis):
-    line, stations = fr.axis_line(ks_axis, "cantilever", -1), fr.axis_stations(ks_axis, "cantilever")
-    # Poisson's effect of the curvature lifts the mean above the held middle by nu kappa h^2 / 24, less its dent.
-    kappa = -ks_axis.supports["cantilever"].moment[-1] / ks_axis.model.problem.strips[0].bending_stiffness
+    line, stations = fr.axis_line(ks_axis, STRIP, -1), fr.axis_stations(ks_axis, STRIP)
+    # By Poisson's effect of the curvature the mean lies up to nu kappa h^2 / 24 above the clamped middle.
+    kappa = -ks_axis.supports[STRIP].moment[-1] / ks_axis.model.problem.strips[0].bending_stiffness
     assert line[0, 0] == pytest.approx(0, abs=1e-12)
     assert 0.4 < line[0, 1] / (0.3 * kappa * 0.02**2 / 24) < 1.0
-    np.testing.assert_allclose(line[-1], ks_axis.tips["cantilever"][-1], atol=1e-15)
+    np.testing.assert_allclose(line[-1], ks_axis.tips[STRIP][-1], atol=1e-15)
     lengths = np.hypot(*np.diff(line, axis=0).T)
     assert lengths.sum() == pytest.approx(1, abs=1e-3)
     np.testing.assert_allclose(np.diff(stations), 0.01, atol=1e-14)
@@ -23,18 +24,18 @@ def test_mesh_and_displacement_are_in_the_global_frame(ks_axis):
     assert ks_axis.unknowns == 2 * n - 6
     deformed = ks_axis.mesh_points + ks_axis.displacement[-1]
     mesh = ks_axis.model.bodies[0].mesh
-    np.testing.assert_allclose(mesh.sections @ deformed, fr.axis_line(ks_axis, "cantilever", -1), atol=1e-15)
+    np.testing.assert_allclose(mesh.sections @ deformed, fr.axis_line(ks_axis, STRIP, -1), atol=1e-15)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.9])
 def test_nodal_stress_is_the_bending_stress(problem, angle):
     """Small deflection by 1e-4: ``M y / I`` on the face, along the strip."""
-    c, s = np.cos(angle), np.sin(angle)
-    path = ((0.8 * c, 0.8 * s), (0.8 * c - 1e-4 * s, 0.8 * s + 1e-4 * c))
-    result = fr.solve(problem(path=path, start=(0.0, 0.0), end=(c, s)), np.array([1.0]))
+    path = tuple(map(tuple, np.array([[0.8, 0.0], [0.8, 1e-4]]) @ rotation(angle).T))
+    c, s = rotation(angle)[:, 0]
+    result = fr.solve(problem(path=path, end=(float(c), float(s))), np.array([1.0]))
     xx, yy, xy = fr.nodal_stress(result, 0).T
     along = c * c * xx + s * s * yy + 2 * c * s * xy
-    mesh, force = result.model.bodies[0].mesh, result.contacts["pin->cantilever"].force[0]
+    mesh, force = result.model.bodies[0].mesh, result.contacts[PAIR].force[0]
     bottom = mesh.edges["right"][20:120:2]
     x = mesh.nodes[bottom, 0]
     expected = 12 * force * (0.8 - x) * 0.01 / 0.02**4

@@ -1,4 +1,4 @@
-"""What becomes of contacts whose node has left its strip over an end, and of the others then."""
+"""Slip-off: contacts whose node left its strip over an end, and the other contacts afterwards."""
 
 from dataclasses import replace
 
@@ -9,18 +9,19 @@ import fem_reference as fr
 from fem_reference.active_set import _rearmed
 from fem_reference.march import _condition_after
 from fem_reference.model import build
-from fem_reference.state import Condition, state
+from fem_reference.state import Condition, build_state
+from tests.fem_reference.conftest import loads, make_problem, place_pin
 
 
 @pytest.fixture(scope="module")
-def touch(problem, with_pin):
-    """The open contact of an undeformed strip with a pin at a point below (its own side) or above it."""
-    model = build(problem(mesh=(10, 1)))
+def touch():
+    """The contact of an undeformed strip with a pin at a point below (its own side) or above it."""
+    model = build(make_problem(mesh=(10, 1)))
 
     def at(point, **condition):
-        placed = with_pin(model, point)
-        found = state(placed, np.zeros((model.nodes, 2)), 0.0, (Condition(**condition),))
-        return placed, found.touches[0]
+        placed = place_pin(model, point)
+        state = build_state(placed, np.zeros((model.nodes, 2)), 0.0, (Condition(**condition),))
+        return placed, state.touches[0]
 
     return at
 
@@ -39,14 +40,14 @@ def touch(problem, with_pin):
     ],
 )
 def test_node_is_armed_again_once_it_is_back_on_its_side(touch, point, before, after):
-    model, found = touch(point, armed=before)
-    assert _rearmed(model, found).armed is after
-    assert not _rearmed(model, found).closed
+    model, contact = touch(point, armed=before)
+    assert _rearmed(model, contact).armed is after
+    assert not _rearmed(model, contact).closed
 
 
 def test_closed_contact_stays_as_it_is(touch):
-    model, found = touch((0.5, 0.1), closed=True, force=1.0)
-    assert _rearmed(model, found) == found.condition
+    model, contact = touch((0.5, 0.1), closed=True, force=1.0)
+    assert _rearmed(model, contact) == contact.condition
 
 
 @pytest.mark.parametrize(
@@ -61,16 +62,16 @@ def test_closed_contact_stays_as_it_is(touch):
     ],
 )
 def test_contacts_that_are_near_are_tried_closed_after_a_slip_off(touch, point, armed, closed):
-    model, found = touch(point, armed=armed)
-    after = _condition_after(model, found, None, lost=False)
+    model, contact = touch(point, armed=armed)
+    after = _condition_after(model, contact, None, lost=False)
     assert (after.closed, after.armed) == (closed, armed)
 
 
 def test_lost_contact_is_open_and_disarmed_and_a_strip_at_rest_opens_all_of_its_contacts(touch):
-    model, found = touch((0.5, -0.001), closed=True, force=1.0)
-    assert _condition_after(model, found, None, lost=True) == Condition(armed=False)
-    assert _condition_after(model, found, 0, lost=False) == Condition(armed=True)
-    assert _condition_after(model, found, 1, lost=False).closed
+    model, contact = touch((0.5, -0.001), closed=True, force=1.0)
+    assert _condition_after(model, contact, None, lost=True) == Condition(armed=False)
+    assert _condition_after(model, contact, 0, lost=False) == Condition(armed=True)
+    assert _condition_after(model, contact, 1, lost=False).closed
 
 
 def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next(problem, strip):
@@ -82,13 +83,13 @@ def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next(problem, strip
     )
     contacts = tuple(fr.Contact(node=pin.name, strip="cantilever", keep=False) for pin in pins)
     scene = fr.SolidProblem(strips=(lifted,), pins=pins, contacts=contacts)
-    result = fr.solve(scene, np.arange(1, 11) / 10)
+    result = fr.solve(scene, loads(10))
     outer, inner = result.contacts["outer->cantilever"], result.contacts["inner->cantilever"]
     assert 0.3 < outer.slip_off < 0.9
     after = result.load_parameter > outer.slip_off
     assert np.all(outer.force[after] == 0)
     assert np.all(inner.force[after] > 0)
-    alone = fr.solve(replace(scene, pins=pins[1:], contacts=contacts[1:]), np.arange(1, 11) / 10)
+    alone = fr.solve(replace(scene, pins=pins[1:], contacts=contacts[1:]), loads(10))
     np.testing.assert_allclose(
         inner.force[after], alone.contacts["inner->cantilever"].force[after], rtol=1e-7
     )

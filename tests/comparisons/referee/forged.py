@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from comparisons.referee import Equilibrium, Found, Given, equilibrium
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
 from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import Scene
 
@@ -14,7 +14,7 @@ POINTS = 201
 
 def integrated(
     scene: Scene, t: float, clamp: tuple[float, float, float], touches: list[tuple[str, float, np.ndarray]]
-) -> Given:
+) -> AnswerState:
     """State of the first beam, clamped at its start along +x, from a reaction and contact forces at arc positions, by integration."""
     beam = scene.beams[0]
     n, state, begin = -np.array(clamp[:2]), [0.0, 0.0, 0.0, -clamp[2]], 0.0
@@ -32,7 +32,7 @@ def integrated(
         line.append(path.y[:2, : len(inside)].T)
         state, begin, n = path.y[:, -1], end, n - force
     axis = np.vstack([*line, state[:2]]) + np.array(beam.start)
-    return Given(
+    return AnswerState(
         load_parameter=t,
         arcs={pair: s for pair, s, _ in touches},
         forces={pair: (float(f[0]), float(f[1])) for pair, _, f in touches},
@@ -44,7 +44,7 @@ def integrated(
 
 def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Response:
     """Return exact equilibria, one for each load parameter, as the answer of a model."""
-    assert all(exact.found is Found.FOUND for exact in path)
+    assert all(exact.status is SearchStatus.FOUND for exact in path)
     steps = len(path)
     contacts = {}
     for spec in scene.contacts:
@@ -95,7 +95,7 @@ def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Respons
 def bent(scene: Scene, t: float, axes: dict[str, np.ndarray]) -> Equilibrium:
     """Return the equilibrium next to given axes, without contact."""
     arcs = {beam.name: np.linspace(0.0, beam.length, len(axes[beam.name])) for beam in scene.beams}
-    given = Given(
+    given = AnswerState(
         load_parameter=t, arcs={}, forces={}, axes={name: (arcs[name], line) for name, line in axes.items()},
         reactions={}, tips={},
     )  # fmt: skip

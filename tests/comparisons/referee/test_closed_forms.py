@@ -12,7 +12,7 @@ from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.rod import rod_under_pin
 from comparisons.exact.tied import rod_with_tied_tip
 from comparisons.models import solve
-from comparisons.referee import Equilibrium, Found, Given, equilibrium, given_by
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 
 STIFF = 1e10 * 12.0 / 0.02**2
@@ -26,15 +26,15 @@ def unit_beam(EA: float = STIFF, GA: float = STIFF, name: str = "beam") -> BeamS
     )  # fmt: skip
 
 
-def at(t: float, axis: np.ndarray, beam: str = "beam", **more: dict) -> Given:
+def at(t: float, axis: np.ndarray, beam: str = "beam", **more: dict) -> AnswerState:
     arc = np.linspace(0.0, 1.0, len(axis))
     nothing = {"arcs": {}, "forces": {}, "reactions": {}, "tips": {}}
-    return Given(load_parameter=t, axes={beam: (arc, axis)}, **(nothing | more))
+    return AnswerState(load_parameter=t, axes={beam: (arc, axis)}, **(nothing | more))
 
 
-def found(scene: Scene, given: Given) -> Equilibrium:
+def found(scene: Scene, given: AnswerState) -> Equilibrium:
     exact = equilibrium(scene, given)
-    assert exact.found is Found.FOUND, exact.message
+    assert exact.status is SearchStatus.FOUND, exact.message
     return exact
 
 
@@ -100,7 +100,7 @@ def test_rod_under_a_pin_to_1e_11(name: str) -> None:
         local, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length, offset=scene.offset(contact)
     )
     for k in range(10):
-        exact = found(scene, given_by(beams, scene, k))
+        exact = found(scene, answer_state(beams, scene, k))
         touch = exact.contacts[contact.pair]
         size = truth.magnitude[k + 1]
         np.testing.assert_allclose(touch.force, truth.force[k + 1], rtol=0.0, atol=1e-11 * size)
@@ -119,7 +119,7 @@ def test_tied_tip_to_1e_11() -> None:
     points = np.array([1.0, 0.0]) + np.outer([0.0, *scene.times], moved)
     truth = rod_with_tied_tip(points, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length)
     for k in range(5):
-        exact = found(scene, given_by(beams, scene, k))
+        exact = found(scene, answer_state(beams, scene, k))
         size = np.hypot(*truth.force[k + 1])
         held = exact.reactions["cantilever.end"]
         np.testing.assert_allclose(held[:2], truth.force[k + 1], rtol=0.0, atol=1e-11 * size)
@@ -136,7 +136,7 @@ def test_coupled_rods_to_1e_11() -> None:
     truth = coupled_rods(depth[both], pin_x=0.8, spacing=0.2, **rod)
     assert len(both) > 3
     for row, k in enumerate(both):
-        exact = found(scene, given_by(beams, scene, int(k)))
+        exact = found(scene, answer_state(beams, scene, int(k)))
         # positive there from x to y, depth downwards
         for pair, force, arc in (
             ("pin->upper", truth.pin_force[row], truth.pin_arc[row]),
@@ -181,7 +181,7 @@ def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
     smooth = x**2 * (3.0 - 2.0 * x)
     left = np.stack([span * x, rise * x - deflection * smooth], axis=1)
     right = np.stack([2.0 * span - span * x, left[:, 1]], axis=1)[::-1]
-    given = Given(
+    given = AnswerState(
         load_parameter=1.0,
         arcs={},
         forces={},

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from comparisons.exact.elastica import fold_angle
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.referee import Equilibrium, Found, Given, equilibrium, given_by
-from comparisons.referee.equations import assemble, moved, properties
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
+from comparisons.referee.equations import assemble, mesh_for, properties
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 
 GA, EA = 50.0, 400.0
@@ -39,9 +39,10 @@ def column(ends: str, load: float) -> Equilibrium:
     arc = np.linspace(0.0, 1.0, 5)
     line = np.stack([arc * (1.0 - load / EA), 0.0 * arc], axis=1)
     exact = equilibrium(
-        scene, Given(load_parameter=1.0, arcs={}, forces={}, axes={"b": (arc, line)}, reactions={}, tips={})
+        scene,
+        AnswerState(load_parameter=1.0, arcs={}, forces={}, axes={"b": (arc, line)}, reactions={}, tips={}),
     )
-    assert exact.found is Found.FOUND
+    assert exact.status is SearchStatus.FOUND
     assert not exact.shape("b", arc).rotation.any()
     return exact
 
@@ -75,7 +76,7 @@ def test_printed_number_of_the_clamped_pinned_column() -> None:
     assert pytest.approx(15.0586, abs=1e-4) == P
 
 
-def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, Given]:
+def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, AnswerState]:
     """A pin under a stiff rod, EI = 1, where the tangent has the angle tc at s = .9, and the shape of an elastica."""
     EI, s = 1.0, 0.9
 
@@ -109,7 +110,7 @@ def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, Given]:
         contacts=(ContactSpec(node="p", beam="b", side="right"),),
     )
     pushed = force * EI * normal
-    given = Given(
+    given = AnswerState(
         load_parameter=1.0, arcs={"p->b": s}, forces={"p->b": (float(pushed[0]), float(pushed[1]))},
         axes={"b": (arc, np.vstack([line, tail]))}, reactions={}, tips={},
     )  # fmt: skip
@@ -128,7 +129,7 @@ def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, Given]:
 )
 def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(beyond: float, index: int, offset: float) -> None:
     exact = equilibrium(*elastica(fold_angle() + beyond, offset))
-    assert exact.found is Found.FOUND
+    assert exact.status is SearchStatus.FOUND
     assert exact.contacts["p->b"].push > 0.0
     assert exact.index == index
 
@@ -156,8 +157,8 @@ CROWD = Scene(
 def test_ten_contacts() -> None:
     answer = solve(CROWD, "tsm", Options(element="exact"))
     assert answer.completed, answer.message
-    exact = equilibrium(CROWD, given_by(answer, CROWD, -1))
-    assert exact.found is Found.FOUND
+    exact = equilibrium(CROWD, answer_state(answer, CROWD, -1))
+    assert exact.status is SearchStatus.FOUND
     assert len(exact.contacts) == 10
     assert exact.index == 0
     for pair, here in exact.contacts.items():
@@ -169,7 +170,7 @@ def test_ten_contacts() -> None:
 @pytest.mark.slow
 def test_units_change_nothing(length: float, force: float) -> None:
     scene = replace(load_scene("ks-face"), load_parameters=2)
-    plain = equilibrium(scene, given := given_by(solve(scene, "rod"), scene, -1))
+    plain = equilibrium(scene, given := answer_state(solve(scene, "rod"), scene, -1))
     beam, pin = scene.beams[0], scene.pins[0]
     start, way = np.array(pin.start) * length, np.array(pin.displacement) * length
     other = replace(
@@ -202,12 +203,12 @@ def test_units_change_nothing(length: float, force: float) -> None:
 def test_finer_elements_change_nothing(name: str) -> None:
     """The found unknowns solve the equations on halved elements as well, to round-off."""
     scene = replace(load_scene(name), load_parameters=3)
-    exact = equilibrium(scene, given_by(solve(scene, "tsm"), scene, 1))
-    from comparisons.referee.equilibrium import _carried, _newton, _refined
+    exact = equilibrium(scene, answer_state(solve(scene, "tsm"), scene, 1))
+    from comparisons.referee.equilibrium import _newton, _refined, _transferred
 
     old = exact.solution
     grids = _refined(old.mesh, np.ones(len(old.mesh.part), dtype=bool))
-    z, bubbles, finer = _carried(old.layout, old.mesh, old.z, old.bubbles, grids)
+    z, bubbles, finer = _transferred(old.layout, old.mesh, old.z, old.bubbles, grids)
     again = _newton(old.layout, finer, z, bubbles, 10)
     assert again.converged
     n = old.layout.unknowns
@@ -218,10 +219,10 @@ def test_finer_elements_change_nothing(name: str) -> None:
 def test_the_hessian_is_that_of_the_gradient(name: str) -> None:
     """By central differences, away from equilibrium, the condensed bubbles following."""
     scene = replace(load_scene(name), load_parameters=3)
-    old = equilibrium(scene, given_by(solve(scene, "tsm"), scene, 1)).solution
+    old = equilibrium(scene, answer_state(solve(scene, "tsm"), scene, 1)).solution
     random = np.random.default_rng(5)
     made = properties(old.layout, old.mesh)
-    mesh = moved(old.layout, old.mesh)
+    mesh = mesh_for(old.layout, old.mesh)
     z = old.z + 0.01 * random.standard_normal(len(old.z))
 
     def relaxed(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from mpmath import cos, lu_solve, matrix, mp, mpf, sin
 
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.referee import Equilibrium, Found, equilibrium, given_by
+from comparisons.referee import Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 
 mp.dps = 30
@@ -162,8 +162,8 @@ def test_thirty_digits(make: Callable[[], Scene]) -> None:
     scene = make()
     answer = solve(scene, "tsm", Options(element="exact"))
     assert answer.completed, answer.message
-    exact = equilibrium(scene, given_by(answer, scene, -1))
-    assert exact.found is Found.FOUND
+    exact = equilibrium(scene, answer_state(answer, scene, -1))
+    assert exact.status is SearchStatus.FOUND
     z, tip = shoot(exact, scene)
     clamp = exact.reactions[f"{scene.beams[0].name}.start"]
     size = max(float(abs(value)) for k, value in enumerate(z) if k < 2 or k % 3)

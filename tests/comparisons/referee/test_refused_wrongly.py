@@ -9,7 +9,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.referee.equations import mesh_of
-from comparisons.referee.equilibrium import Found, correct
+from comparisons.referee.equilibrium import SearchStatus, correct
 from comparisons.referee.layout import lay_out
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
@@ -35,7 +35,7 @@ def test_two_contacts_at_one_place_are_no_equilibrium() -> None:
     for touch in layout.touches:
         z[touch.arc] = 0.5
     found = correct(layout, mesh, z, np.zeros((3, 15)), 12)
-    assert found.found is Found.NO_EQUILIBRIUM
+    assert found.status is SearchStatus.NO_EQUILIBRIUM
     assert "one place" in found.reason
 
 
