@@ -9,7 +9,11 @@ from tsm.contact import Projection, project
 from tsm.events import ROUND_OFF
 from tsm.model import Model, PairModel
 from tsm.predictor import extrapolate
+from tsm.root import find_root
 from tsm.state import State
+
+_CROSSED = 1e-14
+"""Gap, in parts of the longest beam, and bracket of load parameters at which a crossing is found."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
@@ -44,8 +48,6 @@ def _over(model: Model, seen: Projection) -> bool:
 
 def _passage(model: Model, pair: PairModel, before: State, after: State, gap: float) -> float | None:
     """Load parameter at which the gap goes through zero over the beam."""
-    from scipy.optimize import brentq
-
     t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
 
     def seen(t: float) -> Projection:
@@ -56,7 +58,10 @@ def _passage(model: Model, pair: PairModel, before: State, after: State, gap: fl
         return None
     if first.gap <= small:
         return t0 if _over(model, first) else None
-    if not seen(t0).gap > 0.0 > seen(t1).gap:
+    start, end = seen(t0).gap, seen(t1).gap
+    if not start > 0.0 > end:
         return None
-    t = float(brentq(lambda t: seen(t).gap, t0, t1, xtol=1e-15))
-    return t if _over(model, seen(t)) else None
+    t = find_root(
+        lambda t: (seen(t).gap, t), (t0, start), (t1, end), small=_CROSSED * model.length, apart=_CROSSED
+    )
+    return t if t is not None and _over(model, seen(t)) else None

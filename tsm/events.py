@@ -25,13 +25,15 @@ from tsm.contact import arc_position, project
 from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
+from tsm.root import find_root
 
 ROUND_OFF = 1e-10
 """Margins smaller than this are zero."""
 
 _LOCATED = 1e-12
 """Margin at which an event is found: what depends on its load parameter may be a thousand times as sensitive."""
-_SOLVES = 80
+_APART = 1e-14
+"""Width of the bracket of load parameters within which a margin jumps."""
 
 
 class EventKind(Enum):
@@ -196,7 +198,7 @@ def locate(
     solve: Callable[[float], Equilibrium | None],
     measure: Callable[[Equilibrium], list[Margin]],
 ) -> tuple[Equilibrium, Margin] | None:
-    """Equilibrium at which a margin is zero, by false position (Illinois) with a bisection every third time.
+    """Equilibrium at which a margin is zero.
 
     Parameters
     ----------
@@ -212,22 +214,13 @@ def locate(
     tuple or None
         Where the margin is zero, or where it jumps below zero at a load parameter that is exact to round-off.
     """
-    (t0, first), (t1, last) = before, after
-    y0, y1 = first.value, last.value
-    found: tuple[Equilibrium, Margin] | None = None
-    for count in range(_SOLVES):
-        t = (t0 + t1) / 2 if count % 3 == 2 else t0 + (t1 - t0) * y0 / (y0 - y1)
+    (begin, first), (end, last) = before, after
+
+    def evaluate(t: float) -> tuple[float, tuple[Equilibrium, Margin]] | None:
         equilibrium = solve(t)
         if equilibrium is None:
             return None
         margin = next(m for m in measure(equilibrium) if (m.kind, m.pair) == (first.kind, first.pair))
-        found = equilibrium, margin
-        if abs(margin.value) <= _LOCATED:
-            return found
-        if margin.value > 0:
-            t0, y0, y1 = t, margin.value, y1 / 2
-        else:
-            t1, y1, y0 = t, margin.value, y0 / 2
-        if abs(t1 - t0) < 1e-14 and margin.value < 0:
-            return found
-    return found
+        return margin.value, (equilibrium, margin)
+
+    return find_root(evaluate, (begin, first.value), (end, last.value), small=_LOCATED, apart=_APART)

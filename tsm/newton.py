@@ -14,7 +14,7 @@ from tsm.rods.accuracy import finer, inaccurate
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
-from tsm.system import Assembler, Drag, Linearisation, Solved
+from tsm.system import Assembler, Drag, Linearisation
 
 ROUND_OFF = 4 * float(np.finfo(float).eps)
 SHARP = 1e-3
@@ -45,8 +45,6 @@ class Equilibrium:
         Scaled norm before the first and after every iteration.
     system : Linearisation
         Residual and tangent at the configuration.
-    orientation : tuple of int
-        Signs of the determinants of the first and the last tangent that was solved with, 0 without iterations.
     """
 
     state: State
@@ -54,20 +52,32 @@ class Equilibrium:
     iterations: int
     residuals: tuple[float, ...]
     system: Linearisation
-    orientation: tuple[int, int] = (0, 0)
 
 
-class _Taken(NamedTuple):
-    """An iteration that was taken, or a part of it: from where, by which system, and the residual before."""
+class _Iteration(NamedTuple):
+    """An iteration, or a part of it.
+
+    Attributes
+    ----------
+    state, system : State, Linearisation
+        Configuration before the iteration.
+    step, load : ndarray, float
+        Change of the unknowns and of the load parameter.
+    residual : float
+        Scaled norm before the iteration.
+    part : float
+        Part of the step that is taken.
+    """
 
     state: State
     system: Linearisation
     step: Array
+    load: float
     residual: float
-    part: float
+    part: float = 1.0
 
     def to_halve(self, residual: float) -> bool:
-        """Whether it raised the residual so much that a shorter one is to be tried."""
+        """Whether the residual after the iteration is so much larger that a shorter step is to be tried."""
         return not residual <= _RISE * self.residual and self.part > _SHORTEST
 
 
@@ -136,29 +146,43 @@ class Newton:
         largest = float(np.abs(system.residual * self.scale).max())
         return largest if system.rods is None else max(largest, system.rods.inside / SHARP)
 
-    def solve(self, start: State, load: Array | None = None, drag: Drag | None = None) -> Equilibrium:
-        """Iterate from a start to equilibrium at the start's load parameter, under nodal forces and against a drag if given."""
+    def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
+        """Iterate from a start to equilibrium.
+
+        Parameters
+        ----------
+        start : State
+            Where the iteration starts. Its load parameter is held unless there is a constraint.
+        drag : Drag, optional
+            Resistance to leaving a configuration.
+        across : ndarray, shape (equations + contact unknowns,), optional
+            Constraint row: the load parameter is an unknown too, and every step is orthogonal to this vector.
+
+        Returns
+        -------
+        Equilibrium
+            The last iterate with its status.
+        """
         state = start
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        solved: list[Solved] = []
-        taken: _Taken | None = None
+        last: _Iteration | None = None
         for iteration in range(self.max_iterations + 1):
-            system = self.assembler.linearise(state, load, drag)
+            system = self.assembler.linearise(state, drag)
             residual = self.norm(system)
             left = self.max_iterations - iteration
-            if taken and taken.to_halve(residual) and left:
-                taken = taken._replace(part=taken.part / 2)
-                state = self.update(taken.state, taken.step, taken.system, residual=True, part=taken.part)
+            if last and last.to_halve(residual) and left:
+                last = last._replace(part=last.part / 2)
+                state = self._after(last)
                 continue
             residuals.append(residual)
             owners.append(tuple(touch.element for touch in state.touches if touch is not None))
             status = self._status(system, residuals, owners, left)
             more = self.with_more_nodes(state, system, residuals) if left else None
             if more is not None:
-                state, taken = more, None
+                state, last = more, None
                 continue
-            step = self.assembler.solve(system) if status is None else None
+            step = self._step(state, system, across) if status is None else None
             if step is None:
                 return Equilibrium(
                     state=state,
@@ -166,14 +190,27 @@ class Newton:
                     iterations=iteration,
                     residuals=tuple(residuals),
                     system=system,
-                    orientation=(solved[0].orientation, solved[1].orientation) if solved else (0, 0),
                 )
-            solved = [solved[0] if solved else step, step]
-            dx = step.x[:, 0]
-            if self.model.rods:
-                taken = _Taken(state, system, dx, residual, 1.0)
-            state = self.update(state, dx, system, residual=True)
+            taken = _Iteration(state, system, *step, residual)
+            state = self._after(taken)
+            last = taken if self.model.rods else None
         raise AssertionError("the last iteration returns")
+
+    def _step(self, state: State, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
+        """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
+        if across is None:
+            solved = self.assembler.solve(system)
+            return None if solved is None else (solved[:, 0], 0.0)
+        solved = self.assembler.solve(system, -self.assembler.rate(state))
+        if solved is None:
+            return None
+        back, rate = solved.T
+        load = -float(across @ back) / float(across @ rate)
+        return back + load * rate, load
+
+    def _after(self, taken: _Iteration) -> State:
+        t = taken.state.load_parameter + taken.part * taken.load
+        return self.update(taken.state, taken.step, taken.system, t=t, residual=True, part=taken.part)
 
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
@@ -222,7 +259,7 @@ class Newton:
         step: Array,
         system: Linearisation,
         *,
-        along: float = 0.0,
+        t: float | None = None,
         residual: bool = False,
         part: float = 1.0,
     ) -> State:
@@ -236,8 +273,8 @@ class Newton:
             Change of the unknowns.
         system : Linearisation
             The one that the step solves.
-        along : float
-            Change of the load parameter in the step; the prescribed displacements are left to `prescribed`.
+        t : float, optional
+            Load parameter after the step, if it changes.
         residual : bool
             Whether the step removes the residual.
         part : float
@@ -249,6 +286,9 @@ class Newton:
         if len(dz):
             largest = max(largest, float(np.abs(dz * self.own_per_limit).max()))
         factor = part * (self.longest / largest if largest > self.longest else 1.0)
+        along = 0.0 if t is None else t - state.load_parameter
+        if t is not None and along:
+            state = self.prescribed(state, t)
         q = state.q.copy()
         q[model.free] += factor * dq
         if not np.isfinite(largest):

@@ -15,7 +15,6 @@ from dataclasses import replace
 from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.critical import (
-    Bracket,
     CriticalKind,
     CriticalPoint,
     critical_point,
@@ -201,16 +200,15 @@ class Stepper:
         if changed:
             if missed > _STRAIGHT:
                 return self._refuse(1 / 2)
-            bracket = Bracket((before.load_parameter, old), (reached.state.load_parameter, new))
-            return self._meet_bifurcation(bracket, reached)
+            return self._meet_bifurcation(reached, tangent)
         self._accept(reached, tangent)
         taken = reached.state.load_parameter - before.load_parameter
         self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
         return Status.CONVERGED
 
-    def _meet_bifurcation(self, bracket: Bracket, reached: Equilibrium) -> Status:
+    def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
-        at = locate_bifurcation(self.newton, bracket, self._solve)
+        at = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
         if at is None:
             return self._refuse(1 / 2)
         self._note_critical(CriticalKind.BIFURCATION, at, at.state.load_parameter)

@@ -71,30 +71,6 @@ class Linearisation:
         return self.assemble()
 
 
-class Solved(NamedTuple):
-    """Solutions of the linear system.
-
-    Attributes
-    ----------
-    x : ndarray, shape (equations + contact unknowns, n)
-        One column for the residual, one for every right-hand side besides.
-    factors : tuple of (ndarray, ndarray)
-        Diagonals of the triangular factors with their row exchanges.
-    """
-
-    x: Array
-    factors: tuple[tuple[Array, Array], ...]
-
-    @property
-    def orientation(self) -> int:
-        """Sign of the tangent's determinant."""
-        odd = sum(
-            int(np.count_nonzero(diagonal < 0) + np.count_nonzero(pivots != np.arange(len(pivots))))
-            for diagonal, pivots in self.factors
-        )
-        return -1 if odd % 2 else 1
-
-
 class Drag(NamedTuple):
     """Viscous resistance to leaving a configuration.
 
@@ -133,8 +109,8 @@ class Assembler:
         self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
         self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
 
-    def linearise(self, state: State, load: Array | None = None, drag: Drag | None = None) -> Linearisation:
-        """Residual and tangent at a state, under given nodal forces besides the model's own, and against a drag if any."""
+    def linearise(self, state: State, drag: Drag | None = None) -> Linearisation:
+        """Residual and tangent at a state, against a drag if there is one."""
         model = self.model
         border = Border(model)
         force, tangent = self._closed_form(state, border)
@@ -146,8 +122,6 @@ class Assembler:
             border.balance(rods, state)
         for dof, reaction in border.pushed:
             nodal[dof : dof + 2] += reaction
-        if load is not None:
-            nodal = nodal - load
         if drag is not None:
             nodal = nodal + drag.per_way * (state.q - drag.start)
         if len(model.structure.loads):
@@ -314,8 +288,8 @@ class Assembler:
         corner[: model.border_dofs] = right[own]
         corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, own]
 
-    def solve(self, system: Linearisation, *more: Array) -> Solved | None:
-        """Solve the linear system, None if the tangent is singular.
+    def solve(self, system: Linearisation, *more: Array) -> Array | None:
+        """Solve the linear system.
 
         Parameters
         ----------
@@ -323,6 +297,11 @@ class Assembler:
             Residual and tangent.
         more : ndarray, shape (equations + contact unknowns,)
             Right-hand sides besides the residual's negative.
+
+        Returns
+        -------
+        ndarray, shape (equations + contact unknowns, 1 + right-hand sides) or None
+            The first column is the Newton step; None if the tangent is singular.
         """
         model = self.model
         banded, border, count = model.banded, model.border, 1 + len(more)
@@ -334,29 +313,27 @@ class Assembler:
             tangent, given = self.units.without(tangent, given)
         rhs[:, :count] = given[:banded]
         rhs[:, count:] = tangent.right[:banded]
-        lu, pivots, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
+        lu, _, X, info = lapack().dgbsv(self.k, self.k, tangent.band.T, rhs, overwrite_b=True)
         if border and (
             info != 0 or (np.abs(lu[2 * self.k]) <= _WEAK * np.abs(tangent.band).max(axis=1)).any()
         ):
             return self._solve_whole(tangent, given)
         if info != 0:
             return None
-        factors = (lu[2 * self.k], pivots)
         if not border:
-            return Solved(self._with_units(X), (factors,))
+            return self._with_units(X)
         reduced = tangent.below[:, :banded] @ X
-        lu, pivots, z, info = lapack().dgesv(
+        _, _, z, info = lapack().dgesv(
             tangent.corner - reduced[:, count:], given[banded:] - reduced[:, :count]
         )
         if info != 0:
             return None
-        x = np.concatenate([X[:, :count] - X[:, count:] @ z, z])
-        return Solved(self._with_units(x), (factors, (lu.diagonal(), pivots)))
+        return self._with_units(np.concatenate([X[:, :count] - X[:, count:] @ z, z]))
 
     def _with_units(self, x: Array) -> Array:
         return x if self.units is None else x * self.units.columns[:, None]
 
-    def _solve_whole(self, tangent: Bordered, given: Array) -> Solved | None:
+    def _solve_whole(self, tangent: Bordered, given: Array) -> Array | None:
         """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
         from scipy.sparse.linalg import splu
 
@@ -364,9 +341,7 @@ class Assembler:
             lu = splu(self.whole(tangent))
         except RuntimeError:
             return None
-        exchanged = ((np.ones(len(order)), _exchanges(order)) for order in (lu.perm_r, lu.perm_c))
-        x = self._with_units(lu.solve(given))
-        return Solved(x, ((lu.U.diagonal(), np.arange(len(given))), *exchanged))
+        return self._with_units(lu.solve(given))
 
     def whole(self, tangent: Bordered) -> Any:
         """Tangent as one sparse matrix, by columns."""
@@ -378,16 +353,6 @@ class Assembler:
         band = coo_array((tangent.band[columns, entries], (rows, columns)), shape=(banded, banded))
         right, below = coo_array(tangent.right[:banded]), coo_array(tangent.below[:, :banded])
         return block_array([[band, right], [below, coo_array(tangent.corner)]], format="csc")
-
-
-def _exchanges(order: Array) -> Array:
-    """Row exchanges, as LAPACK states them, that bring 0, 1, ... into an order."""
-    at, exchanges = np.arange(len(order)), np.arange(len(order))
-    for row, value in enumerate(order):
-        other = row + int(np.flatnonzero(at[row:] == value)[0])
-        exchanges[row] = other
-        at[[row, other]] = at[[other, row]]
-    return exchanges
 
 
 def _pairs(equations: Array) -> tuple[Array, Array]:

@@ -218,7 +218,7 @@ def test_a_tangent_without_finite_rates_predicts_nothing(
 
     def overflowing(system, right):  # type: ignore[no-untyped-def]
         solved = solve(system, right)
-        solved.x[0, 1] = value
+        solved[0, 1] = value
         return solved
 
     monkeypatch.setattr(newton.assembler, "solve", overflowing)
