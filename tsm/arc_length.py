@@ -187,11 +187,5 @@ class _Path:
 
         small, apart = _LOCATED * abs(before), _APART * length
         state = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
-        return Event(
-            kind=EventKind.LIMIT_POINT,
-            load_parameter=(state or self.here.state).load_parameter,
-            pair="",
-            element=-1,
-            arc_position=float("nan"),
-            force=0.0,
-        )
+        t = (state or self.here.state).load_parameter
+        return Event(kind=EventKind.LIMIT_POINT, load_parameter=t)

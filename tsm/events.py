@@ -50,7 +50,7 @@ class EventKind(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """A located contact event.
+    """A located event; limit points and bifurcations belong to no contact.
 
     Attributes
     ----------
@@ -72,10 +72,10 @@ class Event:
 
     kind: EventKind
     load_parameter: float
-    pair: str
-    element: int
-    arc_position: float
-    force: float
+    pair: str = ""
+    element: int = -1
+    arc_position: float = math.nan
+    force: float = 0.0
     released: float = 0.0
 
 

@@ -1,4 +1,4 @@
-"""March along the load: predictor, step control, contact events.
+"""March along the load: it tries a step, and accepts what the path, its stability and its contacts allow.
 
 A step goes to the next prescribed load parameter, or less far after a cut-back. It starts from the extrapolation of the
 last accepted states. Where an event lies inside the step, the step ends on the event, the
@@ -16,7 +16,6 @@ from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.critical import (
     CriticalKind,
-    CriticalPoint,
     critical_point,
     locate_bifurcation,
     mode_shape,
@@ -41,13 +40,10 @@ from tsm.path import FOLLOWED, PathTangent
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
-from tsm.step import Step
+from tsm.step import Step, StepLog
+from tsm.step_control import StepControl, allowed
 from tsm.track import FAR, Track
 
-_SAFE = 0.8
-"""Part of the step that the tangents would still allow, of which the next one is tried."""
-_SHORTENED = 0.1
-"""Shortest part of a refused step that is tried next."""
 _STRAIGHT = 0.02
 """A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
@@ -59,22 +55,34 @@ _COINCIDENT = 1e-6
 
 
 class Stepper:
-    """One march; holds what the predictor and the step control remember."""
+    """One march.
+
+    Attributes
+    ----------
+    track : Track
+        The path so far, from which the next state is predicted.
+    control : StepControl
+        How long the next step is.
+    log : StepLog
+        What has happened since the last step that was handed on.
+    margins : list of Margin
+        What the contacts of the last equilibrium may do next.
+    chatter : Counter
+        Changes of every contact pair at every load parameter.
+    target : float
+        Load parameter that the march is on the way to.
+    """
 
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.settings = settings
         self.newton = Newton(model, settings)
-        self.iterations = 0
-        self.cutbacks = 0
-        self.events: list[Event] = []
-        self.critical: list[CriticalPoint] = []
-        self.chatter: Counter[tuple[int, float]] = Counter()
         start = self.newton.solve(initial_state(model))
-        self.track = Track(self.newton, start)
+        self.track, self.log = Track(self.newton, start), StepLog()
+        self.control = StepControl(settings, start.status)
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
-        self.step, self.shortened, self.target = 1.0, 1 / 2, 0.0
-        self.failure = start.status
+        self.chatter: Counter[tuple[int, float]] = Counter()
+        self.target = 0.0
 
     @property
     def accepted(self) -> Equilibrium:
@@ -93,7 +101,7 @@ class Stepper:
         """
         self.track.resume(accepted)
         self.margins = self._measure(self.accepted)
-        self.step = step
+        self.control.step = step
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
@@ -112,21 +120,20 @@ class Stepper:
                     return
                 attempts += 1
                 left = target - t
-                step = min(self.step, self.track.room())
+                step = min(self.control.step, self.track.room())
                 goal = target if left <= step * (1 + 1e-6) else t + step
                 here = step < self.settings.smallest_step
-                status = self._refuse(1 / 2) if here else self._attempt(goal)
+                status = self.control.refuse() if here else self._attempt(goal)
                 if status is Status.CONVERGED:
                     reached = self.accepted.state.load_parameter
                     yield self._record(reached == target and target in asked, status)
-                elif status is not self.failure:
+                elif status is not self.control.failure:
                     yield self._record(False, status)
                     return
                 else:
-                    self.cutbacks += 1
-                    self.step = min(step, left) * self.shortened
-                    if self.step < self.settings.smallest_step:
-                        status = self._verdict()
+                    self.log.cutbacks += 1
+                    if self.control.cut_back(min(step, left)):
+                        status = self.control.verdict(self.track.folds())
                         if status is Status.LIMIT_POINT:
                             status = self._meet_limit_point()
                         yield self._record(False, status)
@@ -142,39 +149,14 @@ class Stepper:
         apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + _NEAR]
         return sorted([*load_parameters, *apart])
 
-    def _verdict(self) -> Status:
-        """Why no step goes on from here, as precisely as it can be told."""
-        told = {
-            Status.NOT_FINITE,
-            Status.SINGULAR_TANGENT,
-            Status.INACCURATE,
-            Status.TWO_CONTACTS,
-            Status.PING_PONG,
-        }
-        if self.failure in told or self.settings.smallest_step > 0.5:
-            return self.failure
-        return Status.LIMIT_POINT if self.track.folds() else Status.CUTBACK_FLOOR
-
     def _record(self, requested: bool, status: Status) -> Step:
-        step = Step(
-            equilibrium=self.accepted,
-            requested=requested,
-            status=status,
-            iterations=self.iterations,
-            cutbacks=self.cutbacks,
-            events=tuple(self.events),
-            critical=tuple(self.critical),
-            index=self.track.tangent.index,
-        )
-        self.iterations = self.cutbacks = 0
-        self.events, self.critical = [], []
-        return step
+        return self.log.hand_on(self.accepted, requested, status, self.track.tangent.index)
 
     def _attempt(self, goal: float) -> Status:
         """Go to a load parameter or to the first event before it."""
         reached = self._solve(goal)
         if reached is None:
-            return self.failure
+            return self.control.failure
         crossed = crossing(self.model, self.accepted.state, reached.state)
         if crossed is not None and crossed[0] > self.accepted.state.load_parameter:
             return self._attempt(crossed[0])
@@ -192,25 +174,24 @@ class Stepper:
         """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
         before, tangent = self.accepted.state, PathTangent(self.newton, reached)
         missed = max(self.track.missed(at, reached) for at in (self.track.tangent, tangent))
-        fitting = _SAFE * FOLLOWED / max(missed, 1e-9)
+        fitting = allowed(missed)
         if missed > FOLLOWED:
-            return self._refuse(fitting)
+            return self.control.refuse(fitting)
         old, new = self.track.index, tangent.index
         changed = 0 <= new != old and (new > old or self.track.tangent.index == old)
         if changed:
             if missed > _STRAIGHT:
-                return self._refuse(1 / 2)
+                return self.control.refuse()
             return self._meet_bifurcation(reached, tangent)
         self._accept(reached, tangent)
-        taken = reached.state.load_parameter - before.load_parameter
-        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+        self.control.grow(reached.state.load_parameter - before.load_parameter, fitting)
         return Status.CONVERGED
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
         at = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
         if at is None:
-            return self._refuse(1 / 2)
+            return self.control.refuse()
         self._note_critical(CriticalKind.BIFURCATION, at, at.state.load_parameter)
         primary = self.settings.branch == "primary"
         self._accept(reached if primary else at)
@@ -224,17 +205,8 @@ class Stepper:
         return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
 
     def _note_critical(self, kind: CriticalKind, at: Equilibrium, load_parameter: float) -> None:
-        self.critical.append(critical_point(self.newton, kind, at, load_parameter))
-        self.events.append(
-            Event(
-                kind=EventKind[kind.name],
-                load_parameter=load_parameter,
-                pair="",
-                element=-1,
-                arc_position=float("nan"),
-                force=0.0,
-            )
-        )
+        self.log.critical.append(critical_point(self.newton, kind, at, load_parameter))
+        self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
     def _turn(self, at: Equilibrium) -> Status:
         """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
@@ -250,35 +222,29 @@ class Stepper:
             start = self.newton.update(held, way * push, at.system)
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(start, self.newton.potential(start))
-            self.iterations += fall.iterations
+            self.log.iterations += fall.iterations
             if rest is not None and PathTangent(self.newton, rest).index <= 0:
                 found.append((self.newton.potential(rest.state), rest))
         if not found:
             return Status.FALLING
         least, rest = min(found, key=lambda pair: pair[0])
-        self.events[-1] = replace(self.events[-1], released=self.newton.potential(held) - least)
+        self.log.events[-1] = replace(self.log.events[-1], released=self.newton.potential(held) - least)
         self.track.history = []
         self._accept(rest)
-        self.step = 1.0
+        self.control.step = 1.0
         return Status.CONVERGED
-
-    def _refuse(self, part: float) -> Status:
-        """Try a part of the step."""
-        self.failure, self.shortened = Status.ITERATION_LIMIT, min(max(part, _SHORTENED), 1 / 2)
-        return self.failure
 
     def _solve(self, t: float) -> Equilibrium | None:
         """Equilibrium at t from the predicted state, if the tangent leads to it."""
         start = self.track.predicted(t)
         equilibrium = self.newton.solve(start)
-        self.iterations += equilibrium.iterations
-        self.shortened = 1 / 2
+        self.log.iterations += equilibrium.iterations
         if equilibrium.status is not Status.CONVERGED:
-            self.failure = equilibrium.status
+            self.control.fail(equilibrium.status)
             return None
         missed = self.track.missed(self.track.tangent, equilibrium)
         if missed > FOLLOWED or self.track.strays(start, equilibrium):
-            self._refuse(_SAFE * FOLLOWED / missed if missed > FOLLOWED else 1 / 2)
+            self.control.refuse(allowed(missed) if missed > FOLLOWED else 1 / 2)
             return None
         return equilibrium
 
@@ -292,18 +258,16 @@ class Stepper:
             else:
                 found = locate((t, before), (goal, after), self._solve, self._measure)
             if found is None:
-                return self.failure
+                return self.control.failure
             if after.kind is EventKind.TOUCH and before.value < 1.0 and found[1].value < -ROUND_OFF:
-                self.failure = Status.ITERATION_LIMIT
-                return self.failure
+                return self.control.refuse()
             if first is None or found[0].state.load_parameter < first[0].state.load_parameter:
                 first = found
         assert first is not None, "events is not empty"
         at, margin = first
         past = [other for other in self._measure(at) if other.value < -_COINCIDENT]
         if any(other.kind is not EventKind.TOUCH or other.pair != margin.pair for other in past):
-            self.failure = Status.ITERATION_LIMIT
-            return self.failure
+            return self.control.refuse()
         together = [
             other
             for before, other in zip(self.margins, self._measure(at), strict=True)
@@ -320,7 +284,7 @@ class Stepper:
             if status is not Status.CONVERGED or self.accepted.system is not at.system:
                 return status
         model, state, jump = self.model, at.state, False
-        noted = len(self.events)
+        noted = len(self.log.events)
         for margin in changes:
             k, pair = margin.pair, model.pairs[margin.pair]
             self.chatter[k, state.load_parameter] += 1
@@ -343,8 +307,8 @@ class Stepper:
         if crowded(model, state):
             return Status.TWO_CONTACTS
         status = self._resume(at, state, jump=jump)
-        if status is not Status.CONVERGED and status is self.failure:
-            del self.events[noted:]
+        if status is not Status.CONVERGED and status is self.control.failure:
+            del self.log.events[noted:]
         return status
 
     def _close(self, state: State, margin: Margin) -> State:
@@ -363,7 +327,7 @@ class Stepper:
         while True:
             equilibrium = self._settled(state, energy if jump else None)
             if equilibrium is None:
-                return Status.FALLING if jump else self.failure
+                return Status.FALLING if jump else self.control.failure
             state = equilibrium.state
             energy = self.newton.potential(state)
             pulling = [
@@ -395,26 +359,26 @@ class Stepper:
     def _settled(self, state: State, energy: float | None) -> Equilibrium | None:
         """Equilibrium with other contacts: near the state, or, where a jump frees `energy`, to which the structure falls."""
         equilibrium = self.newton.solve(state)
-        self.iterations += equilibrium.iterations
+        self.log.iterations += equilibrium.iterations
         found = equilibrium.status is Status.CONVERGED
         near = found and self.newton.apart(state, equilibrium.state) <= FAR
         down = near and (energy is None or descends(self.newton, energy, equilibrium.state))
         if energy is not None and not (down and not met(self._measure(equilibrium))):
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(state, energy)
-            self.iterations += fall.iterations
+            self.log.iterations += fall.iterations
             return rest
-        self.failure = equilibrium.status
+        self.control.fail(equilibrium.status)
         return equilibrium if found else None
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""
-        n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
-        self.events[n] = replace(self.events[n], released=released)
+        n = max(n for n, event in enumerate(self.log.events) if event.kind is EventKind.SLIP_OFF)
+        self.log.events[n] = replace(self.log.events[n], released=released)
 
     def _note(self, kind: EventKind, k: int, element: int, arc: float, force: float) -> None:
         pair = self.model.pairs[k]
-        self.events.append(
+        self.log.events.append(
             Event(
                 kind=kind,
                 load_parameter=self.accepted.state.load_parameter,
@@ -428,6 +392,6 @@ class Stepper:
     def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""
         if self.track.history:
-            self.events.extend(passes(self.model, self.accepted, equilibrium))
+            self.log.events.extend(passes(self.model, self.accepted, equilibrium))
         self.track.accept(replace(equilibrium, state=rearm(self.model, equilibrium.state)), tangent)
         self.margins = self._measure(self.accepted)

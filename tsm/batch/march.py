@@ -262,7 +262,7 @@ class March:
         replace_history(front, n, stepper.track.history)
         which = np.array([n])
         front.normal[:, which], front.arc[:, which] = measure(self.equations, front.numbers, front.at, which)
-        front.step[n], front.orientation[n] = stepper.step, 0
+        front.step[n], front.orientation[n] = stepper.control.step, 0
         reaction = steps[-1].equilibrium.system.nodal[self.model.fixed]
         self._enter(front, which, reaction[:, None])
 
