@@ -117,8 +117,8 @@ class _Path:
         self.model, self.settings = model, settings
         self.newton = Newton(model, settings)
         self.here = self.newton.solve(initial_state(model))
-        per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_limit
-        self.weight = np.concatenate([per_beam, np.zeros(model.contact_unknowns)]) ** 2
+        per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
+        self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
         self.direction = self._direction(self.here, None)
         self.growth, self.iterations = 1.0, 0
         self.failure = Status.SINGULAR_TANGENT

@@ -9,6 +9,7 @@ of a kink, where none does, and on the concave side, where two do, it is the nea
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -24,8 +25,10 @@ from tsm.state import State, Touch
 
 _SAMPLES = 33
 """Points of an exact element among which the nearest is looked for."""
-_AT_NODE = 1e-9
+AT_NODE = 1e-9
 """Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""
+PROJECTIONS, PROJECTED = 20, 1e-14
+"""Newton steps of a projection at most, and the step at which the closest point is found."""
 
 
 class Projection(NamedTuple):
@@ -55,16 +58,25 @@ def arc_position(target: BeamModel, element: int, xi: float) -> float:
     return (1.0 - xi) * target.arcs[k] + xi * target.arcs[k + 1]
 
 
-def slide(target: BeamModel, element: int, xi: float, past: float = 0.0) -> tuple[int, float]:
-    """Hand a position that left its element by more than a part of its length over to the neighbour."""
+def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tuple[int, float]:
+    """Hand a position that left element k of a beam by more than a part of its length over to the neighbour.
+
+    Parameters
+    ----------
+    lengths : sequence of float
+        Undeformed lengths of the beam's elements.
+    k, xi : int, float
+        Element, counted from the beam's start, and position on it.
+    past : float
+        Part of the length by which a position may lie past a node.
+    """
     if not math.isfinite(xi):
-        return element, xi
-    k, l0 = element - target.first, target.lengths
-    while xi > 1.0 + past and k < len(l0) - 1:
-        xi, k = (xi - 1.0) * (l0[k] / l0[k + 1]), k + 1
+        return k, xi
+    while xi > 1.0 + past and k < len(lengths) - 1:
+        xi, k = (xi - 1.0) * (lengths[k] / lengths[k + 1]), k + 1
     while xi < -past and k > 0:
-        xi, k = 1.0 + xi * (l0[k] / l0[k - 1]), k - 1
-    return target.first + k, xi
+        xi, k = 1.0 + xi * (lengths[k] / lengths[k - 1]), k - 1
+    return k, xi
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
@@ -74,8 +86,10 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -
         if touch is None:
             owned.append(None)
             continue
-        element, xi = slide(pair.target, touch.element, touch.xi, 0.0 if pair.cuts else _AT_NODE)
-        owned.append(touch if element == touch.element else replace(touch, element=element, xi=xi))
+        first = pair.target.first
+        past = 0.0 if pair.cuts else AT_NODE
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, past)
+        owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
     if model.rods is None:
         return replace(state, touches=tuple(owned))
     return recut(model.rods, replace(state, touches=touches), tuple(owned))
@@ -84,12 +98,26 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -
 def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:
     """Owner by projection on the chords."""
     positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
+    owner, xi = project_on_chords(positions, np.array(node))
+    return target.first + int(owner), float(xi)
+
+
+def project_on_chords(positions: Array, node: Array) -> tuple[Array, Array]:
+    """Chord that is nearest to a node, and the position of the node's projection on it.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (nodes, 2, ...)
+        Ends of the chords of one beam, or of many in the last axis.
+    node : ndarray, shape (2, ...)
+        Position of the node.
+    """
     d = np.diff(positions, axis=0)
-    r = np.array(node) - positions[:-1]
-    xi = np.einsum("ij,ij->i", d, r) / np.einsum("ij,ij->i", d, d)
-    miss = r - np.clip(xi, 0.0, 1.0)[:, None] * d
-    owner = int(np.argmin(np.einsum("ij,ij->i", miss, miss)))
-    return target.first + owner, float(xi[owner])
+    r = node - positions[:-1]
+    xi = np.einsum("ij...,ij...->i...", d, r) / np.einsum("ij...,ij...->i...", d, d)
+    apart = r - np.clip(xi, 0.0, 1.0)[:, None] * d
+    owner = np.argmin(np.einsum("ij...,ij...->i...", apart, apart), axis=0)
+    return owner, np.take_along_axis(xi, owner[None], axis=0)[0]
 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
@@ -114,14 +142,13 @@ def project(model: Model, pair: PairModel, state: State) -> Projection:
     q = state.q
     node = model.node_position(pair, q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, q, node)
-    for _ in range(20):
+    first = pair.target.first
+    for _ in range(PROJECTIONS):
         rx, ry, curve = _lever(model, element, q, node)
-        (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
-        tx, ty = dx - dw * dy, dy + dw * dx
-        step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
-        element, xi = slide(pair.target, element, xi - step)
-        if abs(step) < 1e-14:
+        step, (px, py), (tx, ty) = curve.approach(xi, rx, ry)
+        k, xi = slide(pair.target.lengths, element - first, xi - step)
+        element = first + k
+        if abs(step) < PROJECTED:
             break
     coupling = pair.law.coupling
     for touch in state.touches:
@@ -157,14 +184,13 @@ def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShap
         slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
         step = float(apart @ tangent) / slope if slope > 0 else 0.0
         arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
-        element, at_xi = slide(target, target.first + e, arc / l0)
-        e = element - target.first
+        e, at_xi = slide(target.lengths, e, arc / l0)
         arc = at_xi * target.lengths[e]
-        if abs(step) < 1e-14 * l0:
+        if abs(step) < PROJECTED * l0:
             break
     height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
-    beyond = _beyond(target, arc_position(target, element, at_xi))
-    return Projection(element, at_xi, pair.side * height - pair.pair.offset, beyond)
+    beyond = _beyond(target, arc_position(target, target.first + e, at_xi))
+    return Projection(target.first + e, at_xi, pair.side * height - pair.pair.offset, beyond)
 
 
 def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:

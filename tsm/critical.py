@@ -73,7 +73,7 @@ def _bordered(newton: Newton, system: Linearisation, across: Array | None = None
     size = len(newton.scale)
     draw = np.random.default_rng(1)
     b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
-    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
+    c = draw.uniform(0.5, 1.0, size) * newton.per_step if across is None else across
     solved = newton.assembler.solve(system, b)
     if solved is None or not np.isfinite(solved[:, 1]).all():
         return 0.0, np.zeros(size)
@@ -106,7 +106,7 @@ def locate_bifurcation(
         None where the path is not found between the two ends.
     """
     _, v = _bordered(newton, before.system)
-    weights = newton.per_unknown**2
+    weights = newton.per_step**2
     length = float(v @ (weights * v))
     if not 0 < length < np.inf:
         return None

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,25 @@ from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.rods.assembly import Rods
 from tsm.structure import Beam, ContactPair, Pin, Structure
+
+_CONTACT_KINDS = np.arange(6, 10)
+
+
+class Sizes(NamedTuple):
+    """Sizes of a structure, or of many in the last axis.
+
+    Attributes
+    ----------
+    length, extent : ndarray, shape (...)
+        Length of the longest beam, and of the largest structure of joined beams.
+    force_scale, least_force : ndarray, shape (...)
+        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
+    """
+
+    length: Array
+    extent: Array
+    force_scale: Array
+    least_force: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,10 +144,8 @@ class Model:
         Number of border unknowns: border equations, then the contacts' own unknowns.
     turns : tuple of float
         Load parameters at which the paths of the pins turn.
-    length, extent : float
-        Length of the longest beam, and of the largest structure of joined beams.
-    force_scale, least_force : float
-        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
+    sizes : Sizes
+        Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -137,16 +155,16 @@ class Model:
         self._prescribe(structure)
         self._place_pairs(structure)
         self._number_equations()
-        self.properties = self._properties()
-        self.coefficients = self._coefficients()
-        self.rods = Rods(self) if len(self.exact) else None
-        self.length = max(beam.length for beam in structure.beams)
-        self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
-        extents = self._extents()
-        self.extent = max(extents)
-        self.least_force = max(
-            beam.section.EI / extent**2 for beam, extent in zip(structure.beams, extents, strict=True)
+        sections = np.array(
+            [[getattr(b.section, name) for b in structure.beams] for name in ("EA", "GA", "EI")]
         )
+        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
+        self.properties = self.properties_of(self.coordinates, l0, sections)
+        self.coefficients = self.coefficients_of(self.properties)
+        self.rods = Rods(self) if len(self.exact) else None
+        lengths = np.array([beam.length for beam in structure.beams])
+        self.sizes = self.sizes_of(self.coordinates, lengths, sections[2])
+        self.length, self.extent, self.force_scale, self.least_force = map(float, self.sizes)
         self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
@@ -187,22 +205,29 @@ class Model:
         self.exact_dofs = np.concatenate([nodal[:3], own, nodal[3:]])
         self.dof_count = 3 * (len(self.coordinates) + len(self.exact))
 
-    def _extents(self) -> list[float]:
+    def sizes_of(self, coordinates: Array, lengths: Array, EI: Array) -> Sizes:
+        """Sizes from node positions (nodes, 2, ...), and lengths and bending stiffnesses (beams, ...) of the beams."""
+        extents = self._extents(coordinates, lengths)
+        forces, least_forces = EI / lengths**2, EI / extents**2
+        return Sizes(lengths.max(axis=0), extents.max(axis=0), forces.max(axis=0), least_forces.max(axis=0))
+
+    def _extents(self, coordinates: Array, lengths: Array) -> Array:
         """Diagonal of the structure of joined beams that each beam belongs to: how far its ends may go; of one alone, its length."""
-        lengths = [beam.beam.length for beam in self.beams.values()]
         if not self.joined:
             return lengths
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
         i, j = self.element_nodes.T
-        shape = (len(self.coordinates),) * 2
-        count, of = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=shape), directed=False)
-        least, most = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
-        np.minimum.at(least, of, self.coordinates)
-        np.maximum.at(most, of, self.coordinates)
-        across = np.hypot(*(most - least).T)[of[[beam.nodes[0] for beam in self.beams.values()]]]
-        return [max(own, float(whole)) for own, whole in zip(lengths, across, strict=True)]
+        shape = (len(coordinates),) * 2
+        count, part = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=shape), directed=False)
+        least = np.full((count, *coordinates.shape[1:]), np.inf)
+        most = -least
+        np.minimum.at(least, part, coordinates)
+        np.maximum.at(most, part, coordinates)
+        across = np.hypot(*np.moveaxis(most - least, 1, 0))
+        extents: Array = np.maximum(lengths, across[part[[beam.nodes[0] for beam in self.beams.values()]]])
+        return extents
 
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}
@@ -226,23 +251,29 @@ class Model:
 
     @cached_property
     def kind(self) -> Array:
-        """What the equations are about: displacement (0, 1), rotation (2), an exact element's force (3, 4), moment (5)."""
-        kind: Array = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
+        """Quantity of every unknown, the equations first, then the contacts' unknowns.
+
+        Displacement (0, 1), rotation (2), force (3, 4) and moment (5) of an exact element, contact force (6, 7), arc position (8), angle
+        of a contact (9).
+        """
+        nodal = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
+        contacts = [_CONTACT_KINDS[: pair.element_type.contact_unknowns] for pair in self.pairs]
+        kind: Array = np.concatenate([nodal, *contacts])
         return kind
 
     @cached_property
     def units(self) -> Array:
         """Units of the unknowns, from the longest beam and the largest ``EI/L^2``."""
         L, F = self.length, self.force_scale
-        own = [[F, F, L, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
-        return np.concatenate([np.array([L, L, 1.0, F, F, F * L])[self.kind], *own])
+        units: Array = np.array([L, L, 1.0, F, F, F * L, F, F, L, 1.0])[self.kind]
+        return units
 
     @cached_property
     def row_units(self) -> Array:
         """Units of the equations."""
         L, F = self.length, self.force_scale
-        own = [[L, L, F, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
-        return np.concatenate([np.array([F, F, F * L, L, L, 1.0])[self.kind], *own])
+        units: Array = np.array([F, F, F * L, L, L, 1.0, L, L, F, 1.0])[self.kind]
+        return units
 
     @cached_property
     def whole(self) -> bool:
@@ -337,29 +368,37 @@ class Model:
             widest = max(widest, int((rows.max(axis=0) - least).max(initial=0)))
         return widest
 
-    def _properties(self) -> Properties:
-        d = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0]
-        repeats = [beam.beam.elements for beam in self.beams.values()]
-        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
-        EA, GA, EI = (
-            np.repeat([getattr(b.beam.section, name) for b in self.beams.values()], repeats)
-            for name in ("EA", "GA", "EI")
-        )
-        kinds = [ELEMENTS[beam.beam.element] for beam in self.beams.values()]
-        sheared = np.repeat([kind.sheared for kind in kinds], repeats)
-        Phi = np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
-        return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=Phi)
+    def properties_of(self, coordinates: Array, l0: Array, sections: Array) -> Properties:
+        """Constants of the elements.
 
-    def _coefficients(self) -> Coefficients | None:
+        Parameters
+        ----------
+        coordinates : ndarray, shape (nodes, 2, ...)
+            Undeformed node positions of one structure, or of many in the last axis.
+        l0 : ndarray, shape (elements, ...)
+            Lengths of the elements.
+        sections : ndarray, shape (3, beams, ...)
+            EA, GA and EI of the beams.
+        """
+        counts = [beam.beam.elements for beam in self.beams.values()]
+        EA, GA, EI = np.repeat(sections, counts, axis=1)
+        sheared = np.repeat([ELEMENTS[beam.beam.element].sheared for beam in self.beams.values()], counts)
+        d = coordinates[self.element_nodes[:, 1]] - coordinates[self.element_nodes[:, 0]]
+        Phi = np.where(sheared.reshape(-1, *[1] * (l0.ndim - 1)), 12 * EI / (GA * l0**2), 0.0)
+        return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)
+
+    def coefficients_of(self, properties: Properties) -> Coefficients | None:
+        """Coefficients of the energy of the elements in closed form, None without such elements; the properties are arrays over all elements."""
         parts = []
         for beam in self.beams.values():
             kind = ELEMENTS[beam.beam.element]
             if isinstance(kind, ClosedForm):
-                own = Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
+                own = Properties(*(column[beam.first : beam.last + 1] for column in properties))
                 parts.append(kind.coefficients(own))
         if not parts:
             return None
-        return Coefficients(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
+        axis = -properties.l0.ndim
+        return Coefficients(*(np.concatenate(part, axis=axis) for part in zip(*parts, strict=True)))
 
     def node_position(self, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
         """Current position of a pair's contacting node."""

@@ -11,14 +11,12 @@ from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
 from tsm.model import Model
 from tsm.rods.accuracy import finer, inaccurate
+from tsm.scaling import SHARP, largest, scales_of
 from tsm.settings import Settings
 from tsm.state import Profile, State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation
 
-ROUND_OFF = 4 * float(np.finfo(float).eps)
-SHARP = 1e-3
-"""Positions are held this much sharper than forces: they cost nothing, and a stiff contact needs them."""
 LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Longest iteration, in parts of 0.3 L and 0.7 rad; more where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
@@ -94,27 +92,10 @@ class Newton:
         self.assembler = Assembler(model)
         self.max_iterations = settings.max_iterations
         self.accuracy = settings.accuracy
-        tolerance = settings.tolerance
-        EA, EI, l0 = (
-            value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
-        )
-        noise = ROUND_OFF * (EA * model.extent / l0 + EI / l0**2).max(initial=0.0) / model.least_force
-        self.tolerance = tolerance
-        blur = ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length)
-        self.noise = float(max(noise, blur if model.contact_unknowns or model.rods else 0.0))
-        force, length = model.least_force, model.length
+        self.tolerance = settings.tolerance
+        scales = scales_of(model, model.coordinates, model.properties, model.sizes)
+        self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
         self.longest = _LONGEST_WHOLE if model.whole else LONGEST
-        sharp = 1 / (SHARP * length)
-        scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / SHARP])
-        own = [
-            [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns] for pair in model.pairs
-        ]
-        self.scale = np.concatenate([scale[model.kind], *own])
-        per_limit = np.array([1 / (0.3 * model.extent), 1 / (0.3 * model.extent), 1 / 0.7])
-        own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
-        self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
-        self.own_per_limit = np.concatenate([np.empty(0), *own])
-        self.per_unknown = np.concatenate([self.per_limit, self.own_per_limit])
 
     def apart(self, one: State, other: State) -> float:
         """Largest difference of two states, in largest Newton steps."""
@@ -139,12 +120,12 @@ class Newton:
 
     def size(self, change: Array) -> float:
         """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
-        return float(np.abs(change * self.per_limit).max(initial=0.0))
+        return float(largest(change, self.per_step[: self.model.equations]))
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
-        largest = float(np.abs(system.residual * self.scale).max())
-        return largest if system.rods is None else max(largest, system.rods.inside / SHARP)
+        norm = float(largest(system.residual, self.scale))
+        return norm if system.rods is None else max(norm, system.rods.inside / SHARP)
 
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium.
@@ -282,16 +263,14 @@ class Newton:
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
-        largest = float(np.abs(dq * self.per_limit).max(initial=0.0))
-        if len(dz):
-            largest = max(largest, float(np.abs(dz * self.own_per_limit).max()))
-        factor = part * (self.longest / largest if largest > self.longest else 1.0)
+        size = float(largest(step, self.per_step))
+        factor = part * (self.longest / size if size > self.longest else 1.0)
         along = 0.0 if t is None else t - state.load_parameter
         if t is not None and along:
             state = self.prescribed(state, t)
         q = state.q.copy()
         q[model.free] += factor * dq
-        if not np.isfinite(largest):
+        if not np.isfinite(size):
             return replace(state, q=q)
         profile, rods = state.profile, system.tangent.rods
         if model.rods and rods and profile:

@@ -241,10 +241,10 @@ def test_two_pins_on_one_beam():
 def test_owner_of_a_position():
     model = Model(cantilever(((0.8, 0.0), (0.8, 0.1))))
     beam = model.beams["b"]
-    assert slide(beam, 4, 1.25) == (5, pytest.approx(0.25))
-    assert slide(beam, 4, -2.25) == (1, pytest.approx(0.75))
-    assert slide(beam, 4, 1.0) == (4, 1.0)
-    assert slide(beam, 9, 1.5) == (9, 1.5)
+    assert slide(beam.lengths, 4, 1.25) == (5, pytest.approx(0.25))
+    assert slide(beam.lengths, 4, -2.25) == (1, pytest.approx(0.75))
+    assert slide(beam.lengths, 4, 1.0) == (4, 1.0)
+    assert slide(beam.lengths, 9, 1.5) == (9, 1.5)
 
 
 @pytest.mark.parametrize("bend", [0.3, -0.3])

@@ -311,7 +311,9 @@ def perturbed(newton, equilibrium, rng):
     """A state out of equilibrium in every unknown."""
     model = newton.model
     step = 0.02 * rng.normal(size=model.equations + model.contact_unknowns) / newton.scale
-    step[: model.equations][newton.per_limit > 0] = 0.01 * rng.normal(size=int((newton.per_limit > 0).sum()))
+    step[: model.equations][newton.per_step[: model.equations] > 0] = 0.01 * rng.normal(
+        size=int((newton.per_step[: model.equations] > 0).sum())
+    )
     for pair in model.pairs:
         if pair.cuts:
             step[model.equations + pair.slot + 2 : model.equations + pair.slot + 4] = 0.01 * rng.normal(

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsm.batch.constants import BatchConstants
 from tsm.batch.elimination import eliminate, reach, row_length
-from tsm.batch.numbers import Numbers
 from tsm.elements import Coupling, beam
 from tsm.elements.contact_law import UPPER
 from tsm.elements.properties import Array, Properties
@@ -21,7 +21,7 @@ OWN = 3
 """Unknowns of a contact: force (x, y) and arc position."""
 
 
-class Points(NamedTuple):
+class Configurations(NamedTuple):
     """Configurations of N structures with p pairs.
 
     Attributes
@@ -48,7 +48,7 @@ class Points(NamedTuple):
     node: Array
 
 
-class System(NamedTuple):
+class BatchLinearisation(NamedTuple):
     """Residual and tangent.
 
     Attributes
@@ -113,7 +113,6 @@ class Equations:
         from scipy.sparse import csr_array
 
         self.model = model
-        self.turning = model.kind == 2
         elements = len(model.element_nodes)
         element, entry, i = _everything(elements, 4, 6)
         where = (model.dofs[i, element], entry * elements + element)
@@ -129,39 +128,41 @@ class Equations:
         shape = (model.banded * length, 10 * elements)
         self.spread = csr_array((values[keep], where), shape=shape)
 
-    def linearise(self, numbers: Numbers, at: Points) -> System:
+    def linearise(self, constants: BatchConstants, at: Configurations) -> BatchLinearisation:
         """Residual and tangent at some configurations."""
         model, count = self.model, at.q.shape[-1]
-        force, entries = beam.reduced_response(numbers.coefficients, at.q[model.dofs])
+        force, entries = beam.reduced_response(constants.coefficients, at.q[model.dofs])
         unknowns = model.contact_unknowns
         own = np.zeros((unknowns, count))
         right = np.zeros((1 + unknowns, model.equations + 1, count))
         corner = np.zeros((unknowns, unknowns, count))
-        closings = [self._contact(numbers, at, k) for k in range(len(model.pairs))]
+        closings = [self._contact(constants, at, k) for k in range(len(model.pairs))]
         for which, e, gradient, block in closings:
             force[:, e, which] += gradient[:4]
             entries[:, e, which] += block[:10]
         nodal = self.gather @ force.reshape(-1, count)
         for k, closing in enumerate(closings):
-            self._enter(numbers, at, k, closing, (nodal, own, right, corner))
+            self._enter(constants, at, k, closing, (nodal, own, right, corner))
         for k in range(len(closings)):
             for other in range(k):
-                self._share(numbers, at, (other, k), own, corner)
-        return System(nodal, own, entries, right, corner)
+                self._share(constants, at, (other, k), own, corner)
+        return BatchLinearisation(nodal, own, entries, right, corner)
 
-    def _contact(self, numbers: Numbers, at: Points, k: int) -> tuple[Array, Array, Array, Array]:
+    def _contact(
+        self, constants: BatchConstants, at: Configurations, k: int
+    ) -> tuple[Array, Array, Array, Array]:
         """Structures in which pair k is closed, its owner, gradient (7, m) and tangent (37, m) in reduced variables."""
         which = np.flatnonzero(at.closed[k])
         e = at.element[k, which]
-        p = properties_of(numbers, e, which)
+        p = properties_of(constants, e, which)
         x = at.q[self.model.dofs[:, e], which]
-        offset = numbers.offset[k, which]
+        offset = constants.offset[k, which]
         gradient, hessian = coupling_of(self.model.pairs[k]).jet(
             p,
             x,
             at.xi[k, which],
             at.force[k][:, which],
-            numbers.side[k, which],
+            constants.side[k, which],
             offset if offset.any() else 0.0,
         )
         gradient, block = _FORCE @ gradient, _TANGENT @ hessian
@@ -172,8 +173,8 @@ class Equations:
 
     def _enter(
         self,
-        numbers: Numbers,
-        at: Points,
+        constants: BatchConstants,
+        at: Configurations,
         k: int,
         closing: tuple[Array, Array, Array, Array],
         system: tuple[Array, Array, Array, Array],
@@ -188,9 +189,9 @@ class Equations:
         if not len(e):
             return
         dofs, F = model.dofs[:, e], at.force[k][:, which]
-        start = numbers.coordinates[model.element_nodes[e, 0], :, which].T + at.q[dofs[:2], which]
+        start = constants.coordinates[model.element_nodes[e, 0], :, which].T + at.q[dofs[:2], which]
         nodal[dofs[:2], which] -= F
-        node = self.node(numbers, at, k, which)
+        node = self.node(constants, at, k, which)
         own[slots, which] = gradient[4:]
         own[slots.start : slots.start + 2, which] -= start - node
         columns = block[10:28].reshape(OWN, 6, -1)
@@ -206,7 +207,9 @@ class Equations:
             for c in range(2):
                 right[1 + pair.slot + c, model.equation[dof + c], which] += 1.0
 
-    def _share(self, numbers: Numbers, at: Points, pairs: tuple[int, int], own: Array, corner: Array) -> None:
+    def _share(
+        self, constants: BatchConstants, at: Configurations, pairs: tuple[int, int], own: Array, corner: Array
+    ) -> None:
         """Let two contacts feel each other's dent where they are on one element."""
         together = at.closed[list(pairs)].all(axis=0) & (at.element[pairs[0]] == at.element[pairs[1]])
         ordered = at.xi[pairs[0]] <= at.xi[pairs[1]]
@@ -214,7 +217,7 @@ class Equations:
             which = np.flatnonzero(together & where)
             if not len(which):
                 continue
-            p = properties_of(numbers, at.element[one, which], which)
+            p = properties_of(constants, at.element[one, which], which)
             xi = (at.xi[one, which], at.xi[two, which])
             coupling = coupling_of(self.model.pairs[one])
             gradient, block = coupling.crossing(p, xi, at.force[one][:, which], at.force[two][:, which])
@@ -222,17 +225,17 @@ class Equations:
             own[rows[:, None], which] += gradient
             corner[rows[:, None, None], rows[:, None], which] += block
 
-    def node(self, numbers: Numbers, at: Points, k: int, which: Array) -> Array:
+    def node(self, constants: BatchConstants, at: Configurations, k: int, which: Array) -> Array:
         """Positions of pair k's contacting node in some structures, shape (2, m)."""
         pair = self.model.pairs[k]
         if pair.pin is not None:
             pin: Array = at.node[k][:, which]
             return pin
         dof = 3 * pair.node
-        position: Array = numbers.coordinates[pair.node][:, which] + at.q[dof : dof + 2][:, which]
+        position: Array = constants.coordinates[pair.node][:, which] + at.q[dof : dof + 2][:, which]
         return position
 
-    def solve(self, system: System) -> tuple[Array, Array, Array]:
+    def solve(self, system: BatchLinearisation) -> tuple[Array, Array, Array]:
         """Newton's step of the equations and of the contact unknowns, and the sign of the determinant."""
         model, count = self.model, system.nodal.shape[-1]
         band = self.spread @ system.entries.reshape(-1, count)
@@ -247,6 +250,6 @@ def _everything(*sizes: int) -> list[Array]:
     return [part.ravel() for part in np.indices(sizes)]
 
 
-def properties_of(numbers: Numbers, e: Array, which: Array) -> Properties:
+def properties_of(constants: BatchConstants, e: Array, which: Array) -> Properties:
     """Constants of one element of each of some structures."""
-    return Properties(*(column[e, which] for column in numbers.properties))
+    return Properties(*(column[e, which] for column in constants.properties))
