@@ -5,10 +5,10 @@ After such a step the node is nowhere over the beam, so that no gap tells of the
 
 from __future__ import annotations
 
-from tsm.contact import Projection, project
 from tsm.events import ROUND_OFF
 from tsm.model import Model, PairModel
 from tsm.predictor import extrapolate
+from tsm.projection import Projection
 from tsm.root import find_root
 from tsm.state import State
 
@@ -35,7 +35,7 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
     """
     found = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
-        if after.touches[k] is None and armed and not _over(model, last := project(model, pair, after)):
+        if after.touches[k] is None and armed and not _over(model, last := pair.group.project(pair, after)):
             t = _passage(model, pair, before, after, last.gap)
             if t is not None:
                 found.append((t, k))
@@ -51,9 +51,9 @@ def _passage(model: Model, pair: PairModel, before: State, after: State, gap: fl
     t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
 
     def seen(t: float) -> Projection:
-        return project(model, pair, extrapolate(model, [before, after], t))
+        return pair.group.project(pair, extrapolate(model, [before, after], t))
 
-    first = project(model, pair, before)
+    first = pair.group.project(pair, before)
     if gap >= -small or first.gap < -small:
         return None
     if first.gap <= small:

@@ -21,10 +21,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
-from tsm.contact import arc_position, project
 from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
+from tsm.projection import arc_position
 from tsm.root import find_root
 
 ROUND_OFF = 1e-10
@@ -112,12 +112,7 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     fx, fy = equilibrium.system.forces[k]
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
-    if model.pairs[k].cuts:
-        dx, dy = math.cos(touch.angle), math.sin(touch.angle)
-    else:
-        i, j = model.element_nodes[touch.element]
-        q = equilibrium.state.q
-        dx, dy = model.coordinates[j] - model.coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
+    dx, dy = model.pairs[k].group.direction(touch, equilibrium.state.q)
     push = model.pairs[k].side * (fy * dx - fx * dy)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if push >= 0 else -size
@@ -181,7 +176,7 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
                 room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
                 found.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
-            seen = project(model, pair, state)
+            seen = pair.group.project(pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length
             found.append(Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0))
     return found

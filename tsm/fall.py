@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsm.contact import project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, EventKind, Margin
 from tsm.model import Model
@@ -105,7 +104,7 @@ def _before(model: Model, state: State) -> set[int]:
     found = set()
     for k, (pair, touch, armed) in enumerate(zip(model.pairs, state.touches, state.armed, strict=True)):
         if touch is None and armed:
-            seen = project(model, pair, state)
+            seen = pair.group.project(pair, state)
             if seen.overshoot <= small and seen.gap >= -small:
                 found.add(k)
     return found

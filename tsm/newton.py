@@ -9,11 +9,11 @@ import numpy as np
 
 from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
+from tsm.groups import Change
 from tsm.model import Model
-from tsm.rods.accuracy import finer, inaccurate
 from tsm.scaling import SHARP, largest, scales_of
 from tsm.settings import Settings
-from tsm.state import Profile, State, Touch
+from tsm.state import State, Touch
 from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation
 
@@ -124,8 +124,8 @@ class Newton:
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
-        norm = float(largest(system.residual, self.scale))
-        return norm if system.rods is None else max(norm, system.rods.inside / SHARP)
+        inside = max(forces.inside for forces in system.groups)
+        return max(float(largest(system.residual, self.scale)), inside / SHARP)
 
     def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
         """Iterate from a start to equilibrium.
@@ -174,7 +174,7 @@ class Newton:
                 )
             taken = _Iteration(state, system, *step, residual)
             state = self._after(taken)
-            last = taken if self.model.rods else None
+            last = taken if self.assembler.internal else None
         raise AssertionError("the last iteration returns")
 
     def _step(self, state: State, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
@@ -206,18 +206,22 @@ class Newton:
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
 
     def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
-        """State with more Gauss nodes where it comes near equilibrium, or in it, and those of the exact elements are too few."""
-        rods = self.model.rods
-        if rods is None or system.rods is None or not residuals[-1] <= _NEAR:
+        """State with a finer integration inside the elements, where it comes near equilibrium, or in it, and needs one."""
+        near = residuals[-1] <= _NEAR
+        if not near or (
+            len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system)
+        ):
             return None
-        if len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system):
-            return None
-        return finer(rods, state, system.rods, self.accuracy)
+        refined = (
+            group.refined(state, forces, self.accuracy)
+            for group, forces in zip(self.model.groups, system.groups, strict=True)
+        )
+        return next((finer for finer in refined if finer is not None), None)
 
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
-        rods = self.model.rods
-        if rods and system.rods and inaccurate(rods, system.rods, self.accuracy):
+        groups = zip(self.model.groups, system.groups, strict=True)
+        if any(group.inaccurate(forces, self.accuracy) for group, forces in groups):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
@@ -272,19 +276,18 @@ class Newton:
         q[model.free] += factor * dq
         if not np.isfinite(size):
             return replace(state, q=q)
-        profile, rods = state.profile, system.tangent.rods
-        if model.rods and rods and profile:
-            change = np.zeros(model.dof_count)
-            change[model.free], change[model.fixed] = dq, along * model.fixed_values
-            inside = model.rods.inside(rods, state, change, dz, float(residual))
-            profile = Profile(cuts=profile.cuts, angle=profile.angle + factor * inside)
+        dofs = np.zeros(model.dof_count)
+        dofs[model.free], dofs[model.fixed] = dq, along * model.fixed_values
+        change = Change(dofs, dz, float(residual), factor)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,
             touches=state.touches,
             armed=state.armed,
-            profile=profile,
+            profile=state.profile,
         )
+        for group, tangent in zip(model.groups, system.tangent.groups, strict=True):
+            moved = group.with_change(state, moved, tangent, change)
         if not state.touches:
             return moved
         own = (factor * dz).tolist()

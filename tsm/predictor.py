@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tsm.contact import arc_position, handed_over
+from tsm.contact import handed_over
 from tsm.contact_set import owned
 from tsm.model import Model, PairModel
-from tsm.rods.profile import alike
+from tsm.projection import arc_position
 from tsm.state import State, Touch
 
 
@@ -29,8 +29,8 @@ def weighted(weights: Sequence[Any], values: Iterable[Any]) -> Any:
 
 def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
-    if model.rods:
-        history = alike(model.rods, history)
+    for group in model.groups:
+        history = group.alike(history)
     weights = weights_at([state.load_parameter for state in history], t)
     last = history[-1]
     moved = replace(last, load_parameter=t, q=weighted(weights, [state.q for state in history]))

@@ -51,7 +51,7 @@ def scales_of(model: Model, coordinates: Array, properties: Properties, sizes: S
     step = np.array([way, way, turn, free, free, free, free, free, way, turn])
     EA, EI, l0 = (value[model.closed] for value in (properties.EA, properties.EI, properties.l0))
     noise = ROUND_OFF * (EA * extent / l0 + EI / l0**2).max(axis=0, initial=0.0) / force
-    if len(model.kind) > model.equations or len(model.exact):
+    if len(model.kind) > model.equations or any(group.internal for group in model.groups):
         axes = tuple(range(coordinates.ndim - np.ndim(length)))
         noise = np.maximum(noise, ROUND_OFF * np.abs(coordinates).max(axis=axes) / (SHARP * length))
     return Scales(residual[model.kind], step[model.kind], noise)

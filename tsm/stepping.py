@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
-from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.critical import (
     CriticalKind,
@@ -37,6 +36,7 @@ from tsm.fall import Fall, descends, met
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
+from tsm.projection import arc_position
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
@@ -316,7 +316,7 @@ class Stepper:
         k, pair = margin.pair, self.model.pairs[margin.pair]
         if margin.value < -ROUND_OFF:
             return changed(self.model, state, k, None, armed=False)
-        seen = project(self.model, pair, state)
+        seen = pair.group.project(pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
         self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)

@@ -21,10 +21,11 @@ import tsm
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models.translate import to_rod, to_structure
 from comparisons.scene import load_scene
-from tsm import contact, contact_set, newton, path
+from tsm import path
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
+from tsm.groups import exact
 from tsm.rods import assembly, profile, shape
 from tsm.rods.assembly import Rods
 from tsm.rods.layout import layout
@@ -210,7 +211,7 @@ def axis_by_steps(rods: Rods, state: State, *_: Any) -> shape.RodShape:
 @contextmanager
 def fixed() -> Iterator[None]:
     """Keep the accuracy inside exact elements as it is, and count no index: it is made from Gauss nodes."""
-    with patch.object(newton, "finer", lambda *_: None), patch.object(path, "index", lambda *_: 0):
+    with patch.object(exact, "finer", lambda *_: None), patch.object(path, "index", lambda *_: 0):
         yield
 
 
@@ -219,10 +220,10 @@ def explicit(steps: int) -> Iterator[None]:
     """Integrate exact elements by DOP853."""
     with (
         patch.object(assembly, "rod", Explicit(steps)),
-        patch.object(contact_set, "undeformed", starts_undeformed),
+        patch.object(exact, "undeformed", starts_undeformed),
         patch.object(profile, "sampled", starts_sampled),
         patch.object(profile, "plain_shape", axis_by_steps),
-        patch.object(contact, "deflected", axis_by_steps),
+        patch.object(exact, "deflected", axis_by_steps),
         fixed(),
     ):
         yield

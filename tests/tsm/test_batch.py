@@ -17,7 +17,6 @@ from tsm.batch.constants import constants_of, take
 from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import project
-from tsm.contact import project as project_one
 from tsm.elements import mixed_contact
 from tsm.elements.properties import Properties
 from tsm.model import Model
@@ -394,7 +393,7 @@ def test_projection_is_that_of_one_structure() -> None:
         seen = project(equations, constants, at, k, np.arange(len(structures)))
         for n, structure in enumerate(structures):
             own = Model(structure)
-            expected = project_one(own, own.pairs[k], alone(at, n))
+            expected = own.pairs[k].group.project(own.pairs[k], alone(at, n))
             got = (*(float(value[n]) for value in seen),)
             assert got == pytest.approx(tuple(map(float, expected)), abs=1e-9)
 

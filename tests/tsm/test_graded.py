@@ -11,8 +11,8 @@ import tsm
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from tsm.contact import arc_position, slide
 from tsm.model import Model
+from tsm.projection import arc_position, slide
 
 T = np.linspace(0.05, 1.0, 20)
 

@@ -101,8 +101,6 @@ def constants_of(structures: Sequence[Structure], model: Model) -> BatchConstant
         arcs.append(arc[:-1])
     l0 = np.concatenate(lengths)
     properties = model.properties_of(coordinates, l0, table[:, 5:].transpose(1, 0, 2))
-    coefficients = model.coefficients_of(properties)
-    assert coefficients is not None, "the elements are in closed form"
     sizes = model.sizes_of(coordinates, table[:, 4], table[:, 7])
     beams = [list(model.beams).index(pair.pair.beam) for pair in model.pairs]
     sides = [[1.0 if pair.side == "right" else -1.0 for pair in s.contacts] for s in structures]
@@ -110,7 +108,7 @@ def constants_of(structures: Sequence[Structure], model: Model) -> BatchConstant
     return BatchConstants(
         coordinates=coordinates,
         properties=properties,
-        coefficients=coefficients,
+        coefficients=model.coefficients_of(properties),
         arc=np.concatenate(arcs),
         span=table[beams, 4],
         side=np.array(sides).T.copy(),

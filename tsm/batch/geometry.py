@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm import contact
+from tsm import projection
 from tsm.batch.constants import BatchConstants
 from tsm.batch.equations import Configurations, Equations, coupling_of, properties_of
 from tsm.elements.curve import Curve
@@ -15,7 +15,7 @@ from tsm.model import BeamModel
 
 
 class Projections(NamedTuple):
-    """Closest points of a beam's axis, each of shape (m,), see `tsm.contact.Projection`."""
+    """Closest points of a beam's axis, each of shape (m,), see `tsm.projection.Projection`."""
 
     element: Array
     xi: Array
@@ -26,7 +26,7 @@ class Projections(NamedTuple):
 def slide(
     l0: Array, target: BeamModel, element: Array, xi: Array, which: Array, past: float = 0.0
 ) -> tuple[Array, Array]:
-    """Hand positions that left their element over to the neighbours, see `tsm.contact.slide`.
+    """Hand positions that left their element over to the neighbours, see `tsm.projection.slide`.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def slide(
         return element, xi
     element, xi, own = element.copy(), xi.copy(), slice(target.first, target.last + 1)
     for n, lengths in zip(outside.tolist(), l0[own, which[outside]].T.tolist(), strict=True):
-        k, xi[n] = contact.slide(lengths, int(element[n]) - target.first, float(xi[n]), past)
+        k, xi[n] = projection.slide(lengths, int(element[n]) - target.first, float(xi[n]), past)
         element[n] = target.first + k
     return element, xi
 
@@ -82,16 +82,16 @@ def project(
     node = equations.node(constants, at, k, which)
     nodes = pair.target.nodes
     shift = at.q[3 * nodes[:, None] + np.arange(2)][..., which]
-    owner, xi = contact.project_on_chords(constants.coordinates[nodes][..., which] + shift, node)
-    element = pair.target.first + owner
+    owner, xis = projection.project_on_chords(constants.coordinates[nodes][..., which] + shift, node)
+    element, xi = pair.target.first + owner, xis[owner, np.arange(len(which))]
     l0 = constants.properties.l0
-    for _ in range(contact.PROJECTIONS):
+    for _ in range(projection.PROJECTIONS):
         p, x = properties_of(constants, element, which), at.q[model.dofs[:, element], which]
         curve = Curve(p, x)
         start = constants.coordinates[model.element_nodes[element, 0], :, which].T
         step, (px, py), (tx, ty) = curve.approach(xi, *(start + x[:2] - node))
         element, xi = slide(l0, pair.target, element, xi - step, which)
-        if not (np.abs(step) >= contact.PROJECTED).any():
+        if not (np.abs(step) >= projection.PROJECTED).any():
             break
     coupling = coupling_of(pair)
     for other in range(len(model.pairs)):

@@ -27,12 +27,12 @@ from tsm.batch.state import (
     states_of,
     undeformed,
 )
-from tsm.contact import AT_NODE
 from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Passage
 from tsm.model import Model
 from tsm.newton import LONGEST
+from tsm.projection import AT_NODE
 from tsm.scaling import largest
 from tsm.settings import Settings
 from tsm.status import Status

@@ -9,9 +9,9 @@ import numpy as np
 from tsm.batch.constants import BatchConstants
 from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import slide
-from tsm.contact import AT_NODE
 from tsm.elements.properties import Array
 from tsm.predictor import weighted, weights_at
+from tsm.projection import AT_NODE
 from tsm.state import State, Touch
 from tsm.track import MEMORY
 

@@ -89,8 +89,8 @@ class RodBalance(NamedTuple):
         The segments.
     arrival : rod.Arrival
         Their residuals.
-    residual : ndarray, shape (9, r)
-        On node i, of the arrival at node j, and on node j.
+    nodal : ndarray, shape (9, r)
+        Forces on node i, arrival at node j, forces on node j.
     contacts : dict of list
         By pair: the rows of position (2), direction and arrival of the angle.
     tangents : dict of tuple
@@ -101,10 +101,16 @@ class RodBalance(NamedTuple):
 
     entry: Entry
     arrival: Arrival
-    residual: Array
+    nodal: Array
     contacts: dict[int, list[Any]]
     tangents: dict[int, tuple[rod.Tangent, rod.Tangent]]
     inside: float
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, r)."""
+        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
+        return ends
 
 
 class CutElement(NamedTuple):
@@ -133,7 +139,7 @@ class RodTangent(NamedTuple):
 
     Attributes
     ----------
-    carried : ndarray, shape (9, r)
+    condensed_residual : ndarray, shape (9, r)
         What the residual inside adds to the residual once it is eliminated.
     tangent : ndarray, shape (81, r)
         Derivative of the residual, row by row.
@@ -145,7 +151,7 @@ class RodTangent(NamedTuple):
         Derivatives of their outputs, see `rod.Condensed`.
     """
 
-    carried: Array
+    condensed_residual: Array
     tangent: Array
     cut: tuple[CutElement, ...]
     inner: Array
@@ -161,12 +167,21 @@ class Memo(NamedTuple):
 
 
 class Rods:
-    """The exact elements of a model."""
+    """The exact elements of a model.
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.dofs = model.exact_dofs
-        nodes, exact = model.element_nodes[model.exact], model.exact
+    Parameters
+    ----------
+    model : Model
+        The structure.
+    dofs : ndarray of int, shape (9, r)
+        Degrees of freedom of the elements.
+    exact : ndarray of int, shape (r,)
+        Global numbers of the elements.
+    """
+
+    def __init__(self, model: Model, dofs: Array, exact: Array) -> None:
+        self.model, self.dofs = model, dofs
+        nodes = model.element_nodes[exact]
         self.start, self.end = model.coordinates[nodes[:, 0]].T, model.coordinates[nodes[:, 1]].T
         p = model.properties
         self.angle0 = np.arctan2(p.dy0[exact], p.dx0[exact])
@@ -262,7 +277,7 @@ class Rods:
         tangent[:] = FIXED
         transfer = condensed.transfer[first]
         tangent[:, ROWS[:, None], COLUMNS] = transfer[:, :, :5]
-        carried = np.zeros_like(balance.residual)
+        carried = np.zeros_like(balance.nodal)
         carried[ROWS] = transfer[:, :, 6].T
         cut = tuple(
             self._cut(state, e, pairs, balance, condensed.transfer) for e, pairs in profile_of(state).cuts

@@ -33,11 +33,12 @@ def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
     return Profile(cuts=cuts, angle=np.repeat(rods.angle0[owner][:, None], START_ORDER, axis=1))
 
 
-def recut(rods: Rods, state: State, touches: tuple[Touch | None, ...]) -> State:
-    """State with other touches, its profile cut where they are; a new touch takes the angle that it finds."""
+def recut(rods: Rods, state: State, after: State) -> State:
+    """State `after`, which has other touches, with its profile cut where they are; a new touch takes the angle that it finds."""
+    touches = after.touches
     cuts = cuts_of(rods, touches)
     if cuts == profile_of(state).cuts:
-        return replace(state, touches=touches)
+        return after
     shape, given, q = plain_shape(rods, state, rods.enter(state)), list(touches), state.q.copy()
     for element, pairs in cuts:
         for k in pairs:
@@ -48,7 +49,7 @@ def recut(rods: Rods, state: State, touches: tuple[Touch | None, ...]) -> State:
                 given[k] = replace(touch, angle=float(angle))
             else:
                 _shift(rods, q, old.element, touch)
-    cut = replace(state, q=q, touches=tuple(given))
+    cut = replace(after, q=q, touches=tuple(given))
     return sampled(rods, shape, cut, cuts, profile_of(state).angle.shape[1])
 
 
