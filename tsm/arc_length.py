@@ -144,9 +144,9 @@ class _Path:
         self.growth = min(2 * self.growth, 1.0)
         return self._record(there, cutbacks, events), Status.CONVERGED
 
-    def _record(self, at: Equilibrium, cutbacks: int, events: tuple[Event, ...] = ()) -> Step:
+    def _record(self, equilibrium: Equilibrium, cutbacks: int, events: tuple[Event, ...] = ()) -> Step:
         return Step(
-            equilibrium=at,
+            equilibrium=equilibrium,
             requested=True,
             status=Status.CONVERGED,
             iterations=self.iterations,
@@ -154,9 +154,9 @@ class _Path:
             events=events,
         )
 
-    def _direction(self, at: Equilibrium, last: _Direction | None) -> _Direction | None:
+    def _direction(self, equilibrium: Equilibrium, last: _Direction | None) -> _Direction | None:
         """Direction of the path in the sense of the last one; at first, towards an increasing load."""
-        t, tangent = at.state.load_parameter, PathTangent(self.newton, at)
+        t, tangent = equilibrium.state.load_parameter, PathTangent(self.newton, equilibrium)
         x = tangent.rates(t, t)
         if x is None:
             return None

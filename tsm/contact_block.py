@@ -62,7 +62,7 @@ class Units:
         self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
         self.corner = self.rows[banded:, None] * self.columns[banded:]
 
-    def without(self, tangent: Bordered, given: Array) -> tuple[Bordered, Array]:
+    def without(self, tangent: Bordered, sides: Array) -> tuple[Bordered, Array]:
         """Tangent and right-hand sides as plain numbers."""
         plain = tangent._replace(
             band=tangent.band * self.band,
@@ -70,7 +70,7 @@ class Units:
             below=tangent.below * self.below,
             corner=tangent.corner * self.corner,
         )
-        return plain, given * self.rows[:, None]
+        return plain, sides * self.rows[:, None]
 
 
 class ContactBlock:

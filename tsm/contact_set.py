@@ -1,4 +1,4 @@
-"""The set of closed contacts: how it starts, how it changes, when an open pair may close, what may not open."""
+"""The set of closed contacts: its start, its changes, which open pairs may close, and which closed ones may not open."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def locate_bifurcation(
     Returns
     -------
     Equilibrium or None
-        None where the path is not found between the two ends.
+        Equilibrium at the point, None where the path is not found between the two ends.
     """
     _, v = _bordered(newton, before.system)
     weights = newton.per_step**2
@@ -144,8 +144,8 @@ def critical_point(
     newton: Newton, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float
 ) -> CriticalPoint:
     """Critical point with the mode of the tangent at an equilibrium beside it."""
-    found = mode_shape(newton, equilibrium)
-    shapes = {} if found is None else found[1]
+    shape = mode_shape(newton, equilibrium)
+    shapes = {} if shape is None else shape[1]
     return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
 
 
@@ -158,14 +158,14 @@ def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[st
         Change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the axes; None without a single mode.
     """
     model, state = newton.model, equilibrium.state
-    found = mode(newton.assembler, state, equilibrium.system)
-    if found is None:
+    soft = mode(newton.assembler, state, equilibrium.system)
+    if soft is None:
         return None
-    moved = newton.update(state, found.x * _SHIFT, equilibrium.system)
+    moved = newton.update(state, soft.x * _SHIFT, equilibrium.system)
     system = newton.assembler.linearise(moved)
     shapes = {
         beam: axis_line(model, moved, system, beam)[1] - axis_line(model, state, equilibrium.system, beam)[1]
         for beam in model.beams
     }
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
-    return found.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+    return soft.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}

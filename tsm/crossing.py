@@ -33,13 +33,13 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
     tuple or None
         Load parameter and number of the pair.
     """
-    found = []
+    crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
         if after.touches[k] is None and armed and not _over(model, last := pair.group.project(pair, after)):
             t = _passage(model, pair, before, after, last.gap)
             if t is not None:
-                found.append((t, k))
-    return min(found, default=None)
+                crossings.append((t, k))
+    return min(crossings, default=None)
 
 
 def _over(model: Model, seen: Projection) -> bool:

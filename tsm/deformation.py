@@ -1,4 +1,4 @@
-"""How much elements bend and strain on the way: what their shape functions and strain measures have to bear."""
+"""Largest bending and strain of the elements along the path, to be compared with what their approximations allow."""
 
 from __future__ import annotations
 

@@ -160,26 +160,28 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]
 
 
 def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:
-    """Margins of the events that may come next, those of forces over the solution's own tolerance."""
+    """Margins of the events that may come next; forces are measured by the tolerance of the solution."""
     state = equilibrium.state
-    found: list[Margin] = []
+    upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if touch is not None:
             arc = arc_position(pair.target, touch.element, touch.xi)
             inside = min(arc, pair.target.beam.length - arc) / model.length
             force = normal_force(model, equilibrium, k) / model.force_scale
-            found.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
-            found.append(
+            upcoming.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
+            upcoming.append(
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
             if pair.pair.offset > 0:
                 room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
-                found.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
+                upcoming.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
             seen = pair.group.project(pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length
-            found.append(Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0))
-    return found
+            upcoming.append(
+                Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0)
+            )
+    return upcoming
 
 
 def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:

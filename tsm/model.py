@@ -135,8 +135,8 @@ class Model:
     dofs : ndarray of int, shape (6, elements)
         Degrees of freedom of the elements' nodes, three per node.
     groups : list of ElementGroup
-        The elements by the way in which they are stated. The force and moment of an exact element are three degrees of freedom, after
-        those of the nodes.
+        The elements by the way in which they are stated. The force and moment of an exact element are three degrees of freedom, numbered
+        after the nodes.
     closed : ndarray of int, shape (c,)
         Elements in closed form.
     place : ndarray of int, shape (elements,)
@@ -434,8 +434,8 @@ class Model:
         for beam in self.beams.values():
             kind = ELEMENTS[beam.beam.element]
             if isinstance(kind, ClosedForm):
-                own = Properties(*(column[beam.first : beam.last + 1] for column in properties))
-                parts.append(kind.coefficients(own))
+                properties_there = Properties(*(column[beam.first : beam.last + 1] for column in properties))
+                parts.append(kind.coefficients(properties_there))
         axis = -properties.l0.ndim
         return Coefficients(*(np.concatenate(part, axis=axis) for part in zip(*parts, strict=True)))
 

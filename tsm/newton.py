@@ -1,4 +1,4 @@
-"""Equilibrium at one load parameter. Never raises: what was reached comes back with a status."""
+"""Newton's method. It never raises: the last iterate comes back with a status."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _CRITICAL = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """A configuration, how far from equilibrium it is, and what it took.
+    """A configuration with its residual, and the iterations that led to it.
 
     Attributes
     ----------
@@ -290,9 +290,9 @@ class Newton:
             moved = group.with_change(state, moved, tangent, change)
         if not state.touches:
             return moved
-        own = (factor * dz).tolist()
+        dz_taken = (factor * dz).tolist()
         touches = tuple(
-            self._moved(k, moved, touch, own) if touch is not None else None
+            self._moved(k, moved, touch, dz_taken) if touch is not None else None
             for k, touch in enumerate(state.touches)
         )
         return handed_over(model, moved, touches)

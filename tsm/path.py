@@ -5,8 +5,8 @@ tangents at both its ends explain it: with the displacements q, their rates q' a
 
     |q_B - q_A - h q'_A| <= c |q_B - q_A|,    |q_B - q_A - h q'_B| <= c |q_B - q_A|
 
-An equilibrium of another branch is not where the tangent at A leads, nor does its own tangent lead back to A. What decides is
-therefore the path itself and not where its load parameters are prescribed.
+The tangent at A does not lead to an equilibrium of another branch, nor does the tangent there lead back to A. The decision therefore depends on
+the path, and not on the prescribed load parameters.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class PathTangent:
             return self.newton.prescribed(state, t)
         return self.newton.update(state, (t - state.load_parameter) * rates, self.system, t=t)
 
-    def missed(self, before: State, after: State) -> float:
+    def unexplained(self, before: State, after: State) -> float:
         """Part of the step between two states that the tangent does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
         model, newton = self.newton.model, self.newton
         step = (after.q - before.q)[model.free]

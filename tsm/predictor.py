@@ -17,8 +17,8 @@ from tsm.state import State, Touch
 def weights_at(times: Sequence[Any], t: Any) -> list[Any]:
     """Weights, at t, of values at earlier times in the polynomial through them (Lagrange): numbers, or arrays over many structures."""
     return [
-        math.prod((t - other) / (own - other) for k, other in enumerate(times) if k != n)
-        for n, own in enumerate(times)
+        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
+        for n, time in enumerate(times)
     ]
 
 

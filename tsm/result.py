@@ -1,4 +1,4 @@
-"""What a solution states: histories over the prescribed load parameters, shapes, section forces."""
+"""Result of a solution: histories over the prescribed load parameters, shapes, section forces."""
 
 from __future__ import annotations
 
@@ -253,8 +253,8 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     if touch is not None:
         left = 0.0
         if pair.slot >= 0:
-            own = equilibrium.system.residual[model.equations + pair.slot :]
-            left = float(np.hypot(own[0], own[1]))
+            residual = equilibrium.system.residual[model.equations + pair.slot :]
+            left = float(np.hypot(residual[0], residual[1]))
         arc = arc_position(pair.target, touch.element, touch.xi)
         return normal_force(model, equilibrium, k), arc, left
     seen = pair.group.project(pair, state)
@@ -271,8 +271,8 @@ def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, Su
     for name, node in model.support_node.items():
         nodes.setdefault(name.rpartition(".")[0], []).append(node)
     tables = {
-        beam: np.array([forces[own] for forces in reactions]).reshape(-1, len(own), 3)
-        for beam, own in nodes.items()
+        beam: np.array([forces[held_nodes] for forces in reactions]).reshape(-1, len(held_nodes), 3)
+        for beam, held_nodes in nodes.items()
     }
     return {
         beam: SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])

@@ -40,7 +40,7 @@ class Scales(NamedTuple):
 def scales_of(model: Model, coordinates: Array, properties: Properties, sizes: Sizes) -> Scales:
     """Scales from the constants of the elements and the sizes; forces are counted in ``EI/L^2``, positions in L/1000.
 
-    Round-off is ``4 eps (EA L/l0 + EI/l0^2)`` of an element in closed form, and that of the node positions where positions are equations.
+    Round-off is ``4 eps (EA L/l0 + EI/l0^2)`` for an element in closed form, and ``4 eps`` of the node positions where positions are equations.
     """
     length, extent, _, force = sizes
     one = np.ones_like(length)

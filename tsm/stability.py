@@ -60,16 +60,17 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Parameters
     ----------
     assembler : Assembler
-        Of the model.
+        Assembler of the model.
     state : State
-        In equilibrium under the model's own loads.
+        Configuration in equilibrium under the model's own loads.
     system : Linearisation
-        There.
+        Residual and tangent at that state.
 
     Returns
     -------
     int
-        Of an exact element with more than some hundred modes a lower bound; -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        Number of negative eigenvalues; for an exact element with more than a few hundred modes, a lower bound. -1 where there is no index: a
+        singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
         force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
     """
     for forces in system.groups:
@@ -79,10 +80,10 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
         symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
         return UNDEFINED
-    found = negatives(symmetric)
-    if found is None:
+    counted = negatives(symmetric)
+    if counted is None:
         return UNDEFINED
-    held = found - symmetric.multipliers
+    held = counted - symmetric.multipliers
     model = assembler.model
     idle = [
         slot
@@ -114,11 +115,11 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
     Parameters
     ----------
     assembler : Assembler
-        Of the model.
+        Assembler of the model.
     state : State
-        In equilibrium.
+        Configuration in equilibrium.
     system : Linearisation
-        There.
+        Residual and tangent at that state.
 
     Returns
     -------
@@ -199,13 +200,13 @@ def _with_variation(
     model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
     mixed = len(model.groups) > 1
     known = system.tangent.groups[group.number] if mixed or "tangent" in system.__dict__ else None
-    found = variation(group.rods, state, balance, known.transfer if known else None)
+    second = variation(group.rods, state, balance, known.transfer if known else None)
     border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
-    moments = [part.moments for part in found.bordered]
-    angles = [part.slots.count(-1) - part.moments for part in found.bordered]
+    moments = [part.moments for part in second.bordered]
+    angles = [part.slots.count(-1) - part.moments for part in second.bordered]
     right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
     corner = np.eye(right.shape[1])
-    values = found.tangent.reshape(len(found.tangent), -1).T
+    values = second.tangent.reshape(len(second.tangent), -1).T
     if mixed:
         tangent = system.tangent
         values = values - tangent.groups[group.number].tangent
@@ -220,7 +221,7 @@ def _with_variation(
         added = np.bincount(assembler.scatter_right[before:], flat, assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
     spare = border
-    for part in found.bordered:
+    for part in second.bordered:
         own, spare = _columns(part, aside, spare)
         if mixed:
             right[:, own] = corner[own] = corner[:, own] = 0.0

@@ -45,7 +45,7 @@ from tsm.step_control import StepControl, allowed
 from tsm.track import FAR, Track
 
 _STRAIGHT = 0.02
-"""A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
+"""A step that changes the index has passed a bifurcation if its tangents leave less than this part of it unexplained; it may have left the path otherwise."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
 _NEAR = 1e-9
@@ -173,14 +173,14 @@ class Stepper:
     def _advance(self, reached: Equilibrium) -> Status:
         """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
         before, tangent = self.accepted.state, PathTangent(self.newton, reached)
-        missed = max(self.track.missed(at, reached) for at in (self.track.tangent, tangent))
-        fitting = allowed(missed)
-        if missed > FOLLOWED:
+        unexplained = max(self.track.unexplained(end, reached) for end in (self.track.tangent, tangent))
+        fitting = allowed(unexplained)
+        if unexplained > FOLLOWED:
             return self.control.refuse(fitting)
         old, new = self.track.index, tangent.index
         changed = 0 <= new != old and (new > old or self.track.tangent.index == old)
         if changed:
-            if missed > _STRAIGHT:
+            if unexplained > _STRAIGHT:
                 return self.control.refuse()
             return self._meet_bifurcation(reached, tangent)
         self._accept(reached, tangent)
@@ -189,45 +189,45 @@ class Stepper:
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
-        at = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
-        if at is None:
+        singular = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
+        if singular is None:
             return self.control.refuse()
-        self._note_critical(CriticalKind.BIFURCATION, at, at.state.load_parameter)
+        self._note_critical(CriticalKind.BIFURCATION, singular, singular.state.load_parameter)
         primary = self.settings.branch == "primary"
-        self._accept(reached if primary else at)
+        self._accept(reached if primary else singular)
         if primary:
             return Status.CONVERGED
-        return self._turn(at) if self.settings.branch == "stable" else Status.BIFURCATION
+        return self._turn(singular) if self.settings.branch == "stable" else Status.BIFURCATION
 
     def _meet_limit_point(self) -> Status:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
         self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, self.track.limit())
         return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
 
-    def _note_critical(self, kind: CriticalKind, at: Equilibrium, load_parameter: float) -> None:
-        self.log.critical.append(critical_point(self.newton, kind, at, load_parameter))
+    def _note_critical(self, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float) -> None:
+        self.log.critical.append(critical_point(self.newton, kind, equilibrium, load_parameter))
         self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
-    def _turn(self, at: Equilibrium) -> Status:
+    def _turn(self, critical: Equilibrium) -> Status:
         """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
-        t, model = at.state.load_parameter, self.model
+        t, model = critical.state.load_parameter, self.model
         ahead = t + min(_AHEAD, (self.target - t) / 2)
-        found_mode = mode_shape(self.newton, at)
-        if found_mode is None:
+        mode = mode_shape(self.newton, critical)
+        if mode is None:
             return Status.FALLING
-        push = found_mode[0] * (_PUSH * model.length)
-        held = self.newton.prescribed(at.state, ahead)
-        found: list[tuple[float, Equilibrium]] = []
+        push = mode[0] * (_PUSH * model.length)
+        held = self.newton.prescribed(critical.state, ahead)
+        rests: list[tuple[float, Equilibrium]] = []
         for way in (1.0, -1.0):
-            start = self.newton.update(held, way * push, at.system)
+            start = self.newton.update(held, way * push, critical.system)
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(start, self.newton.potential(start))
             self.log.iterations += fall.iterations
             if rest is not None and PathTangent(self.newton, rest).index <= 0:
-                found.append((self.newton.potential(rest.state), rest))
-        if not found:
+                rests.append((self.newton.potential(rest.state), rest))
+        if not rests:
             return Status.FALLING
-        least, rest = min(found, key=lambda pair: pair[0])
+        least, rest = min(rests, key=lambda pair: pair[0])
         self.log.events[-1] = replace(self.log.events[-1], released=self.newton.potential(held) - least)
         self.track.history = []
         self._accept(rest)
@@ -242,48 +242,48 @@ class Stepper:
         if equilibrium.status is not Status.CONVERGED:
             self.control.fail(equilibrium.status)
             return None
-        missed = self.track.missed(self.track.tangent, equilibrium)
-        if missed > FOLLOWED or self.track.strays(start, equilibrium):
-            self.control.refuse(allowed(missed) if missed > FOLLOWED else 1 / 2)
+        unexplained = self.track.unexplained(self.track.tangent, equilibrium)
+        if unexplained > FOLLOWED or self.track.strays(start, equilibrium):
+            self.control.refuse(allowed(unexplained) if unexplained > FOLLOWED else 1 / 2)
             return None
         return equilibrium
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
-        """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
+        """End the step on its first event; where a force or position jumps instead, the step is too long and refused."""
         t = self.accepted.state.load_parameter
         first: tuple[Equilibrium, Margin] | None = None
         for before, after in events:
             if before.value <= ROUND_OFF:
-                found: tuple[Equilibrium, Margin] | None = (self.accepted, before)
+                located: tuple[Equilibrium, Margin] | None = (self.accepted, before)
             else:
-                found = locate((t, before), (goal, after), self._solve, self._measure)
-            if found is None:
+                located = locate((t, before), (goal, after), self._solve, self._measure)
+            if located is None:
                 return self.control.failure
-            if after.kind is EventKind.TOUCH and before.value < 1.0 and found[1].value < -ROUND_OFF:
+            if after.kind is EventKind.TOUCH and before.value < 1.0 and located[1].value < -ROUND_OFF:
                 return self.control.refuse()
-            if first is None or found[0].state.load_parameter < first[0].state.load_parameter:
-                first = found
+            if first is None or located[0].state.load_parameter < first[0].state.load_parameter:
+                first = located
         assert first is not None, "events is not empty"
-        at, margin = first
-        past = [other for other in self._measure(at) if other.value < -_COINCIDENT]
+        event, margin = first
+        past = [other for other in self._measure(event) if other.value < -_COINCIDENT]
         if any(other.kind is not EventKind.TOUCH or other.pair != margin.pair for other in past):
             return self.control.refuse()
         together = [
             other
-            for before, other in zip(self.margins, self._measure(at), strict=True)
+            for before, other in zip(self.margins, self._measure(event), strict=True)
             if {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
             and other.value <= _COINCIDENT
             and other.value < before.value
         ]
-        return self._switch(at, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
+        return self._switch(event, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
 
-    def _switch(self, at: Equilibrium, changes: list[Margin]) -> Status:
-        """Accept the events' configuration, then open and close its contacts."""
-        if at is not self.accepted:
-            status = self._advance(at)
-            if status is not Status.CONVERGED or self.accepted.system is not at.system:
+    def _switch(self, event: Equilibrium, changes: list[Margin]) -> Status:
+        """Accept the configuration of the events, then open and close its contacts."""
+        if event is not self.accepted:
+            status = self._advance(event)
+            if status is not Status.CONVERGED or self.accepted.system is not event.system:
                 return status
-        model, state, jump = self.model, at.state, False
+        model, state, jump = self.model, event.state, False
         noted = len(self.log.events)
         for margin in changes:
             k, pair = margin.pair, model.pairs[margin.pair]
@@ -296,7 +296,7 @@ class Stepper:
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens"
             arc = arc_position(pair.target, touch.element, touch.xi)
-            self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
+            self._note(margin.kind, k, touch.element, arc, normal_force(model, event, k))
             if margin.kind is EventKind.LINE_CONTACT:
                 return Status.LINE_CONTACT
             refused = forbidden(model, margin.kind, pair, arc)
@@ -306,7 +306,7 @@ class Stepper:
             state = changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
         if crowded(model, state):
             return Status.TWO_CONTACTS
-        status = self._resume(at, state, jump=jump)
+        status = self._resume(event, state, jump=jump)
         if status is not Status.CONVERGED and status is self.control.failure:
             del self.log.events[noted:]
         return status
@@ -321,9 +321,9 @@ class Stepper:
         self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
-    def _resume(self, at: Equilibrium, state: State, *, jump: bool) -> Status:
+    def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
-        energy = began = self.newton.potential(at.state)
+        energy = began = self.newton.potential(event.state)
         while True:
             equilibrium = self._settled(state, energy if jump else None)
             if equilibrium is None:
@@ -341,7 +341,7 @@ class Stepper:
             touch = state.touches[k]
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
-            before = normal_force(self.model, at, k) if at.state.touches[k] is not None else 0.0
+            before = normal_force(self.model, event, k) if event.state.touches[k] is not None else 0.0
             arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
@@ -360,8 +360,8 @@ class Stepper:
         """Equilibrium with other contacts: near the state, or, where a jump frees `energy`, to which the structure falls."""
         equilibrium = self.newton.solve(state)
         self.log.iterations += equilibrium.iterations
-        found = equilibrium.status is Status.CONVERGED
-        near = found and self.newton.apart(state, equilibrium.state) <= FAR
+        converged = equilibrium.status is Status.CONVERGED
+        near = converged and self.newton.apart(state, equilibrium.state) <= FAR
         down = near and (energy is None or descends(self.newton, energy, equilibrium.state))
         if energy is not None and not (down and not met(self._measure(equilibrium))):
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
@@ -369,7 +369,7 @@ class Stepper:
             self.log.iterations += fall.iterations
             return rest
         self.control.fail(equilibrium.status)
-        return equilibrium if found else None
+        return equilibrium if converged else None
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""

@@ -40,8 +40,8 @@ class Linearisation:
     nodal : ndarray, shape (dofs,)
         Forces of beams and contacts on all degrees of freedom; on the prescribed ones, the reactions.
     residual : ndarray, shape (equations + contact unknowns,)
-        Unbalanced forces and what exact elements miss on arrival, then the residuals of the contacts: position (2), direction of the
-        force, and of exact elements the angle.
+        Unbalanced forces and end residuals of exact elements, then the residuals of the contacts: position (2), direction of the force, and
+        on exact elements the angle.
     forces : dict
         Force on the beam of every closed pair.
     noise : float
@@ -174,17 +174,17 @@ class Assembler:
         """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins (the present ones if none)."""
         model = self.model
         velocities = self.velocities(state.load_parameter) if velocities is None else velocities
-        nodal, own = -model.load, np.zeros(model.contact_unknowns)
+        nodal, contacts = -model.load, np.zeros(model.contact_unknowns)
         for pair, touch, velocity in zip(model.pairs, state.touches, velocities, strict=True):
             if touch is not None and pair.pin is not None:
                 forces, rows = pair.group.pin_rate(pair, touch, state, velocity)
                 nodal[model.dofs[:, touch.element]] += forces
                 if pair.slot >= 0:
-                    own[pair.slots] = rows
+                    contacts[pair.slots] = rows
         if model.fixed_values.any():
             q = self.prescribed_rate()
-            nodal = nodal + self._gather([group.rate(state, q, own) for group in model.groups])
-        return np.concatenate([nodal[model.free], own])
+            nodal = nodal + self._gather([group.rate(state, q, contacts) for group in model.groups])
+        return np.concatenate([nodal[model.free], contacts])
 
     def prescribed_rate(self) -> Array:
         """Derivative of the prescribed displacements in the load parameter, over all degrees of freedom."""
@@ -208,9 +208,9 @@ class Assembler:
             right[np.ix_(eq, unknown)] += block[:6, 6:8][:, free]
             right[np.ix_(node_eq, unknown)] += block[6:8, 6:8][:, free]
             below[np.ix_(unknown, eq)] += block[6:8, :6][free]
-        own = slice(model.banded, model.equations)
-        corner[: model.border_dofs] = right[own]
-        corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, own]
+        bordered = slice(model.banded, model.equations)
+        corner[: model.border_dofs] = right[bordered]
+        corner[model.border_dofs :, : model.border_dofs] = below[model.border_dofs :, bordered]
 
     def solve(self, system: Linearisation, *more: Array) -> Array | None:
         """Solve the linear system.

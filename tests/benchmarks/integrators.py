@@ -199,13 +199,13 @@ def starts_sampled(rods: Rods, axis: shape.RodShape, state: State, cuts: Cuts, _
 def axis_by_steps(rods: Rods, state: State, *_: Any) -> shape.RodShape:
     """Deflected axis, integrated to `SHAPE_ORDER` Gauss nodes of every segment."""
     entry = rods.enter(state)
-    at, nodes = entry.at, collocation(SHAPE_ORDER).c
+    at, nodes = entry.segments, collocation(SHAPE_ORDER).c
     own = np.repeat(np.arange(len(at.length)), SHAPE_ORDER)
     flexibility = rod.Flexibility(*(value[own] for value in at.flexibility))
     arcs = (at.length * nodes).reshape(-1, 1)
     course = assembly.rod.field(rod.Segments(flexibility, at.force[:, own], arcs, at.angle[own]))
     at = at._replace(angle=course.end.reshape(-1, SHAPE_ORDER))
-    return shape.plain_shape(rods, state, entry._replace(at=at, of=rod.field(at)))
+    return shape.plain_shape(rods, state, entry._replace(segments=at, field=rod.field(at)))
 
 
 @contextmanager

@@ -344,7 +344,7 @@ def test_residual_and_step_are_those_of_the_assembler() -> None:
     model = Model(structures[0])
     equations, constants = Equations(model), constants_of(structures, model)
     system = equations.linearise(constants, at)
-    residual = np.concatenate([system.nodal[model.free], system.own])
+    residual = np.concatenate([system.nodal[model.free], system.contacts])
     dq, dz, sign = equations.solve(system)
     together = at.closed[1] & at.closed[2] & (at.element[1] == at.element[2])
     assert together.any()
@@ -371,10 +371,10 @@ def test_tangent_is_the_derivative_of_the_residual() -> None:
         moved.q[model.free] += along * dq
         l0 = np.stack([constants.properties.l0[e, np.arange(len(e))] for e in at.element])
         system = equations.linearise(constants, moved._replace(xi=at.xi + own[:, 2] / l0))
-        return np.concatenate([system.nodal[model.free], system.own])
+        return np.concatenate([system.nodal[model.free], system.contacts])
 
     system = equations.linearise(constants, at)
-    before = np.concatenate([system.nodal[model.free], system.own])
+    before = np.concatenate([system.nodal[model.free], system.contacts])
     dq, dz, _ = equations.solve(system)
     largest = np.maximum(np.abs(dq).max(axis=0), 1e-3 * np.abs(dz).max(axis=0))
     dq, dz = dq / largest, dz / largest

@@ -1,4 +1,4 @@
-"""What the stepper asks of a configuration before it accepts it, of many at once."""
+"""Conditions on a configuration before it is accepted, for many structures at once; see `tsm.stepping`."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ SHORT = 0.1
 
 def norm(equations: Equations, batch: BatchState, system: BatchLinearisation) -> Array:
     """Scaled norms of the residuals, see `Newton.norm`, shape (N,)."""
-    residual = np.concatenate([system.nodal[equations.model.free], system.own])
+    residual = np.concatenate([system.nodal[equations.model.free], system.contacts])
     return largest(residual, batch.constants.scales.residual)
 
 
 def follows(equations: Equations, batch: BatchState, which: Array) -> Array:
     """Whether equilibria lie near their prediction, on the side of the determinant that the path is on.
 
-    The stepper asks both tangents of a step. Here its extrapolation has to explain it; what it does not is left to the stepper.
+    The stepper compares a step with the tangents at both its ends. Here the step has to end near its extrapolation; any other step is left to
+    the stepper.
     """
     free, history = equations.model.free[:, None], batch.history
     last = history.q[newest(history, which), free, which]
     per_step = batch.constants.scales.step[: len(free), which]
-    moved = largest(batch.at.q[free, which] - batch.predicted[free, which], per_step)
-    taken = largest(batch.at.q[free, which] - last, per_step)
+    moved = largest(batch.iterate.q[free, which] - batch.predicted[free, which], per_step)
+    taken = largest(batch.iterate.q[free, which] - last, per_step)
     near = ((moved <= FOLLOWED * taken) | (taken <= SHORT)) & (taken <= LONGEST_STEP)
     begun = np.where(batch.orientation == 0, batch.first, batch.orientation)[which]
     kept: Array = near & (begun == batch.last[which])
@@ -45,15 +46,15 @@ def eventless(
 
     A node behind its line past an end of the beam may have come there through the beam, which the stepper looks into.
     """
-    at, constants, length = batch.at, batch.constants, batch.constants.sizes.length[which]
+    iterate, constants, length = batch.iterate, batch.constants, batch.constants.sizes.length[which]
     soft = np.minimum(1.0, ROUND_OFF / np.maximum(tolerance, constants.scales.noise[which]))
     inside = np.minimum(arc, constants.span[:, which] - arc) / length
     push = normal / constants.sizes.force_scale[which] * soft
-    kept = ~at.closed[:, which] | ((inside >= -ROUND_OFF) & (push >= -ROUND_OFF))
+    kept = ~iterate.closed[:, which] | ((inside >= -ROUND_OFF) & (push >= -ROUND_OFF))
     for k in range(len(kept)):
-        waiting = np.flatnonzero(~at.closed[k, which] & batch.armed[k, which])
+        waiting = np.flatnonzero(~iterate.closed[k, which] & batch.armed[k, which])
         if len(waiting):
-            seen = project(equations, constants, at, k, which[waiting])
+            seen = project(equations, constants, iterate, k, which[waiting])
             small = ROUND_OFF * length[waiting]
             kept[k, waiting] = seen.gap >= -small
     whole: Array = kept.all(axis=0)
@@ -64,14 +65,14 @@ def balanced(
     equations: Equations, batch: BatchState, system: BatchLinearisation, which: Array, tolerance: float
 ) -> Array:
     """Whether support reactions and pin forces add up to nothing, as in `Stepper`."""
-    model, at, constants = equations.model, batch.at, batch.constants
+    model, iterate, constants = equations.model, batch.iterate, batch.constants
     total = np.zeros((2, len(which)))
     for c in range(2):
         total[c] = system.nodal[model.fixed[model.fixed % 3 == c]][:, which].sum(axis=0)
     largest = np.zeros(len(which))
     for k, pair in enumerate(model.pairs):
         if pair.pin is not None:
-            force = np.where(at.closed[k, which], at.force[k][:, which], 0.0)
+            force = np.where(iterate.closed[k, which], iterate.force[k][:, which], 0.0)
             total += force
             largest = np.maximum(largest, np.hypot(*force))
     noise = np.maximum(constants.scales.noise, tolerance) * constants.sizes.force_scale

@@ -1,4 +1,4 @@
-"""Constants of many structures of one topology: those of `Model` and `Newton`, the structure as last axis."""
+"""Constants of `Model` and `Newton` for many structures of one topology, the structure as last axis."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tsm.structure import Structure
 
 
 class Paths(NamedTuple):
-    """Paths of the control nodes of p pairs, all with the corners of the longest; those of beam ends stay empty.
+    """Paths of the control nodes of p pairs, all with as many corners as the longest; the path of a beam's end stays empty.
 
     Attributes
     ----------
@@ -34,16 +34,16 @@ class Paths(NamedTuple):
     def position(self, k: int, t: Array, which: Array) -> Array:
         """Positions of pair k's control node in some structures at their load parameters, shape (2, m)."""
         left = t * self.leg[k][:, which].sum(axis=0)
-        found = np.zeros((2, len(t)))
+        position = np.zeros((2, len(t)))
         todo = np.ones(len(t), dtype=bool)
         for c in range(self.leg.shape[1]):
             leg, last = self.leg[k, c, which], self.last[k, c, which]
             a, b = self.corner[k, c][:, which], self.corner[k, c + 1][:, which]
             here = todo & ((left <= leg) | last)
-            found = np.where(here, a + left / leg * (b - a), found)
+            position = np.where(here, a + left / leg * (b - a), position)
             todo &= ~here
             left = left - leg
-        return found
+        return position
 
 
 class BatchConstants(NamedTuple):
@@ -62,7 +62,7 @@ class BatchConstants(NamedTuple):
     side, offset : ndarray, shape (p, N)
         Sign of the contact's side, and distance of its surface from the axis.
     paths : Paths
-        Of the pins.
+        Paths of the pins.
     sizes : Sizes
         Lengths and forces of the structures, each of shape (N,).
     scales : Scales

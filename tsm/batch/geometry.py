@@ -44,49 +44,49 @@ def slide(
     outside = np.flatnonzero((xi < -past) | (xi > 1 + past))
     if not len(outside):
         return element, xi
-    element, xi, own = element.copy(), xi.copy(), slice(target.first, target.last + 1)
-    for n, lengths in zip(outside.tolist(), l0[own, which[outside]].T.tolist(), strict=True):
+    element, xi, elements = element.copy(), xi.copy(), slice(target.first, target.last + 1)
+    for n, lengths in zip(outside.tolist(), l0[elements, which[outside]].T.tolist(), strict=True):
         k, xi[n] = projection.slide(lengths, int(element[n]) - target.first, float(xi[n]), past)
         element[n] = target.first + k
     return element, xi
 
 
 def measure(
-    equations: Equations, constants: BatchConstants, at: Configurations, which: Array
+    equations: Equations, constants: BatchConstants, iterate: Configurations, which: Array
 ) -> tuple[Array, Array]:
     """Contact forces and arc positions of all pairs in some structures, shapes (p, m); 0 and nan where a pair is open.
 
     Forces are positive where they push.
     """
     p, dofs = constants.properties, equations.model.dofs
-    normal, arc = np.zeros((2, len(at.closed), len(which)))
+    normal, arc = np.zeros((2, len(iterate.closed), len(which)))
     arc[:] = np.nan
-    for k, closed in enumerate(at.closed[:, which]):
+    for k, closed in enumerate(iterate.closed[:, which]):
         here = which[closed]
-        e = at.element[k, here]
-        shift = at.q[dofs[3:5, e], here] - at.q[dofs[:2, e], here]
-        fx, fy = at.force[k][:, here]
+        e = iterate.element[k, here]
+        shift = iterate.q[dofs[3:5, e], here] - iterate.q[dofs[:2, e], here]
+        fx, fy = iterate.force[k][:, here]
         push = constants.side[k, here] * (fy * (p.dx0[e, here] + shift[0]) - fx * (p.dy0[e, here] + shift[1]))
         size = np.sqrt(fx * fx + fy * fy)
         normal[k, closed] = np.where(push >= 0, size, -size)
-        arc[k, closed] = constants.arc[e, here] + at.xi[k, here] * p.l0[e, here]
+        arc[k, closed] = constants.arc[e, here] + iterate.xi[k, here] * p.l0[e, here]
     return normal, arc
 
 
 def project(
-    equations: Equations, constants: BatchConstants, at: Configurations, k: int, which: Array
+    equations: Equations, constants: BatchConstants, iterate: Configurations, k: int, which: Array
 ) -> Projections:
     """Closest points of the deflected axis to pair k's node, with the dents of the contacts that are closed."""
     model = equations.model
     pair = model.pairs[k]
-    node = equations.node(constants, at, k, which)
+    node = equations.node(constants, iterate, k, which)
     nodes = pair.target.nodes
-    shift = at.q[3 * nodes[:, None] + np.arange(2)][..., which]
+    shift = iterate.q[3 * nodes[:, None] + np.arange(2)][..., which]
     owner, xis = projection.project_on_chords(constants.coordinates[nodes][..., which] + shift, node)
     element, xi = pair.target.first + owner, xis[owner, np.arange(len(which))]
     l0 = constants.properties.l0
     for _ in range(projection.PROJECTIONS):
-        p, x = properties_of(constants, element, which), at.q[model.dofs[:, element], which]
+        p, x = properties_of(constants, element, which), iterate.q[model.dofs[:, element], which]
         curve = Curve(p, x)
         start = constants.coordinates[model.element_nodes[element, 0], :, which].T
         step, (px, py), (tx, ty) = curve.approach(xi, *(start + x[:2] - node))
@@ -95,12 +95,14 @@ def project(
             break
     coupling = coupling_of(pair)
     for other in range(len(model.pairs)):
-        there = at.closed[other, which] & (at.element[other, which] == element)
+        there = iterate.closed[other, which] & (iterate.element[other, which] == element)
         if there.any():
-            own = Properties(*(column[there] for column in properties_of(constants, element, which)))
-            xis = np.stack([xi[there], at.xi[other, which[there]]])
-            dent = coupling.dent(own, xis.min(axis=0), xis.max(axis=0))
-            fx, fy = at.force[other][:, which[there]]
+            constants_there = Properties(
+                *(column[there] for column in properties_of(constants, element, which))
+            )
+            xis = np.stack([xi[there], iterate.xi[other, which[there]]])
+            dent = coupling.dent(constants_there, xis.min(axis=0), xis.max(axis=0))
+            fx, fy = iterate.force[other][:, which[there]]
             px[there] += dent * fx
             py[there] += dent * fy
     height = (py * tx - px * ty) / np.hypot(tx, ty)

@@ -3,7 +3,7 @@
 A structure whose iteration ends accepts its configuration and sets off for its next load parameter while the others still
 iterate. Whatever is not plain (a step that does not converge soon, a contact that opens or closes, a pin that turns, a change of the
 determinant's sign) is left to the `Stepper`: it goes on from the last accepted configurations to the next prescribed load parameter,
-and hands the structure back. So there is one stepper, and a batch finds what it finds.
+and hands the structure back. Events and critical points are found by the stepper alone.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class March:
     structures : sequence of Structure
         All numbered alike.
     model : Model
-        Of the first.
+        Numbering, taken from the first structure.
     targets : ndarray, shape (s,)
         Prescribed load parameters.
     settings : Settings
@@ -111,16 +111,18 @@ class March:
 
     def _close(self, batch: BatchState) -> None:
         """Close pairs whose node lies on the surface, without force."""
-        at, constants, everywhere = batch.at, batch.constants, np.arange(len(batch.structure))
+        iterate, constants, everywhere = batch.iterate, batch.constants, np.arange(len(batch.structure))
         small = ROUND_OFF * constants.sizes.length
-        found = [project(self.equations, constants, at, k, everywhere) for k in range(len(self.model.pairs))]
-        for k, seen in enumerate(found):
+        closest = [
+            project(self.equations, constants, iterate, k, everywhere) for k in range(len(self.model.pairs))
+        ]
+        for k, seen in enumerate(closest):
             over = seen.overshoot <= small
             for n in np.flatnonzero(over & (seen.gap < -small)):
                 self._refuse(int(batch.structure[n]))
-            at.closed[k] = over & (seen.gap <= small)
-            at.element[k] = np.where(at.closed[k], seen.element, at.element[k])
-            at.xi[k] = np.where(at.closed[k], np.clip(seen.xi, 0.0, 1.0), 0.0)
+            iterate.closed[k] = over & (seen.gap <= small)
+            iterate.element[k] = np.where(iterate.closed[k], seen.element, iterate.element[k])
+            iterate.xi[k] = np.where(iterate.closed[k], np.clip(seen.xi, 0.0, 1.0), 0.0)
 
     def _refuse(self, n: int) -> None:
         """Say in the stepper's words that a node starts behind its surface."""
@@ -132,12 +134,12 @@ class March:
     def _start(self, batch: BatchState) -> None:
         """Accept the undeformed configurations and set off."""
         everywhere = np.arange(len(batch.structure))
-        residual = norm(self.equations, batch, self.equations.linearise(batch.constants, batch.at))
+        residual = norm(self.equations, batch, self.equations.linearise(batch.constants, batch.iterate))
         at_rest = residual <= self.settings.tolerance
         started = everywhere[at_rest]
         remember(batch, started)
         batch.normal[:, started], batch.arc[:, started] = measure(
-            self.equations, batch.constants, batch.at, started
+            self.equations, batch.constants, batch.iterate, started
         )
         for n in everywhere[~at_rest]:
             self._alone(batch, int(n))
@@ -145,20 +147,20 @@ class March:
 
     def _iterate(self, batch: BatchState) -> None:
         """One iteration of all structures; those whose step ends set off on their next."""
-        system = self.equations.linearise(batch.constants, batch.at)
+        system = self.equations.linearise(batch.constants, batch.iterate)
         residual = norm(self.equations, batch, system)
         twice = np.maximum(batch.residual, residual)
         converged = (residual <= self.settings.tolerance) | (twice <= batch.constants.scales.noise)
         stuck = ~converged & ~(np.isfinite(residual) & (batch.iteration < self.soon))
-        found = np.flatnonzero(converged)
-        normal, arc = measure(self.equations, batch.constants, batch.at, found)
+        arrived = np.flatnonzero(converged)
+        normal, arc = measure(self.equations, batch.constants, batch.iterate, arrived)
         tolerance = self.settings.tolerance
-        plain = eventless(self.equations, batch, found, normal, arc, tolerance)
-        plain &= follows(self.equations, batch, found) & balanced(
-            self.equations, batch, system, found, tolerance
+        plain = eventless(self.equations, batch, arrived, normal, arc, tolerance)
+        plain &= follows(self.equations, batch, arrived) & balanced(
+            self.equations, batch, system, arrived, tolerance
         )
-        self._accept(batch, found[plain], system, normal[:, plain], arc[:, plain])
-        for n in [*found[~plain].tolist(), *np.flatnonzero(stuck).tolist()]:
+        self._accept(batch, arrived[plain], system, normal[:, plain], arc[:, plain])
+        for n in [*arrived[~plain].tolist(), *np.flatnonzero(stuck).tolist()]:
             self._alone(batch, n)
         ended = converged | stuck
         if not ended.all():
@@ -169,17 +171,19 @@ class March:
 
     def _move(self, batch: BatchState, system: BatchLinearisation) -> None:
         """Newton's steps, each shortened as by `Newton.update`."""
-        at, constants = batch.at, batch.constants
+        iterate, constants = batch.iterate, batch.constants
         dq, dz, sign = self.equations.solve(system)
         size = largest(np.concatenate([dq, dz]), constants.scales.step)
         factor = np.where(size > LONGEST, LONGEST / size, 1.0)
-        at.q[self.model.free] += factor * dq
-        own = (factor * dz).reshape(-1, OWN, len(factor))
+        iterate.q[self.model.free] += factor * dq
+        change = (factor * dz).reshape(-1, OWN, len(factor))
         everywhere, l0 = np.arange(len(factor)), constants.properties.l0
-        at.force[:] += own[:, :2]
+        iterate.force[:] += change[:, :2]
         for k, pair in enumerate(self.model.pairs):
-            xi = at.xi[k] + own[k, 2] / l0[at.element[k], everywhere]
-            at.element[k], at.xi[k] = slide(l0, pair.target, at.element[k], xi, everywhere, AT_NODE)
+            xi = iterate.xi[k] + change[k, 2] / l0[iterate.element[k], everywhere]
+            iterate.element[k], iterate.xi[k] = slide(
+                l0, pair.target, iterate.element[k], xi, everywhere, AT_NODE
+            )
         batch.last[:] = sign
         batch.first[:] = np.where(batch.iteration == 0, sign, batch.first)
 
@@ -189,11 +193,11 @@ class March:
         """Take the iterates of some structures as their configurations."""
         self._note_passes(batch, which, normal, arc)
         batch.normal[:, which], batch.arc[:, which] = normal, arc
-        at, constants = batch.at, batch.constants
+        iterate, constants = batch.iterate, batch.constants
         for k in range(len(self.model.pairs)):
-            part = which[~(batch.armed[k, which] | at.closed[k, which])]
+            part = which[~(batch.armed[k, which] | iterate.closed[k, which])]
             if len(part):
-                seen = project(self.equations, constants, at, k, part)
+                seen = project(self.equations, constants, iterate, k, part)
                 small = ROUND_OFF * constants.sizes.length[part]
                 batch.armed[k, part] = (seen.overshoot > small) | (seen.gap > small)
         remember(batch, which)
@@ -206,15 +210,15 @@ class March:
 
     def _note_passes(self, batch: BatchState, which: Array, normal: Array, arc: Array) -> None:
         """Note changes of owner since the last configurations."""
-        at, history = batch.at, batch.history
+        iterate, history = batch.iterate, batch.history
         place = newest(history, which)
         before = history.element[place, :, which].T
-        for k, m in np.argwhere(at.closed[:, which] & (before != at.element[:, which])):
+        for k, m in np.argwhere(iterate.closed[:, which] & (before != iterate.element[:, which])):
             n = which[m]
             passage = Passage(
                 pair=int(k),
                 t=(float(history.t[place[m], n]), float(batch.goal[n])),
-                element=(int(before[k, m]), int(at.element[k, n])),
+                element=(int(before[k, m]), int(iterate.element[k, n])),
                 arc=(float(batch.arc[k, n]), float(arc[k, m])),
                 force=(float(batch.normal[k, n]), float(normal[k, m])),
             )
@@ -222,17 +226,17 @@ class March:
 
     def _enter(self, batch: BatchState, which: Array, reaction: Array) -> None:
         """Record configurations at prescribed load parameters, and what the supports exert in them."""
-        record, at = self.record, batch.at
+        record, iterate = self.record, batch.iterate
         n, k = batch.structure[which], batch.target[which]
-        record.q[n, k] = at.q[:, which].T
+        record.q[n, k] = iterate.q[:, which].T
         for row, now in (
-            (record.closed, at.closed),
+            (record.closed, iterate.closed),
             (record.armed, batch.armed),
-            (record.element, at.element),
-            (record.xi, at.xi),
+            (record.element, iterate.element),
+            (record.xi, iterate.xi),
         ):
             row[n, k] = now[:, which].T
-        record.force[n, k] = at.force[..., which].transpose(2, 0, 1)
+        record.force[n, k] = iterate.force[..., which].transpose(2, 0, 1)
         record.normal[n, k], record.arc[n, k] = batch.normal[:, which].T, batch.arc[:, which].T
         record.reaction[n, k] = reaction.T
         record.iterations[n, k] = batch.spent[which]
@@ -263,7 +267,7 @@ class March:
         replace_history(batch, n, stepper.track.history)
         which = np.array([n])
         batch.normal[:, which], batch.arc[:, which] = measure(
-            self.equations, batch.constants, batch.at, which
+            self.equations, batch.constants, batch.iterate, which
         )
         batch.step[n], batch.orientation[n] = stepper.control.step, 0
         reaction = steps[-1].equilibrium.system.nodal[self.model.fixed]

@@ -1,4 +1,4 @@
-"""What is kept of every structure at the prescribed load parameters, the structure as first axis here."""
+"""Configurations of every structure at the prescribed load parameters, the structure as first axis here."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Record:
     cutbacks : ndarray of int, shape (N,)
         Steps given up.
     status : list of Status
-        Of each.
+        Outcomes of the structures.
     end : dict of Step
         Where structures stopped that did not reach the last load parameter.
     events : list of list
@@ -75,7 +75,7 @@ class Record:
 
 
 def empty(model: Model, count: int, steps: int) -> Record:
-    """Record of nothing yet."""
+    """Record without configurations."""
     shape, pairs = (count, steps), (count, steps, len(model.pairs))
     return Record(
         q=np.zeros((*shape, model.dof_count)),

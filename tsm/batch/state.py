@@ -1,4 +1,4 @@
-"""Where every structure of a batch stands: its iterate, its accepted configurations, its own step control."""
+"""State of every structure of a batch: its iterate, its accepted configurations, its step control."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class BatchState(NamedTuple):
         Which they are.
     constants : BatchConstants
         Their constants.
-    at : Configurations
+    iterate : Configurations
         Iterates.
     predicted : ndarray, shape (dofs, N)
         Displacements that the iterations began with.
@@ -75,7 +75,7 @@ class BatchState(NamedTuple):
 
     structure: Array
     constants: BatchConstants
-    at: Configurations
+    iterate: Configurations
     predicted: Array
     goal: Array
     normal: Array
@@ -99,7 +99,7 @@ def undeformed(equations: Equations, constants: BatchConstants, structure: Array
     zero = np.zeros(count)
     owners = np.array([pair.target.first for pair in model.pairs])
     node = np.stack([constants.paths.position(k, zero, everywhere) for k in range(pairs)])
-    at = Configurations(
+    iterate = Configurations(
         q=np.zeros((model.dof_count, count)),
         closed=np.zeros((pairs, count), dtype=bool),
         element=np.repeat(owners[:, None], count, axis=1),
@@ -110,7 +110,7 @@ def undeformed(equations: Equations, constants: BatchConstants, structure: Array
     history = History(
         entered=np.zeros(count, dtype=int),
         t=np.repeat(_NEVER[:, None], count, axis=1),
-        q=np.zeros((MEMORY, *at.q.shape)),
+        q=np.zeros((MEMORY, *iterate.q.shape)),
         element=np.zeros((MEMORY, pairs, count), dtype=int),
         xi=np.zeros((MEMORY, pairs, count)),
         force=np.zeros((MEMORY, pairs, 2, count)),
@@ -118,8 +118,8 @@ def undeformed(equations: Equations, constants: BatchConstants, structure: Array
     return BatchState(
         structure=structure,
         constants=constants,
-        at=at,
-        predicted=np.zeros_like(at.q),
+        iterate=iterate,
+        predicted=np.zeros_like(iterate.q),
         goal=zero.copy(),
         normal=np.zeros((pairs, count)),
         arc=np.full((pairs, count), np.nan),
@@ -144,29 +144,33 @@ def newest(history: History, which: Array) -> Array:
 
 def remember(batch: BatchState, which: Array) -> None:
     """Enter the iterates of some structures into their histories."""
-    history, at = batch.history, batch.at
+    history, iterate = batch.history, batch.iterate
     history.entered[which] += 1
     place = newest(history, which)
     history.t[place, which] = batch.goal[which]
     for ring, now in (
-        (history.q, at.q),
-        (history.element, at.element),
-        (history.xi, at.xi),
-        (history.force, at.force),
+        (history.q, iterate.q),
+        (history.element, iterate.element),
+        (history.xi, iterate.xi),
+        (history.force, iterate.force),
     ):
         ring[place, ..., which] = np.moveaxis(now[..., which], -1, 0)
 
 
 def replace_history(batch: BatchState, n: int, states: list[State]) -> None:
     """Take over the configurations that structure n was brought through alone, the last of them as its iterate."""
-    history, at = batch.history, batch.at
+    history, iterate = batch.history, batch.iterate
     history.entered[n], history.t[:, n] = 0, _NEVER
     for state in states[-MEMORY:]:
-        at.q[:, n] = state.q
+        iterate.q[:, n] = state.q
         for k, touch in enumerate(state.touches):
-            at.closed[k, n] = touch is not None
+            iterate.closed[k, n] = touch is not None
             if touch is not None:
-                at.element[k, n], at.xi[k, n], at.force[k, :, n] = touch.element, touch.xi, touch.force
+                iterate.element[k, n], iterate.xi[k, n], iterate.force[k, :, n] = (
+                    touch.element,
+                    touch.xi,
+                    touch.force,
+                )
         batch.armed[:, n] = state.armed
         batch.goal[n] = state.load_parameter
         remember(batch, np.array([n]))
@@ -181,7 +185,7 @@ def states_of(batch: BatchState, n: int) -> list[State]:
         touches = tuple(
             Touch(element=int(e), xi=float(xi), force=(float(F[0]), float(F[1]))) if closed else None
             for closed, e, xi, F in zip(
-                batch.at.closed[:, n],
+                batch.iterate.closed[:, n],
                 history.element[place, :, n],
                 history.xi[place, :, n],
                 history.force[place, :, :, n],
@@ -201,9 +205,9 @@ def states_of(batch: BatchState, n: int) -> list[State]:
 
 def predict(equations: Equations, batch: BatchState, which: Array) -> None:
     """Set the iterates of some structures to the polynomials through their accepted configurations."""
-    history, at, constants = batch.history, batch.at, batch.constants
+    history, iterate, constants = batch.history, batch.iterate, batch.constants
     weights = weights_at(list(history.t[:, which]), batch.goal[which])
-    at.q[:, which] = batch.predicted[:, which] = weighted(weights, history.q[..., which])
+    iterate.q[:, which] = batch.predicted[:, which] = weighted(weights, history.q[..., which])
     l0 = constants.properties.l0
     place = newest(history, which)
     for k, pair in enumerate(equations.model.pairs):
@@ -211,7 +215,7 @@ def predict(equations: Equations, batch: BatchState, which: Array) -> None:
         arcs = constants.arc[elements, which] + history.xi[:, k, which] * l0[elements, which]
         last = history.element[place, k, which]
         xi = (weighted(weights, arcs) - constants.arc[last, which]) / l0[last, which]
-        at.element[k, which], at.xi[k, which] = slide(l0, pair.target, last, xi, which, AT_NODE)
-        at.force[k][:, which] = weighted(weights, history.force[:, k][..., which])
+        iterate.element[k, which], iterate.xi[k, which] = slide(l0, pair.target, last, xi, which, AT_NODE)
+        iterate.force[k][:, which] = weighted(weights, history.force[:, k][..., which])
         if pair.pin is not None:
-            at.node[k][:, which] = constants.paths.position(k, batch.goal[which], which)
+            iterate.node[k][:, which] = constants.paths.position(k, batch.goal[which], which)

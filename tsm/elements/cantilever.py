@@ -27,10 +27,10 @@ def clamped(stiffness: Stiffness) -> ElementForce:
     def element_force(p: Properties, xi: Any, deformation: Array) -> tuple[Array, Array, Array]:
         K, dK = stiffness(p, xi)
         T = transformation(p, xi)
-        own = T @ deformation
-        S = K @ own
+        cantilever = T @ deformation
+        S = K @ cantilever
         # T depends on a in the one entry -a
-        slope = (dK @ own - K[:, 1] * deformation[0]) @ T
+        slope = (dK @ cantilever - K[:, 1] * deformation[0]) @ T
         slope[0] -= S[1]
         return S @ T, T.T @ K @ T, slope
 

@@ -79,7 +79,7 @@ class ElementGroup(ABC):
     Attributes
     ----------
     number : int
-        Place of the group among those of the model.
+        Number of the group in the model.
     internal : bool
         Whether an element has a force and a moment as degrees of freedom, and further unknowns inside, which are eliminated.
     past_node : float

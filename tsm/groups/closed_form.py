@@ -222,16 +222,16 @@ class ClosedFormGroup(ElementGroup):
 
     def axes(self, beam: BeamModel, state: State, forces: ClosedFormForces, xi: Array) -> Array:
         """Deflected axes of the elements of a beam, shape (elements, m, 2)."""
-        model, own = self.model, slice(beam.first, beam.last + 1)
-        x, places = state.q[model.dofs[:, own]], model.place[own]
-        p = Properties(*(np.asarray(values)[own] for values in model.properties))
+        model, elements = self.model, slice(beam.first, beam.last + 1)
+        x, places = state.q[model.dofs[:, elements]], model.place[elements]
+        p = Properties(*(np.asarray(values)[elements] for values in model.properties))
         contacts = [
             PointForce(touch.element - beam.first, touch.xi, touch.force)
             for k in model.pairs_on.get(beam.beam.name, ())
             if (touch := state.touches[k]) is not None and model.pairs[k].slot >= 0
         ]
         axes = deflected_axes(p, x, forces.nodal[:, places], contacts, xi)
-        starts: Array = np.array(model.element_start[own]) + x[:2].T
+        starts: Array = np.array(model.element_start[elements]) + x[:2].T
         return starts[:, None] + axes
 
     def section_axes(self, _beam: BeamModel, shape: Array) -> Array:

@@ -157,7 +157,7 @@ class ExactGroup(ElementGroup):
         profile, place = state.profile, int(self.model.place[touch.element])
         assert profile is not None, "an exact element has a profile"
         s = int(forces.entry.place.first[place]) + dict(profile.cuts)[place].index(k)
-        fx, fy = (float(row[s, 0] + row[s + 1, 0]) / 2 for row in forces.entry.at.force)
+        fx, fy = (float(row[s, 0] + row[s + 1, 0]) / 2 for row in forces.entry.segments.force)
         axial = fx * math.cos(touch.angle) + fy * math.sin(touch.angle)
         p = self.model.element[touch.element]
         return float(float(forces.entry.moment[s + 1, 0]) / p.EI / (1 + axial / p.EA))
