@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,26 +17,10 @@ from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
 from tsm.rods.assembly import Rods
+from tsm.sizes import Sizes, joined_extents, sizes_of
 from tsm.structure import Beam, ContactPair, Pin, Structure
 
 _CONTACT_KINDS = np.arange(6, 10)
-
-
-class Sizes(NamedTuple):
-    """Sizes of a structure, or of many in the last axis.
-
-    Attributes
-    ----------
-    length, extent : ndarray, shape (...)
-        Length of the longest beam, and of the largest structure of joined beams.
-    force_scale, least_force : ndarray, shape (...)
-        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
-    """
-
-    length: Array
-    extent: Array
-    force_scale: Array
-    least_force: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,27 +208,10 @@ class Model:
 
     def sizes_of(self, coordinates: Array, lengths: Array, EI: Array) -> Sizes:
         """Sizes from node positions (nodes, 2, ...), and lengths and bending stiffnesses (beams, ...) of the beams."""
-        extents = self._extents(coordinates, lengths)
-        forces, least_forces = EI / lengths**2, EI / extents**2
-        return Sizes(lengths.max(axis=0), extents.max(axis=0), forces.max(axis=0), least_forces.max(axis=0))
-
-    def _extents(self, coordinates: Array, lengths: Array) -> Array:
-        """Diagonal of the structure of joined beams that each beam belongs to: how far its ends may go; of one alone, its length."""
         if not self.joined:
-            return lengths
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        i, j = self.element_nodes.T
-        shape = (len(coordinates),) * 2
-        count, part = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=shape), directed=False)
-        least = np.full((count, *coordinates.shape[1:]), np.inf)
-        most = -least
-        np.minimum.at(least, part, coordinates)
-        np.maximum.at(most, part, coordinates)
-        across = np.hypot(*np.moveaxis(most - least, 1, 0))
-        extents: Array = np.maximum(lengths, across[part[[beam.nodes[0] for beam in self.beams.values()]]])
-        return extents
+            return sizes_of(lengths, lengths, EI)
+        starts = np.array([beam.nodes[0] for beam in self.beams.values()])
+        return sizes_of(lengths, joined_extents(self.element_nodes, starts, coordinates, lengths), EI)
 
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements.properties import Array, Properties
-from tsm.model import Model, Sizes
+from tsm.model import Model
+from tsm.sizes import Sizes
 
 ROUND_OFF = 4 * float(np.finfo(float).eps)
 SHARP = 1e-3

@@ -9,8 +9,9 @@ import numpy as np
 
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
-from tsm.model import Model, Sizes
+from tsm.model import Model
 from tsm.scaling import Scales, scales_of
+from tsm.sizes import Sizes
 from tsm.structure import Structure
 
 
