@@ -8,30 +8,11 @@ import numpy as np
 import pytest
 
 import tsm
+from tests.tsm.structures import SECTION, cantilever
 from tsm.contact import nearest_chord
 from tsm.elements.curve import Curve
 from tsm.model import Model
 from tsm.projection import Projection, slide
-
-SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
-
-
-def cantilever(path, *, elements=10, side="right", element="mixed", offset=0.0):
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(
-                name="b",
-                start=(0.0, 0.0),
-                end=(1.0, 0.0),
-                section=SECTION,
-                elements=elements,
-                element=element,
-            ),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=path),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side=side, offset=offset),),
-    )
 
 
 def kinds(result):

@@ -9,10 +9,11 @@ import numpy as np
 from tsm.batch.constants import BatchConstants
 from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import slide
+from tsm.batch.record import touches_of
 from tsm.elements.properties import Array
 from tsm.predictor import weighted, weights_at
 from tsm.projection import AT_NODE
-from tsm.state import State, Touch
+from tsm.state import State
 from tsm.track import MEMORY
 
 _NEVER = 1e300 * np.arange(1, MEMORY + 1)
@@ -182,15 +183,11 @@ def states_of(batch: BatchState, n: int) -> list[State]:
     count = int(history.entered[n])
     states = []
     for place in (age % MEMORY for age in range(max(count - MEMORY, 0), count)):
-        touches = tuple(
-            Touch(element=int(e), xi=float(xi), force=(float(F[0]), float(F[1]))) if closed else None
-            for closed, e, xi, F in zip(
-                batch.iterate.closed[:, n],
-                history.element[place, :, n],
-                history.xi[place, :, n],
-                history.force[place, :, :, n],
-                strict=True,
-            )
+        touches = touches_of(
+            batch.iterate.closed[:, n],
+            history.element[place, :, n],
+            history.xi[place, :, n],
+            history.force[place, :, :, n],
         )
         states.append(
             State(
