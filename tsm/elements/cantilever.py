@@ -38,7 +38,7 @@ def clamped(stiffness: Stiffness) -> ElementForce:
 
 
 def transformation(p: Properties, xi: Any) -> Array:
-    """Deformations of the cantilever from those of the beam simply supported on the chord."""
+    """Matrix that takes the deformations of the beam simply supported on the chord to the deformations of the cantilever."""
     return np.array([[-p.l0, 0, 0], [-xi * p.l0, 0, 1], [-1, 1, 0]])
 
 
