@@ -453,7 +453,7 @@ def test_nodes_are_added_until_the_accuracy_is_reached(monkeypatch):
 TWO_TURNS = tsm.Load(beam="b", end="end", moment=4 * np.pi * KS.EI)
 
 
-def test_too_few_nodes_are_inaccurate(monkeypatch):
+def test_too_few_nodes_are_told(monkeypatch):
     """Two turns in one element need more than 14 nodes: equilibrium with 14 does not pass for accurate."""
     result = tsm.solve(cantilever(TWO_TURNS), np.arange(1, 17) / 16)
     newton, state = Newton(result.model, tsm.Settings()), result.equilibria[-1].state
