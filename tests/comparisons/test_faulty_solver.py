@@ -45,7 +45,7 @@ def without(kind: EventKind) -> Callable[[Any, Any], Any]:
 
 def another_branch(patch: pytest.MonkeyPatch) -> None:
     """Any equilibrium that Newton's method finds is taken."""
-    patch.setattr(track.Track, "missed", lambda *_: 0.0)
+    patch.setattr(track.Track, "unexplained", lambda *_: 0.0)
     patch.setattr(path.PathTangent, "index", 0)
 
 
