@@ -99,10 +99,11 @@ class Assembler:
         self.dofs = [group.dofs.ravel() for group in model.groups]
         width, height = model.border, last + 1
         self.size = width * height
-        in_right = (rows < last) & (columns >= banded) & (columns < last)
-        in_below = (rows >= banded) & (rows < last) & (columns < banded)
-        self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
-        self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
+        if model.border_dofs:
+            in_right = (rows < last) & (columns >= banded) & (columns < last)
+            in_below = (rows >= banded) & (rows < last) & (columns < banded)
+            self.scatter_right = np.where(in_right, rows * width + columns - banded, self.size)
+            self.scatter_below = np.where(in_below, (rows - banded) * height + columns, self.size)
 
     def linearise(self, state: State, drag: Drag | None = None) -> Linearisation:
         """Residual and tangent at a state, against a drag if there is one."""
