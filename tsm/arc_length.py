@@ -13,7 +13,7 @@ K is solved for both right-hand sides at once, so its band is kept; the path pas
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,14 +22,18 @@ from tsm.elements.properties import Array
 from tsm.events import Event, EventKind, broken, margins
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
+from tsm.path import PathTangent
 from tsm.result import Result, collect
+from tsm.root import find_root
 from tsm.settings import Settings
 from tsm.solve import SolveError
 from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step
 from tsm.structure import Structure
-from tsm.system import Linearisation
+
+_LOCATED, _APART = 1e-9, 1e-12
+"""Load component, in parts of the one before, and bracket of lengths, in parts of the step, at which a limit point is found."""
 
 
 def trace(
@@ -88,154 +92,100 @@ def trace(
     return result
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Tangent:
-    """Direction of the path over the unknowns of the system, of unit length, of the load parameter, and where it was taken."""
+class _Direction(NamedTuple):
+    """Unit vector along the path at an equilibrium.
+
+    Attributes
+    ----------
+    x : ndarray, shape (equations + contact unknowns,)
+        Its part over the unknowns of the system.
+    load : float
+        Its part along the load parameter.
+    tangent : PathTangent
+        Tangent of the path there.
+    """
 
     x: Array
     load: float
-    system: Linearisation
+    tangent: PathTangent
 
 
 class _Path:
-    """Where the path has come to."""
+    """The path up to its last equilibrium."""
 
     def __init__(self, model: Model, settings: Settings) -> None:
-        self.model = model
-        self.settings = settings
+        self.model, self.settings = model, settings
         self.newton = Newton(model, settings)
         self.here = self.newton.solve(initial_state(model))
-        per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_limit
-        self.weight = np.concatenate([per_beam, np.zeros(model.contact_unknowns)]) ** 2
-        self.tangent = self._tangent(self.here.state, None)
-        self.growth = 1.0
-        self.failure = Status.CUTBACK_FLOOR
+        per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
+        self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
+        self.direction = self._direction(self.here, None)
+        self.growth, self.iterations = 1.0, 0
+        self.failure = Status.SINGULAR_TANGENT
 
     def advance(self, arc_length: float) -> tuple[Step, Status]:
         """One step, shortened where it does not converge, with the limit point it passed if any."""
-        iterations = cutbacks = 0
-        reached: tuple[Equilibrium, _Tangent] | None = None
-        while reached is None:
-            length = arc_length * self.growth
-            reached, spent = self._step(length)
-            iterations += spent
-            if reached is None:
-                cutbacks += 1
-                self.growth /= 2
-                if self.growth < self.settings.smallest_step:
-                    return self._record(self.here, iterations, cutbacks, ()), self.failure
-        there, tangent = reached
+        cutbacks, self.iterations = 0, 0
+        while (reached := self._step(length := arc_length * self.growth)) is None:
+            cutbacks += 1
+            self.growth /= 2
+            if self.growth < self.settings.smallest_step:
+                return self._record(self.here, cutbacks), self.failure
+        there, direction = reached
         before = margins(self.model, self.here, self.newton.tolerance)
         if broken(before, margins(self.model, there, self.newton.tolerance)):
-            return self._record(there, iterations, cutbacks, ()), Status.CONTACT_CHANGED
-        events: tuple[Event, ...] = ()
-        if self.tangent is not None and tangent.load * self.tangent.load < 0:
-            found, spent = self._limit_point(length, tangent.load)
-            iterations += spent
-            events = (found,)
-        self.here, self.tangent = there, tangent
+            return self._record(there, cutbacks), Status.CONTACT_CHANGED
+        assert self.direction is not None, "a step needs a direction"
+        begin = self.direction.load
+        turns = direction.load * begin < 0
+        events = (self._limit_point(length, begin, direction.load),) if turns else ()
+        self.direction.tangent.release()
+        self.here, self.direction = there, direction
         self.growth = min(2 * self.growth, 1.0)
-        return self._record(there, iterations, cutbacks, events), Status.CONVERGED
+        return self._record(there, cutbacks, events), Status.CONVERGED
 
-    def _record(self, at: Equilibrium, iterations: int, cutbacks: int, events: tuple[Event, ...]) -> Step:
+    def _record(self, equilibrium: Equilibrium, cutbacks: int, events: tuple[Event, ...] = ()) -> Step:
         return Step(
-            equilibrium=at,
+            equilibrium=equilibrium,
             requested=True,
             status=Status.CONVERGED,
-            iterations=iterations,
+            iterations=self.iterations,
             cutbacks=cutbacks,
             events=events,
         )
 
-    def _tangent(self, state: State, last: _Tangent | None) -> _Tangent | None:
-        """Tangent of the path, in the sense of the last one; at first, of an increasing load."""
-        assembler = self.newton.assembler
-        system = assembler.linearise(state)
-        solved = assembler.solve(system, -assembler.rate(state))
-        if solved is None:
+    def _direction(self, equilibrium: Equilibrium, last: _Direction | None) -> _Direction | None:
+        """Direction of the path in the sense of the last one; at first, towards an increasing load."""
+        t, tangent = equilibrium.state.load_parameter, PathTangent(self.newton, equilibrium)
+        x = tangent.rates(t, t)
+        if x is None:
             return None
-        x = solved.x[:, 1]
         size = float(np.sqrt(x @ (self.weight * x)))
         ahead = 1.0 if last is None else float(x @ (self.weight * last.x))
         sign = 1.0 if ahead >= 0 else -1.0
-        return _Tangent(x=sign * x / size, load=sign / size, system=system)
+        return _Direction(sign * x / size, sign / size, tangent)
 
-    def _moved(
-        self, state: State, system: Linearisation, step: Array, load: float, *, residual: bool
-    ) -> State:
-        moved = self.newton.update(state, step, system, along=load, residual=residual)
-        return self.newton.prescribed(moved, state.load_parameter + load)
+    def _step(self, length: float) -> tuple[Equilibrium, _Direction] | None:
+        """Equilibrium a distance along the direction of the path."""
+        if self.direction is None:
+            return None
+        here, (x, load, _) = self.here, self.direction
+        t = here.state.load_parameter + length * load
+        start = self.newton.update(here.state, length * x, here.system, t=t)
+        there = self.newton.solve(start, across=self.weight * x)
+        self.iterations += there.iterations
+        direction = self._direction(there, self.direction) if there.status is Status.CONVERGED else None
+        self.failure = Status.SINGULAR_TANGENT if there.status is Status.CONVERGED else there.status
+        return None if direction is None else (there, direction)
 
-    def _step(self, length: float) -> tuple[tuple[Equilibrium, _Tangent] | None, int]:
-        """Equilibrium a distance along the tangent, and the iterations it took."""
-        along, assembler = self.tangent, self.newton.assembler
-        if along is None:
-            self.failure = Status.SINGULAR_TANGENT
-            return None, 0
-        state = self._moved(
-            self.here.state, along.system, length * along.x, length * along.load, residual=False
-        )
-        residuals: list[float] = []
-        for iteration in range(self.settings.max_iterations + 1):
-            system = assembler.linearise(state)
-            residuals.append(self.newton.norm(system))
-            if not np.isfinite(residuals[-1]):
-                self.failure = Status.NOT_FINITE
-                return None, iteration
-            finer = self.newton.with_more_nodes(state, system, residuals)
-            if finer is not None:
-                state = finer
-                continue
-            if self.newton.converged(residuals, system):
-                verdict = self.newton.verdict(system)
-                if verdict is not Status.CONVERGED:
-                    self.failure = verdict
-                    return None, iteration
-                there = Equilibrium(
-                    state=state,
-                    status=Status.CONVERGED,
-                    iterations=iteration,
-                    residuals=tuple(residuals),
-                    system=system,
-                )
-                tangent = self._tangent(state, along)
-                return (None if tangent is None else (there, tangent)), iteration
-            solved = assembler.solve(system, -assembler.rate(state))
-            if solved is None:
-                self.failure = Status.SINGULAR_TANGENT
-                return None, iteration
-            back, rate = solved.x.T
-            across = self.weight * along.x
-            load = -float(across @ back) / float(across @ rate)
-            state = self._moved(state, system, back + load * rate, load, residual=True)
-        self.failure = Status.ITERATION_LIMIT
-        return None, self.settings.max_iterations
+    def _limit_point(self, length: float, before: float, after: float) -> Event:
+        """Limit point within a step: where the direction of the path has no load component."""
 
-    def _limit_point(self, length: float, after: float) -> tuple[Event, int]:
-        """Limit point within a step: where the tangent has no load component, by false position (Illinois)."""
-        assert self.tangent is not None, "a path that was followed has a tangent"
-        (s0, y0), (s1, y1) = (0.0, self.tangent.load), (length, after)
-        state, iterations = self.here.state, 0
-        for _ in range(60):
-            s = s0 + (s1 - s0) * y0 / (y0 - y1)
-            reached, spent = self._step(s)
-            iterations += spent
-            if reached is None:
-                break
-            there, tangent = reached
-            state = there.state
-            if abs(tangent.load) < 1e-9 * abs(self.tangent.load) or abs(s1 - s0) < 1e-12 * length:
-                break
-            if tangent.load * y0 > 0:
-                s0, y0, y1 = s, tangent.load, y1 / 2
-            else:
-                s1, y1, y0 = s, tangent.load, y0 / 2
-        event = Event(
-            kind=EventKind.LIMIT_POINT,
-            load_parameter=state.load_parameter,
-            pair="",
-            element=-1,
-            arc_position=float("nan"),
-            force=0.0,
-        )
-        return event, iterations
+        def evaluate(s: float) -> tuple[float, State] | None:
+            reached = self._step(s)
+            return None if reached is None else (reached[1].load, reached[0].state)
+
+        small, apart = _LOCATED * abs(before), _APART * length
+        state = find_root(evaluate, (0.0, before), (length, after), small=small, apart=apart)
+        t = (state or self.here.state).load_parameter
+        return Event(kind=EventKind.LIMIT_POINT, load_parameter=t)

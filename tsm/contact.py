@@ -8,63 +8,22 @@ of a kink, where none does, and on the concave side, where two do, it is the nea
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from tsm.elements.curve import Curve
 from tsm.elements.properties import Array
 from tsm.model import BeamModel, Model, PairModel
-from tsm.rods.accuracy import deflected
-from tsm.rods.profile import recut
-from tsm.rods.shape import RodShape, tangent_at
+from tsm.projection import project_on_chords, slide
 from tsm.state import State, Touch
 
-_SAMPLES = 33
-"""Points of an exact element among which the nearest is looked for."""
-_AT_NODE = 1e-9
-"""Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""
 
-
-class Projection(NamedTuple):
-    """Closest point of a beam's deflected axis to a node.
-
-    Attributes
-    ----------
-    element : int
-        Global number of the owner.
-    xi : float
-        Position on it.
-    gap : float
-        Distance from the contact surface to the node, positive on the stated side.
-    overshoot : float
-        How far the closest point lies beyond the beam's ends, along the axis [length]; 0 within.
-    """
-
-    element: int
-    xi: float
-    gap: float
-    overshoot: float
-
-
-def arc_position(target: BeamModel, element: int, xi: float) -> float:
-    """Distance along the undeformed axis from the beam's start."""
-    k = element - target.first
-    return (1.0 - xi) * target.arcs[k] + xi * target.arcs[k + 1]
-
-
-def slide(target: BeamModel, element: int, xi: float, past: float = 0.0) -> tuple[int, float]:
-    """Hand a position that left its element by more than a part of its length over to the neighbour."""
-    if not math.isfinite(xi):
-        return element, xi
-    k, l0 = element - target.first, target.lengths
-    while xi > 1.0 + past and k < len(l0) - 1:
-        xi, k = (xi - 1.0) * (l0[k] / l0[k + 1]), k + 1
-    while xi < -past and k > 0:
-        xi, k = 1.0 + xi * (l0[k] / l0[k - 1]), k - 1
-    return target.first + k, xi
+def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
+    """State with other contacts."""
+    after = replace(state, touches=touches)
+    for group in model.groups:
+        after = group.with_touches(state, after)
+    return after
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
@@ -74,22 +33,17 @@ def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -
         if touch is None:
             owned.append(None)
             continue
-        element, xi = slide(pair.target, touch.element, touch.xi, 0.0 if pair.cuts else _AT_NODE)
-        owned.append(touch if element == touch.element else replace(touch, element=element, xi=xi))
-    if model.rods is None:
-        return replace(state, touches=tuple(owned))
-    return recut(model.rods, replace(state, touches=touches), tuple(owned))
+        first = pair.target.first
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, pair.group.past_node)
+        owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
+    return with_touches(model, replace(state, touches=touches), tuple(owned))
 
 
 def nearest_chord(model: Model, target: BeamModel, q: Array, node: tuple[float, float]) -> tuple[int, float]:
     """Owner by projection on the chords."""
     positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
-    d = np.diff(positions, axis=0)
-    r = np.array(node) - positions[:-1]
-    xi = np.einsum("ij,ij->i", d, r) / np.einsum("ij,ij->i", d, d)
-    miss = r - np.clip(xi, 0.0, 1.0)[:, None] * d
-    owner = int(np.argmin(np.einsum("ij,ij->i", miss, miss)))
-    return target.first + owner, float(xi[owner])
+    owner, xi = project_on_chords(positions, np.array(node))
+    return target.first + int(owner), float(xi[owner])
 
 
 def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> Touch:
@@ -97,78 +51,3 @@ def chord_owner(model: Model, pair: PairModel, state: State, touch: Touch) -> To
     node = model.node_position(pair, state.q, state.load_parameter)
     element, xi = nearest_chord(model, pair.target, state.q, node)
     return Touch(element=element, xi=min(max(xi, 0.0), 1.0), force=touch.force)
-
-
-def project(model: Model, pair: PairModel, state: State) -> Projection:
-    """Closest point of the deflected axis, with the dents of the contacts that are closed.
-
-    The chords give the owner, Newton's method on the owner's curve the point.
-    """
-    if pair.cuts:
-        assert model.rods is not None, "the pair touches an exact element"
-        shape = deflected(model.rods, state)
-        seen: dict[int, Projection] = model.rods.memo.closest if model.rods.memo else {}
-        if pair.slot not in seen:
-            seen[pair.slot] = _project_on_rods(model, pair, state, shape)
-        return seen[pair.slot]
-    q = state.q
-    node = model.node_position(pair, q, state.load_parameter)
-    element, xi = nearest_chord(model, pair.target, q, node)
-    for _ in range(20):
-        rx, ry, curve = _lever(model, element, q, node)
-        (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
-        tx, ty = dx - dw * dy, dy + dw * dx
-        step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
-        element, xi = slide(pair.target, element, xi - step)
-        if abs(step) < 1e-14:
-            break
-    coupling = pair.law.coupling
-    for touch in state.touches:
-        if coupling and touch is not None and touch.element == element:
-            dent = coupling.dent(model.element[element], xi, touch.xi)
-            px, py = px + dent * touch.force[0], py + dent * touch.force[1]
-    height = (py * tx - px * ty) / math.hypot(tx, ty)
-    beyond = _beyond(pair.target, arc_position(pair.target, element, xi))
-    return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
-
-
-def _beyond(target: BeamModel, arc: float) -> float:
-    """How far an arc position lies outside the beam."""
-    return max(arc - target.beam.length, -arc, 0.0)
-
-
-def _project_on_rods(model: Model, pair: PairModel, state: State, shape: RodShape) -> Projection:
-    """Closest point of exact elements: of points along the axis the nearest, and Newton's method from there."""
-    assert model.rods is not None, "the pair touches an exact element"
-    target = pair.target
-    node = np.array(model.node_position(pair, state.q, state.load_parameter))
-    first, xi = int(model.place[target.first]), np.linspace(0, 1, _SAMPLES)
-    points = np.array([shape.at(first + e, xi * l0).position for e, l0 in enumerate(target.lengths)]) - node
-    nearest = np.argmin(np.einsum("emi,emi->em", points, points))
-    e, sample = divmod(int(nearest), _SAMPLES)
-    arc = float(xi[sample]) * target.lengths[e]
-    for _ in range(30):
-        l0 = target.lengths[e]
-        inside = min(max(arc, 0.0), l0)
-        at = shape.at(first + e, np.array([inside]))
-        tangent, bend = tangent_at(model.rods, first + e, at)
-        apart = at.position[0] + (arc - inside) * tangent - node
-        slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
-        step = float(apart @ tangent) / slope if slope > 0 else 0.0
-        arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
-        element, at_xi = slide(target, target.first + e, arc / l0)
-        e = element - target.first
-        arc = at_xi * target.lengths[e]
-        if abs(step) < 1e-14 * l0:
-            break
-    height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
-    beyond = _beyond(target, arc_position(target, element, at_xi))
-    return Projection(element, at_xi, pair.side * height - pair.pair.offset, beyond)
-
-
-def _lever(model: Model, element: int, q: Array, node: tuple[float, float]) -> tuple[float, float, Curve]:
-    x = q[model.dofs[:, element]].tolist()
-    start_x, start_y = model.element_start[element]
-    rx, ry = start_x + x[0] - node[0], start_y + x[1] - node[1]
-    return rx, ry, Curve(model.element[element], x)

@@ -1,4 +1,4 @@
-"""The set of closed contacts: how it starts, how it changes, when an open pair may close, what may not open."""
+"""The set of closed contacts: its start, its changes, which open pairs may close, and which closed ones may not open."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsm.contact import chord_owner, project
+from tsm.contact import chord_owner, with_touches
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model, PairModel
-from tsm.rods.profile import recut, undeformed
 from tsm.state import State, Touch
 from tsm.status import Status
 
@@ -18,10 +17,7 @@ def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: b
     """State with pair k closed by a touch, or open and armed or not."""
     touches, flags = list(state.touches), list(state.armed)
     touches[k], flags[k] = touch, armed
-    state = replace(state, armed=tuple(flags))
-    if model.rods:
-        return recut(model.rods, state, tuple(touches))
-    return replace(state, touches=tuple(touches))
+    return with_touches(model, replace(state, armed=tuple(flags)), tuple(touches))
 
 
 def rearm(model: Model, state: State) -> State:
@@ -31,7 +27,7 @@ def rearm(model: Model, state: State) -> State:
     armed = list(state.armed)
     for k, pair in enumerate(model.pairs):
         if state.touches[k] is None and not armed[k]:
-            seen = project(model, pair, state)
+            seen = pair.group.project(pair, state)
             armed[k] = seen.overshoot > ROUND_OFF * model.length or seen.gap > ROUND_OFF * model.length
     return replace(state, armed=tuple(armed))
 
@@ -47,11 +43,12 @@ def initial_state(model: Model) -> State:
     q = np.zeros(model.dof_count)
     count = len(model.pairs)
     none: tuple[Touch | None, ...] = (None,) * count
-    straight = undeformed(model.rods, none) if model.rods else None
-    start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count, profile=straight)
+    start = State(load_parameter=0.0, q=q, touches=none, armed=(True,) * count)
+    for group in model.groups:
+        start = group.undeformed(start)
     touches: list[Touch | None] = []
     for pair in model.pairs:
-        seen = project(model, pair, start)
+        seen = pair.group.project(pair, start)
         small = ROUND_OFF * model.length
         over = seen.overshoot <= small
         if over and seen.gap < -small:
@@ -64,9 +61,7 @@ def initial_state(model: Model) -> State:
         touches.append(
             Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
         )
-    if model.rods:
-        start = recut(model.rods, start, tuple(touches))
-    return owned(model, replace(start, touches=start.touches if model.rods else tuple(touches)))
+    return owned(model, with_touches(model, start, tuple(touches)))
 
 
 def crowded(model: Model, state: State) -> bool:

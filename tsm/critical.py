@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,11 +22,12 @@ from tsm.axis import axis_line
 from tsm.elements.properties import Array
 from tsm.newton import Equilibrium, Newton
 from tsm.path import PathTangent
+from tsm.root import find_root
 from tsm.stability import mode
+from tsm.system import Linearisation
 
-_SOLVES = 60
 _LOCATED = 1e-13
-"""Bracket of a critical load parameter at which it is found."""
+"""Bracket of a critical load parameter at which it is found, and g there in parts of its value at the ends of the step."""
 _SHIFT = 1e-6
 """Part of a mode by which the axis is moved to see its shape."""
 
@@ -58,39 +58,26 @@ class CriticalPoint:
     mode: dict[str, Array]
 
 
-class Bracket(NamedTuple):
-    """Two ends of a step between which the index changes.
-
-    Attributes
-    ----------
-    before, after : tuple of (float, int)
-        Load parameters and indices.
-    """
-
-    before: tuple[float, int]
-    after: tuple[float, int]
-
-
-def _bordered(newton: Newton, equilibrium: Equilibrium, across: Array | None = None) -> tuple[float, Array]:
+def _bordered(newton: Newton, system: Linearisation, across: Array | None = None) -> tuple[float, Array]:
     """Return g and v of the module's equation, v over the equations and the contacts' unknowns.
 
     Parameters
     ----------
     newton : Newton
-        Of the structure.
-    equilibrium : Equilibrium
-        Where.
+        Solver of the structure.
+    system : Linearisation
+        Tangent at an equilibrium.
     across : ndarray, optional
         The vector c; a fixed one with parts along all displacements if not given.
     """
     size = len(newton.scale)
     draw = np.random.default_rng(1)
     b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
-    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
-    solved = newton.assembler.solve(equilibrium.system, b)
-    if solved is None or not np.isfinite(solved.x[:, 1]).all():
+    c = draw.uniform(0.5, 1.0, size) * newton.per_step if across is None else across
+    solved = newton.assembler.solve(system, b)
+    if solved is None or not np.isfinite(solved[:, 1]).all():
         return 0.0, np.zeros(size)
-    y = solved.x[:, 1]
+    y = solved[:, 1]
     along = float(c @ y)
     with np.errstate(all="ignore"):
         v = y / along if along else np.zeros(size)
@@ -98,65 +85,46 @@ def _bordered(newton: Newton, equilibrium: Equilibrium, across: Array | None = N
 
 
 def locate_bifurcation(
-    newton: Newton, bracket: Bracket, solve: Callable[[float], Equilibrium | None]
+    newton: Newton, before: PathTangent, after: PathTangent, solve: Callable[[float], Equilibrium | None]
 ) -> Equilibrium | None:
-    """Equilibrium at the first singular tangent of a path that goes on beyond it.
+    """Equilibrium at the singular tangent of a path that goes on beyond it.
 
-    The index brackets the point; false position on g finds it where the bracket holds a single one.
+    The index tells on which side of the point an equilibrium lies, g how far from it.
 
     Parameters
     ----------
     newton : Newton
-        Of the structure.
-    bracket : Bracket
-        Indices that differ at two load parameters.
+        Solver of the structure.
+    before, after : PathTangent
+        Two ends of a step between which the index changes.
     solve : callable
         Equilibrium of the path at a load parameter, None where none is found.
 
     Returns
     -------
     Equilibrium or None
-        The last found before the point, None where the path is not found between the two ends.
+        Equilibrium at the point, None where the path is not found between the two ends.
     """
-    (low, index), (high, _) = bracket
-    across: Array | None = None
-    known: list[tuple[float, float]] = []
-    found: Equilibrium | None = None
-    for _ in range(_SOLVES):
-        t = _secant(known, low, high)
+    _, v = _bordered(newton, before.system)
+    weights = newton.per_step**2
+    length = float(v @ (weights * v))
+    if not 0 < length < np.inf:
+        return None
+    across = weights * v / length
+
+    def distance(tangent: PathTangent) -> float:
+        g = abs(_bordered(newton, tangent.system, across)[0])
+        return g if tangent.index == before.index else -g
+
+    def evaluate(t: float) -> tuple[float, Equilibrium] | None:
         equilibrium = solve(t)
         if equilibrium is None:
             return None
-        g, v = _bordered(newton, equilibrium, across)
-        if across is None:
-            weights = newton.per_unknown**2
-            length = float(v @ (weights * v))
-            if not 0 < length < np.inf:
-                return None
-            across = weights * v / length
-            g, _ = _bordered(newton, equilibrium, across)
-        known = [*known[-1:], (t, g)]
-        if PathTangent(newton, equilibrium).index == index:
-            low, found = t, equilibrium
-        else:
-            high, found = t, found or equilibrium
-        if high - low <= _LOCATED * max(1.0, high) or g == 0.0 or _stationary(known):
-            return equilibrium
-    return found
+        return distance(PathTangent(newton, equilibrium)), equilibrium
 
-
-def _secant(known: list[tuple[float, float]], low: float, high: float) -> float:
-    """Zero of the line through the last two values, or the middle where it lies outside the bracket."""
-    if len(known) == 2 and known[0][1] != known[1][1]:
-        (t0, g0), (t1, g1) = known
-        t = t1 - g1 * (t1 - t0) / (g1 - g0)
-        if low < t < high:
-            return t
-    return (low + high) / 2
-
-
-def _stationary(known: list[tuple[float, float]]) -> bool:
-    return len(known) == 2 and abs(known[1][0] - known[0][0]) <= _LOCATED * max(1.0, known[1][0])
+    (t0, g0), (t1, g1) = ((end.state.load_parameter, distance(end)) for end in (before, after))
+    apart = _LOCATED * max(1.0, t1)
+    return find_root(evaluate, (t0, g0), (t1, g1), small=_LOCATED * max(g0, -g1), apart=apart)
 
 
 def limit_load(before: tuple[float, float], last: tuple[float, float]) -> float:
@@ -176,8 +144,8 @@ def critical_point(
     newton: Newton, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float
 ) -> CriticalPoint:
     """Critical point with the mode of the tangent at an equilibrium beside it."""
-    found = mode_shape(newton, equilibrium)
-    shapes = {} if found is None else found[1]
+    shape = mode_shape(newton, equilibrium)
+    shapes = {} if shape is None else shape[1]
     return CriticalPoint(kind=kind, load_parameter=load_parameter, mode=shapes)
 
 
@@ -190,14 +158,14 @@ def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[st
         Change of the unknowns that moves some point of an axis by 1, and the displacements (m, 2) of the axes; None without a single mode.
     """
     model, state = newton.model, equilibrium.state
-    found = mode(newton.assembler, state, equilibrium.system)
-    if found is None:
+    soft = mode(newton.assembler, state, equilibrium.system)
+    if soft is None:
         return None
-    moved = newton.update(state, found.x * _SHIFT, equilibrium.system)
+    moved = newton.update(state, soft.x * _SHIFT, equilibrium.system)
     system = newton.assembler.linearise(moved)
     shapes = {
         beam: axis_line(model, moved, system, beam)[1] - axis_line(model, state, equilibrium.system, beam)[1]
         for beam in model.beams
     }
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
-    return found.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+    return soft.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}

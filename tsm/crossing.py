@@ -5,11 +5,15 @@ After such a step the node is nowhere over the beam, so that no gap tells of the
 
 from __future__ import annotations
 
-from tsm.contact import Projection, project
 from tsm.events import ROUND_OFF
 from tsm.model import Model, PairModel
 from tsm.predictor import extrapolate
+from tsm.projection import Projection
+from tsm.root import find_root
 from tsm.state import State
+
+_CROSSED = 1e-14
+"""Gap, in parts of the longest beam, and bracket of load parameters at which a crossing is found."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
@@ -29,13 +33,13 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
     tuple or None
         Load parameter and number of the pair.
     """
-    found = []
+    crossings = []
     for k, (pair, armed) in enumerate(zip(model.pairs, before.armed, strict=True)):
-        if after.touches[k] is None and armed and not _over(model, last := project(model, pair, after)):
+        if after.touches[k] is None and armed and not _over(model, last := pair.group.project(pair, after)):
             t = _passage(model, pair, before, after, last.gap)
             if t is not None:
-                found.append((t, k))
-    return min(found, default=None)
+                crossings.append((t, k))
+    return min(crossings, default=None)
 
 
 def _over(model: Model, seen: Projection) -> bool:
@@ -44,19 +48,20 @@ def _over(model: Model, seen: Projection) -> bool:
 
 def _passage(model: Model, pair: PairModel, before: State, after: State, gap: float) -> float | None:
     """Load parameter at which the gap goes through zero over the beam."""
-    from scipy.optimize import brentq
-
     t0, t1, small = before.load_parameter, after.load_parameter, ROUND_OFF * model.length
 
     def seen(t: float) -> Projection:
-        return project(model, pair, extrapolate(model, [before, after], t))
+        return pair.group.project(pair, extrapolate(model, [before, after], t))
 
-    first = project(model, pair, before)
+    first = pair.group.project(pair, before)
     if gap >= -small or first.gap < -small:
         return None
     if first.gap <= small:
         return t0 if _over(model, first) else None
-    if not seen(t0).gap > 0.0 > seen(t1).gap:
+    start, end = seen(t0).gap, seen(t1).gap
+    if not start > 0.0 > end:
         return None
-    t = float(brentq(lambda t: seen(t).gap, t0, t1, xtol=1e-15))
-    return t if _over(model, seen(t)) else None
+    t = find_root(
+        lambda t: (seen(t).gap, t), (t0, start), (t1, end), small=_CROSSED * model.length, apart=_CROSSED
+    )
+    return t if t is not None and _over(model, seen(t)) else None

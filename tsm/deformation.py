@@ -1,4 +1,4 @@
-"""How much elements bend and strain on the way: what their shape functions and strain measures have to bear."""
+"""Largest bending and strain of the elements along the path, to be compared with what their approximations allow."""
 
 from __future__ import annotations
 
@@ -43,13 +43,14 @@ def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation 
     bearable = [kind.bearable_turn for kind in kinds if isinstance(kind, ClosedForm)]
     if not bearable:
         return None
+    number = next(group.number for group in model.groups if not group.internal)
     p = Properties(*(column[model.closed] for column in model.properties))
     with np.errstate(divide="ignore"):
         stiffness = np.minimum(p.EA, 12 * p.EI / (p.Phi * p.l0**2))
     start, end = model.element_nodes[model.closed].T
     turn, strain = np.zeros((2, len(equilibria)))
     for n, equilibrium in enumerate(equilibria):
-        rotation, force = equilibrium.state.q[2::3], equilibrium.system.closed_force
+        rotation, force = equilibrium.state.q[2::3], equilibrium.system.groups[number].ends
         turn[n] = np.abs(rotation[end] - rotation[start]).max(initial=0.0)
         at_ends = np.maximum(np.hypot(force[0], force[1]), np.hypot(force[3], force[4]))
         strain[n] = (at_ends / stiffness).max(initial=0.0)

@@ -21,17 +21,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
-from tsm.contact import arc_position, project
 from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
+from tsm.projection import arc_position
+from tsm.root import find_root
 
 ROUND_OFF = 1e-10
 """Margins smaller than this are zero."""
 
 _LOCATED = 1e-12
 """Margin at which an event is found: what depends on its load parameter may be a thousand times as sensitive."""
-_SOLVES = 80
+_APART = 1e-14
+"""Width of the bracket of load parameters within which a margin jumps."""
 
 
 class EventKind(Enum):
@@ -48,7 +50,7 @@ class EventKind(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """A located contact event.
+    """A located event; limit points and bifurcations belong to no contact.
 
     Attributes
     ----------
@@ -70,10 +72,10 @@ class Event:
 
     kind: EventKind
     load_parameter: float
-    pair: str
-    element: int
-    arc_position: float
-    force: float
+    pair: str = ""
+    element: int = -1
+    arc_position: float = math.nan
+    force: float = 0.0
     released: float = 0.0
 
 
@@ -110,12 +112,7 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     fx, fy = equilibrium.system.forces[k]
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
-    if model.pairs[k].cuts:
-        dx, dy = math.cos(touch.angle), math.sin(touch.angle)
-    else:
-        i, j = model.element_nodes[touch.element]
-        q = equilibrium.state.q
-        dx, dy = model.coordinates[j] - model.coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
+    dx, dy = model.pairs[k].group.direction(touch, equilibrium.state.q)
     push = model.pairs[k].side * (fy * dx - fx * dy)
     size = float((fx * fx + fy * fy) ** 0.5)
     return size if push >= 0 else -size
@@ -163,26 +160,28 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]
 
 
 def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:
-    """Margins of the events that may come next, those of forces over the solution's own tolerance."""
+    """Margins of the events that may come next; forces are measured by the tolerance of the solution."""
     state = equilibrium.state
-    found: list[Margin] = []
+    upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if touch is not None:
             arc = arc_position(pair.target, touch.element, touch.xi)
             inside = min(arc, pair.target.beam.length - arc) / model.length
             force = normal_force(model, equilibrium, k) / model.force_scale
-            found.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
-            found.append(
+            upcoming.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
+            upcoming.append(
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
             if pair.pair.offset > 0:
                 room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
-                found.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
+                upcoming.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
-            seen = project(model, pair, state)
+            seen = pair.group.project(pair, state)
             over = seen.overshoot <= ROUND_OFF * model.length
-            found.append(Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0))
-    return found
+            upcoming.append(
+                Margin(kind=EventKind.TOUCH, pair=k, value=seen.gap / model.length if over else 1.0)
+            )
+    return upcoming
 
 
 def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:
@@ -196,7 +195,7 @@ def locate(
     solve: Callable[[float], Equilibrium | None],
     measure: Callable[[Equilibrium], list[Margin]],
 ) -> tuple[Equilibrium, Margin] | None:
-    """Equilibrium at which a margin is zero, by false position (Illinois) with a bisection every third time.
+    """Equilibrium at which a margin is zero.
 
     Parameters
     ----------
@@ -212,22 +211,13 @@ def locate(
     tuple or None
         Where the margin is zero, or where it jumps below zero at a load parameter that is exact to round-off.
     """
-    (t0, first), (t1, last) = before, after
-    y0, y1 = first.value, last.value
-    found: tuple[Equilibrium, Margin] | None = None
-    for count in range(_SOLVES):
-        t = (t0 + t1) / 2 if count % 3 == 2 else t0 + (t1 - t0) * y0 / (y0 - y1)
+    (begin, first), (end, last) = before, after
+
+    def evaluate(t: float) -> tuple[float, tuple[Equilibrium, Margin]] | None:
         equilibrium = solve(t)
         if equilibrium is None:
             return None
         margin = next(m for m in measure(equilibrium) if (m.kind, m.pair) == (first.kind, first.pair))
-        found = equilibrium, margin
-        if abs(margin.value) <= _LOCATED:
-            return found
-        if margin.value > 0:
-            t0, y0, y1 = t, margin.value, y1 / 2
-        else:
-            t1, y1, y0 = t, margin.value, y0 / 2
-        if abs(t1 - t0) < 1e-14 and margin.value < 0:
-            return found
-    return found
+        return margin.value, (equilibrium, margin)
+
+    return find_root(evaluate, (begin, first.value), (end, last.value), small=_LOCATED, apart=_APART)

@@ -1,7 +1,7 @@
 """Falls: where a structure comes to rest when a contact that held it slips off.
 
-A dead load in place of the lost contact may have no equilibrium nearby where the contact had one; moving against a drag, the structure
-goes down in energy by steps as short as need be. What it falls on, it touches.
+Without the lost contact there may be no equilibrium nearby. The structure therefore moves against a drag, and its potential decreases in steps
+that may be as short as necessary. Beams and pins that it meets on the way become contacts.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsm.contact import project
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, EventKind, Margin
 from tsm.model import Model
@@ -27,7 +26,7 @@ _FIRST_PACE = 1e-1
 _LEVEL = 1e-9
 """Rise of the energy, in parts of itself and of ``EI/L``, that round-off may leave."""
 _TRIALS = 200
-"""Steps of a fall at most, those taken back included: what nothing holds falls forever."""
+"""Steps of a fall at most, refused ones included: a structure that nothing holds never comes to rest."""
 
 
 @dataclass(kw_only=True)
@@ -37,7 +36,7 @@ class Fall:
     Attributes
     ----------
     newton : Newton
-        Of the structure.
+        Solver of the structure.
     measure : callable
         Margins of an equilibrium.
     close : callable
@@ -102,13 +101,13 @@ def descends(newton: Newton, energy: float, after: State) -> bool:
 def _before(model: Model, state: State) -> set[int]:
     """Open pairs whose node lies on its side of the beam, or on the surface: it cannot come to lie behind without a contact."""
     small = ROUND_OFF * model.length
-    found = set()
+    beside = set()
     for k, (pair, touch, armed) in enumerate(zip(model.pairs, state.touches, state.armed, strict=True)):
         if touch is None and armed:
-            seen = project(model, pair, state)
+            seen = pair.group.project(pair, state)
             if seen.overshoot <= small and seen.gap >= -small:
-                found.add(k)
-    return found
+                beside.add(k)
+    return beside
 
 
 def met(margins: list[Margin]) -> list[Margin]:

@@ -17,7 +17,7 @@ _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-13
 """Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
 _SOFT = 1e5
-"""Flexibility, in plain numbers, of a structure without its contacts above which too few digits are left: a band near its own critical point."""
+"""Largest flexibility, in plain numbers, of a structure without its contacts: beyond, the band is near its own critical point and has too few digits."""
 _DENSE = 1500
 """Most unknowns of a dense matrix."""
 
@@ -34,7 +34,7 @@ class Symmetric(NamedTuple):
     corner : ndarray, shape (b, b)
         Where they meet, likewise.
     units : ndarray, shape (n,)
-        Of the unknowns of the band, over the root of an energy.
+        Units of the band's unknowns, over the root of an energy.
     multipliers : int
         Unknowns that are forces or moments.
     """

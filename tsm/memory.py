@@ -1,10 +1,10 @@
-"""What a solution will hold in memory, known before anything is made."""
+"""Estimate of the memory that a solution needs, made before it starts."""
 
 from __future__ import annotations
 
 import os
 
-from tsm.elements import ELEMENTS, EXACT
+from tsm.elements import ELEMENTS, Integrated
 from tsm.structure import Structure
 
 PART = 0.8
@@ -21,14 +21,14 @@ def needed(structure: Structure, load_parameters: int) -> int:
     """
     kinds = [ELEMENTS[beam.element] for beam in structure.beams]
     elements = sum(beam.elements for beam in structure.beams)
-    own = sum(
-        beam.elements * (EXACT_ONE if kind is EXACT else CLOSED)
+    of_elements = sum(
+        beam.elements * (EXACT_ONE if isinstance(kind, Integrated) else CLOSED)
         for beam, kind in zip(structure.beams, kinds, strict=True)
     )
     touched = {beam.name: kind for beam, kind in zip(structure.beams, kinds, strict=True)}
     contact_unknowns = sum(touched[pair.beam].contact_unknowns for pair in structure.contacts)
     dense = BORDER * contact_unknowns * elements + 8 * contact_unknowns**2
-    return (load_parameters + 1) * (own + dense)
+    return (load_parameters + 1) * (of_elements + dense)
 
 
 def check_memory(structure: Structure, load_parameters: int) -> None:

@@ -12,11 +12,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, EXACT, ClosedForm, ContactLaw, ElementType
+from tsm.elements import ELEMENTS, ClosedForm, ContactLaw, ElementType
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
+from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
 from tsm.rods.assembly import Rods
+from tsm.sizes import Sizes, joined_extents, sizes_of
 from tsm.structure import Beam, ContactPair, Pin, Structure
+
+_CONTACT_KINDS = np.arange(6, 10)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +65,8 @@ class PairModel:
         The touched beam.
     element_type : ElementType
         Its element type.
+    group : ElementGroup
+        Group of its elements.
     side : float
         +1 where the node comes from the right, -1 from the left.
     pin : Pin or None
@@ -74,6 +80,7 @@ class PairModel:
     pair: ContactPair
     target: BeamModel
     element_type: ElementType
+    group: ElementGroup
     side: float
     pin: Pin | None
     node: int
@@ -82,7 +89,7 @@ class PairModel:
     @property
     def cuts(self) -> bool:
         """Whether the contact cuts the touched element."""
-        return self.element_type is EXACT
+        return self.group.internal
 
     @property
     def law(self) -> ContactLaw:
@@ -110,12 +117,15 @@ class Model:
         Undeformed node positions.
     dofs : ndarray of int, shape (6, elements)
         Degrees of freedom of the elements' nodes, three per node.
+    groups : list of ElementGroup
+        The elements by the way in which they are stated. The force and moment of an exact element are three degrees of freedom, numbered
+        after the nodes.
     closed : ndarray of int, shape (c,)
         Elements in closed form.
-    rods : Rods or None
-        The exact elements; their force and moment are three degrees of freedom each, after those of the nodes.
     place : ndarray of int, shape (elements,)
-        Number of every element among those of its kind.
+        Number of every element within its group.
+    block : ndarray of int, shape (elements,)
+        Number of every element's own three degrees of freedom among all threes, -1 without.
     free : ndarray of int, shape (equations,)
         Degree of freedom of every equation, banded ones first.
     banded : int
@@ -124,10 +134,8 @@ class Model:
         Number of border unknowns: border equations, then the contacts' own unknowns.
     turns : tuple of float
         Load parameters at which the paths of the pins turn.
-    length, extent : float
-        Length of the longest beam, and of the largest structure of joined beams.
-    force_scale, least_force : float
-        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
+    sizes : Sizes
+        Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -137,16 +145,14 @@ class Model:
         self._prescribe(structure)
         self._place_pairs(structure)
         self._number_equations()
-        self.properties = self._properties()
-        self.coefficients = self._coefficients()
-        self.rods = Rods(self) if len(self.exact) else None
-        self.length = max(beam.length for beam in structure.beams)
-        self.force_scale = max(beam.section.EI / beam.length**2 for beam in structure.beams)
-        extents = self._extents()
-        self.extent = max(extents)
-        self.least_force = max(
-            beam.section.EI / extent**2 for beam, extent in zip(structure.beams, extents, strict=True)
+        sections = np.array(
+            [[getattr(b.section, name) for b in structure.beams] for name in ("EA", "GA", "EI")]
         )
+        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
+        self.properties = self.properties_of(self.coordinates, l0, sections)
+        lengths = np.array([beam.length for beam in structure.beams])
+        self.sizes = self.sizes_of(self.coordinates, lengths, sections[2])
+        self.length, self.extent, self.force_scale, self.least_force = map(float, self.sizes)
         self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
@@ -179,30 +185,33 @@ class Model:
         self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
 
     def _sort_elements(self, beams: tuple[Beam, ...]) -> None:
-        exact = np.repeat([ELEMENTS[b.element] is EXACT for b in beams], [b.elements for b in beams])
-        self.exact, self.closed = np.flatnonzero(exact), np.flatnonzero(~exact)
-        self.place = np.where(exact, np.cumsum(exact), np.cumsum(~exact)) - 1
-        own = 3 * (len(self.coordinates) + np.arange(len(self.exact))) + np.arange(3)[:, None]
-        nodal = self.dofs[:, self.exact]
-        self.exact_dofs = np.concatenate([nodal[:3], own, nodal[3:]])
-        self.dof_count = 3 * (len(self.coordinates) + len(self.exact))
+        counts = [beam.elements for beam in beams]
+        self.groups: list[ElementGroup] = []
+        self.place, self.block = np.zeros(sum(counts), dtype=int), np.full(sum(counts), -1)
+        count = len(self.coordinates)
+        for kind, group in GROUPS.items():
+            elements = np.flatnonzero(
+                np.repeat([isinstance(ELEMENTS[b.element], kind) for b in beams], counts)
+            )
+            if not len(elements):
+                continue
+            dofs = self.dofs[:, elements]
+            if group.internal:
+                self.block[elements] = count + np.arange(len(elements))
+                count += len(elements)
+                own = 3 * self.block[elements] + np.arange(3)[:, None]
+                dofs = np.concatenate([dofs[:3], own, dofs[3:]])
+            self.place[elements] = np.arange(len(elements))
+            self.groups.append(group(self, len(self.groups), elements, dofs))
+        self.closed = np.flatnonzero(self.block < 0)
+        self.dof_count = 3 * count
 
-    def _extents(self) -> list[float]:
-        """Diagonal of the structure of joined beams that each beam belongs to: how far its ends may go; of one alone, its length."""
-        lengths = [beam.beam.length for beam in self.beams.values()]
+    def sizes_of(self, coordinates: Array, lengths: Array, EI: Array) -> Sizes:
+        """Sizes from node positions (nodes, 2, ...), and lengths and bending stiffnesses (beams, ...) of the beams."""
         if not self.joined:
-            return lengths
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        i, j = self.element_nodes.T
-        shape = (len(self.coordinates),) * 2
-        count, of = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=shape), directed=False)
-        least, most = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
-        np.minimum.at(least, of, self.coordinates)
-        np.maximum.at(most, of, self.coordinates)
-        across = np.hypot(*(most - least).T)[of[[beam.nodes[0] for beam in self.beams.values()]]]
-        return [max(own, float(whole)) for own, whole in zip(lengths, across, strict=True)]
+            return sizes_of(lengths, lengths, EI)
+        starts = np.array([beam.nodes[0] for beam in self.beams.values()])
+        return sizes_of(lengths, joined_extents(self.element_nodes, starts, coordinates, lengths), EI)
 
     def _prescribe(self, structure: Structure) -> None:
         self.support_node: dict[str, int] = {}
@@ -226,28 +235,34 @@ class Model:
 
     @cached_property
     def kind(self) -> Array:
-        """What the equations are about: displacement (0, 1), rotation (2), an exact element's force (3, 4), moment (5)."""
-        kind: Array = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
+        """Quantity of every unknown, the equations first, then the contacts' unknowns.
+
+        Displacement (0, 1), rotation (2), force (3, 4) and moment (5) of an exact element, contact force (6, 7), arc position (8), angle
+        of a contact (9).
+        """
+        nodal = self.free % 3 + 3 * (self.free >= 3 * len(self.coordinates))
+        contacts = [_CONTACT_KINDS[: pair.element_type.contact_unknowns] for pair in self.pairs]
+        kind: Array = np.concatenate([nodal, *contacts])
         return kind
 
     @cached_property
     def units(self) -> Array:
         """Units of the unknowns, from the longest beam and the largest ``EI/L^2``."""
         L, F = self.length, self.force_scale
-        own = [[F, F, L, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
-        return np.concatenate([np.array([L, L, 1.0, F, F, F * L])[self.kind], *own])
+        units: Array = np.array([L, L, 1.0, F, F, F * L, F, F, L, 1.0])[self.kind]
+        return units
 
     @cached_property
     def row_units(self) -> Array:
         """Units of the equations."""
         L, F = self.length, self.force_scale
-        own = [[L, L, F, 1.0][: pair.element_type.contact_unknowns] for pair in self.pairs]
-        return np.concatenate([np.array([F, F, F * L, L, L, 1.0])[self.kind], *own])
+        units: Array = np.array([F, F, F * L, L, L, 1.0, L, L, F, 1.0])[self.kind]
+        return units
 
     @cached_property
     def whole(self) -> bool:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
-        return len(self.exact) == len(self.beams) and not len(self.closed)
+        return len(self.block) == len(self.beams) and not len(self.closed)
 
     @cached_property
     def pairs_on(self) -> dict[str, list[int]]:
@@ -256,6 +271,29 @@ class Model:
         for k, pair in enumerate(self.pairs):
             on.setdefault(pair.pair.beam, []).append(k)
         return on
+
+    def pairs_of(self, group: ElementGroup) -> list[tuple[int, PairModel]]:
+        """Contact pairs on a group's elements, with their numbers."""
+        return self._pairs_of[group.number]
+
+    @cached_property
+    def _pairs_of(self) -> list[list[tuple[int, PairModel]]]:
+        numbered = list(enumerate(self.pairs))
+        return [[(k, pair) for k, pair in numbered if pair.group is group] for group in self.groups]
+
+    def group_of(self, beam: BeamModel) -> ElementGroup:
+        """Group of a beam's elements."""
+        return next(group for group in self.groups if beam.first in group.elements)
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """Coefficients of the elements in closed form."""
+        return next(group.coefficients for group in self.groups if isinstance(group, ClosedFormGroup))
+
+    @property
+    def rods(self) -> Rods | None:
+        """The exact elements, if any."""
+        return next((group.rods for group in self.groups if isinstance(group, ExactGroup)), None)
 
     def end_node(self, name: str) -> int:
         """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""
@@ -275,6 +313,7 @@ class Model:
                     pair=pair,
                     target=target,
                     element_type=element_type,
+                    group=self.group_of(target),
                     side=1.0 if pair.side == "right" else -1.0,
                     pin=pin,
                     node=-1 if pin else self.end_node(pair.node),
@@ -303,20 +342,19 @@ class Model:
 
     def _order(self) -> list[int]:
         """Order of the nodes and exact elements with a small bandwidth; along the beams where none are joined."""
-        blocks = np.full(len(self.element_nodes), -1)
-        blocks[self.exact] = len(self.coordinates) + np.arange(len(self.exact))
         if not self.joined:
             along = []
             for beam in self.beams.values():
-                own = np.append(blocks[beam.first : beam.last + 1], -1)
+                own = np.append(self.block[beam.first : beam.last + 1], -1)
                 along.append(np.stack([beam.nodes, own], axis=1).ravel())
             return [block for block in np.concatenate(along).tolist() if block >= 0]
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
         i, j = self.element_nodes.T
-        own = blocks[self.exact]
-        pairs = np.concatenate([[i, j], [i[self.exact], own], [own, j[self.exact]]], axis=1)
+        internal = np.flatnonzero(self.block >= 0)
+        own = self.block[internal]
+        pairs = np.concatenate([[i, j], [i[internal], own], [own, j[internal]]], axis=1)
         shape = (self.dof_count // 3,) * 2
         near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=shape)
         order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
@@ -331,35 +369,41 @@ class Model:
     def bandwidth(self) -> int:
         """Largest distance of two coupled banded equations."""
         widest = 0
-        for equations in (self.element_equations[:, self.closed], self.equation[self.exact_dofs]):
+        for equations in (self.equation[group.dofs] for group in self.groups):
             rows = np.where(equations < self.banded, equations, -1)
             least = np.where(rows < 0, self.banded, rows).min(axis=0)
             widest = max(widest, int((rows.max(axis=0) - least).max(initial=0)))
         return widest
 
-    def _properties(self) -> Properties:
-        d = np.diff(self.coordinates[self.element_nodes], axis=1)[:, 0]
-        repeats = [beam.beam.elements for beam in self.beams.values()]
-        l0 = np.concatenate([beam.lengths for beam in self.beams.values()])
-        EA, GA, EI = (
-            np.repeat([getattr(b.beam.section, name) for b in self.beams.values()], repeats)
-            for name in ("EA", "GA", "EI")
-        )
-        kinds = [ELEMENTS[beam.beam.element] for beam in self.beams.values()]
-        sheared = np.repeat([kind.sheared for kind in kinds], repeats)
-        Phi = np.where(sheared, 12 * EI / (GA * l0**2), 0.0)
-        return Properties(dx0=d[:, 0], dy0=d[:, 1], l0=l0, EA=EA, EI=EI, Phi=Phi)
+    def properties_of(self, coordinates: Array, l0: Array, sections: Array) -> Properties:
+        """Constants of the elements.
 
-    def _coefficients(self) -> Coefficients | None:
+        Parameters
+        ----------
+        coordinates : ndarray, shape (nodes, 2, ...)
+            Undeformed node positions of one structure, or of many in the last axis.
+        l0 : ndarray, shape (elements, ...)
+            Lengths of the elements.
+        sections : ndarray, shape (3, beams, ...)
+            EA, GA and EI of the beams.
+        """
+        counts = [beam.beam.elements for beam in self.beams.values()]
+        EA, GA, EI = np.repeat(sections, counts, axis=1)
+        sheared = np.repeat([ELEMENTS[beam.beam.element].sheared for beam in self.beams.values()], counts)
+        d = coordinates[self.element_nodes[:, 1]] - coordinates[self.element_nodes[:, 0]]
+        Phi = np.where(sheared.reshape(-1, *[1] * (l0.ndim - 1)), 12 * EI / (GA * l0**2), 0.0)
+        return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)
+
+    def coefficients_of(self, properties: Properties) -> Coefficients:
+        """Coefficients of the energy of the elements in closed form; the properties are arrays over all elements."""
         parts = []
         for beam in self.beams.values():
             kind = ELEMENTS[beam.beam.element]
             if isinstance(kind, ClosedForm):
-                own = Properties(*(column[beam.first : beam.last + 1] for column in self.properties))
-                parts.append(kind.coefficients(own))
-        if not parts:
-            return None
-        return Coefficients(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
+                properties_there = Properties(*(column[beam.first : beam.last + 1] for column in properties))
+                parts.append(kind.coefficients(properties_there))
+        axis = -properties.l0.ndim
+        return Coefficients(*(np.concatenate(part, axis=axis) for part in zip(*parts, strict=True)))
 
     def node_position(self, pair: PairModel, q: Array, load_parameter: float) -> tuple[float, float]:
         """Current position of a pair's contacting node."""

@@ -1,4 +1,4 @@
-"""Equilibrium at one load parameter. Never raises: what was reached comes back with a status."""
+"""Newton's method. It never raises: the last iterate comes back with a status."""
 
 from __future__ import annotations
 
@@ -9,16 +9,14 @@ import numpy as np
 
 from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
+from tsm.groups import Change
 from tsm.model import Model
-from tsm.rods.accuracy import finer, inaccurate
+from tsm.scaling import SHARP, largest, scales_of
 from tsm.settings import Settings
-from tsm.state import Profile, State, Touch
+from tsm.state import State, Touch
 from tsm.status import Status
-from tsm.system import Assembler, Drag, Linearisation, Solved
+from tsm.system import Assembler, Drag, Linearisation
 
-ROUND_OFF = 4 * float(np.finfo(float).eps)
-SHARP = 1e-3
-"""Positions are held this much sharper than forces: they cost nothing, and a stiff contact needs them."""
 LONGEST, _LONGEST_WHOLE = 1.0, 1.4
 """Longest iteration, in parts of 0.3 L and 0.7 rad; more where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
@@ -31,7 +29,7 @@ _CRITICAL = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """A configuration, how far from equilibrium it is, and what it took.
+    """A configuration with its residual, and the iterations that led to it.
 
     Attributes
     ----------
@@ -45,8 +43,6 @@ class Equilibrium:
         Scaled norm before the first and after every iteration.
     system : Linearisation
         Residual and tangent at the configuration.
-    orientation : tuple of int
-        Signs of the determinants of the first and the last tangent that was solved with, 0 without iterations.
     """
 
     state: State
@@ -54,20 +50,32 @@ class Equilibrium:
     iterations: int
     residuals: tuple[float, ...]
     system: Linearisation
-    orientation: tuple[int, int] = (0, 0)
 
 
-class _Taken(NamedTuple):
-    """An iteration that was taken, or a part of it: from where, by which system, and the residual before."""
+class _Iteration(NamedTuple):
+    """An iteration, or a part of it.
+
+    Attributes
+    ----------
+    state, system : State, Linearisation
+        Configuration before the iteration.
+    step, load : ndarray, float
+        Change of the unknowns and of the load parameter.
+    residual : float
+        Scaled norm before the iteration.
+    part : float
+        Part of the step that is taken.
+    """
 
     state: State
     system: Linearisation
     step: Array
+    load: float
     residual: float
-    part: float
+    part: float = 1.0
 
     def to_halve(self, residual: float) -> bool:
-        """Whether it raised the residual so much that a shorter one is to be tried."""
+        """Whether the residual after the iteration is so much larger that a shorter step is to be tried."""
         return not residual <= _RISE * self.residual and self.part > _SHORTEST
 
 
@@ -84,27 +92,10 @@ class Newton:
         self.assembler = Assembler(model)
         self.max_iterations = settings.max_iterations
         self.accuracy = settings.accuracy
-        tolerance = settings.tolerance
-        EA, EI, l0 = (
-            value[model.closed] for value in (model.properties.EA, model.properties.EI, model.properties.l0)
-        )
-        noise = ROUND_OFF * (EA * model.extent / l0 + EI / l0**2).max(initial=0.0) / model.least_force
-        self.tolerance = tolerance
-        blur = ROUND_OFF * np.abs(model.coordinates).max() / (SHARP * model.length)
-        self.noise = float(max(noise, blur if model.contact_unknowns or model.rods else 0.0))
-        force, length = model.least_force, model.length
+        self.tolerance = settings.tolerance
+        scales = scales_of(model, model.coordinates, model.properties, model.sizes)
+        self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
         self.longest = _LONGEST_WHOLE if model.whole else LONGEST
-        sharp = 1 / (SHARP * length)
-        scale = np.array([1 / force, 1 / force, 1 / (force * length), sharp, sharp, 1 / SHARP])
-        own = [
-            [sharp, sharp, 1 / force, 1 / SHARP][: pair.element_type.contact_unknowns] for pair in model.pairs
-        ]
-        self.scale = np.concatenate([scale[model.kind], *own])
-        per_limit = np.array([1 / (0.3 * model.extent), 1 / (0.3 * model.extent), 1 / 0.7])
-        own = [[0, 0, *per_limit[1:]][: pair.element_type.contact_unknowns] for pair in model.pairs]
-        self.per_limit = np.concatenate([per_limit, np.zeros(3)])[model.kind]
-        self.own_per_limit = np.concatenate([np.empty(0), *own])
-        self.per_unknown = np.concatenate([self.per_limit, self.own_per_limit])
 
     def apart(self, one: State, other: State) -> float:
         """Largest difference of two states, in largest Newton steps."""
@@ -129,36 +120,50 @@ class Newton:
 
     def size(self, change: Array) -> float:
         """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
-        return float(np.abs(change * self.per_limit).max(initial=0.0))
+        return float(largest(change, self.per_step[: self.model.equations]))
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""
-        largest = float(np.abs(system.residual * self.scale).max())
-        return largest if system.rods is None else max(largest, system.rods.inside / SHARP)
+        inside = max(forces.inside for forces in system.groups)
+        return max(float(largest(system.residual, self.scale)), inside / SHARP)
 
-    def solve(self, start: State, load: Array | None = None, drag: Drag | None = None) -> Equilibrium:
-        """Iterate from a start to equilibrium at the start's load parameter, under nodal forces and against a drag if given."""
+    def solve(self, start: State, drag: Drag | None = None, *, across: Array | None = None) -> Equilibrium:
+        """Iterate from a start to equilibrium.
+
+        Parameters
+        ----------
+        start : State
+            Where the iteration starts. Its load parameter is held unless there is a constraint.
+        drag : Drag, optional
+            Resistance to leaving a configuration.
+        across : ndarray, shape (equations + contact unknowns,), optional
+            Constraint row: the load parameter is an unknown too, and every step is orthogonal to this vector.
+
+        Returns
+        -------
+        Equilibrium
+            The last iterate with its status.
+        """
         state = start
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
-        solved: list[Solved] = []
-        taken: _Taken | None = None
+        last: _Iteration | None = None
         for iteration in range(self.max_iterations + 1):
-            system = self.assembler.linearise(state, load, drag)
+            system = self.assembler.linearise(state, drag)
             residual = self.norm(system)
             left = self.max_iterations - iteration
-            if taken and taken.to_halve(residual) and left:
-                taken = taken._replace(part=taken.part / 2)
-                state = self.update(taken.state, taken.step, taken.system, residual=True, part=taken.part)
+            if last and last.to_halve(residual) and left:
+                last = last._replace(part=last.part / 2)
+                state = self._after(last)
                 continue
             residuals.append(residual)
             owners.append(tuple(touch.element for touch in state.touches if touch is not None))
             status = self._status(system, residuals, owners, left)
             more = self.with_more_nodes(state, system, residuals) if left else None
             if more is not None:
-                state, taken = more, None
+                state, last = more, None
                 continue
-            step = self.assembler.solve(system) if status is None else None
+            step = self._step(state, system, across) if status is None else None
             if step is None:
                 return Equilibrium(
                     state=state,
@@ -166,14 +171,27 @@ class Newton:
                     iterations=iteration,
                     residuals=tuple(residuals),
                     system=system,
-                    orientation=(solved[0].orientation, solved[1].orientation) if solved else (0, 0),
                 )
-            solved = [solved[0] if solved else step, step]
-            dx = step.x[:, 0]
-            if self.model.rods:
-                taken = _Taken(state, system, dx, residual, 1.0)
-            state = self.update(state, dx, system, residual=True)
+            taken = _Iteration(state, system, *step, residual)
+            state = self._after(taken)
+            last = taken if self.assembler.internal else None
         raise AssertionError("the last iteration returns")
+
+    def _step(self, state: State, system: Linearisation, across: Array | None) -> tuple[Array, float] | None:
+        """Newton step of the unknowns and of the load parameter, None if the tangent is singular."""
+        if across is None:
+            solved = self.assembler.solve(system)
+            return None if solved is None else (solved[:, 0], 0.0)
+        solved = self.assembler.solve(system, -self.assembler.rate(state))
+        if solved is None:
+            return None
+        back, rate = solved.T
+        load = -float(across @ back) / float(across @ rate)
+        return back + load * rate, load
+
+    def _after(self, taken: _Iteration) -> State:
+        t = taken.state.load_parameter + taken.part * taken.load
+        return self.update(taken.state, taken.step, taken.system, t=t, residual=True, part=taken.part)
 
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
@@ -188,18 +206,22 @@ class Newton:
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
 
     def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
-        """State with more Gauss nodes where it comes near equilibrium, or in it, and those of the exact elements are too few."""
-        rods = self.model.rods
-        if rods is None or system.rods is None or not residuals[-1] <= _NEAR:
+        """State with a finer integration inside the elements, where it comes near equilibrium, or in it, and needs one."""
+        near = residuals[-1] <= _NEAR
+        if not near or (
+            len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system)
+        ):
             return None
-        if len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system):
-            return None
-        return finer(rods, state, system.rods, self.accuracy)
+        refined = (
+            group.refined(state, forces, self.accuracy)
+            for group, forces in zip(self.model.groups, system.groups, strict=True)
+        )
+        return next((finer for finer in refined if finer is not None), None)
 
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
-        rods = self.model.rods
-        if rods and system.rods and inaccurate(rods, system.rods, self.accuracy):
+        groups = zip(self.model.groups, system.groups, strict=True)
+        if any(group.inaccurate(forces, self.accuracy) for group, forces in groups):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 
@@ -222,7 +244,7 @@ class Newton:
         step: Array,
         system: Linearisation,
         *,
-        along: float = 0.0,
+        t: float | None = None,
         residual: bool = False,
         part: float = 1.0,
     ) -> State:
@@ -236,8 +258,8 @@ class Newton:
             Change of the unknowns.
         system : Linearisation
             The one that the step solves.
-        along : float
-            Change of the load parameter in the step; the prescribed displacements are left to `prescribed`.
+        t : float, optional
+            Load parameter after the step, if it changes.
         residual : bool
             Whether the step removes the residual.
         part : float
@@ -245,32 +267,32 @@ class Newton:
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
-        largest = float(np.abs(dq * self.per_limit).max(initial=0.0))
-        if len(dz):
-            largest = max(largest, float(np.abs(dz * self.own_per_limit).max()))
-        factor = part * (self.longest / largest if largest > self.longest else 1.0)
+        size = float(largest(step, self.per_step))
+        factor = part * (self.longest / size if size > self.longest else 1.0)
+        along = 0.0 if t is None else t - state.load_parameter
+        if t is not None and along:
+            state = self.prescribed(state, t)
         q = state.q.copy()
         q[model.free] += factor * dq
-        if not np.isfinite(largest):
+        if not np.isfinite(size):
             return replace(state, q=q)
-        profile, rods = state.profile, system.tangent.rods
-        if model.rods and rods and profile:
-            change = np.zeros(model.dof_count)
-            change[model.free], change[model.fixed] = dq, along * model.fixed_values
-            inside = model.rods.inside(rods, state, change, dz, float(residual))
-            profile = Profile(cuts=profile.cuts, angle=profile.angle + factor * inside)
+        dofs = np.zeros(model.dof_count)
+        dofs[model.free], dofs[model.fixed] = dq, along * model.fixed_values
+        change = Change(dofs, dz, float(residual), factor)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,
             touches=state.touches,
             armed=state.armed,
-            profile=profile,
+            profile=state.profile,
         )
+        for group, tangent in zip(model.groups, system.tangent.groups, strict=True):
+            moved = group.with_change(state, moved, tangent, change)
         if not state.touches:
             return moved
-        own = (factor * dz).tolist()
+        dz_taken = (factor * dz).tolist()
         touches = tuple(
-            self._moved(k, moved, touch, own) if touch is not None else None
+            self._moved(k, moved, touch, dz_taken) if touch is not None else None
             for k, touch in enumerate(state.touches)
         )
         return handed_over(model, moved, touches)

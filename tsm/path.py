@@ -5,8 +5,8 @@ tangents at both its ends explain it: with the displacements q, their rates q' a
 
     |q_B - q_A - h q'_A| <= c |q_B - q_A|,    |q_B - q_A - h q'_B| <= c |q_B - q_A|
 
-An equilibrium of another branch is not where the tangent at A leads, nor does its own tangent lead back to A. What decides is
-therefore the path itself and not where its load parameters are prescribed.
+The tangent at A does not lead to an equilibrium of another branch, nor does the tangent there lead back to A. The decision therefore depends on
+the path, and not on the prescribed load parameters.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class PathTangent:
         velocities = assembler.velocities(begin, end)
         if velocities not in self._known:
             solved = assembler.solve(self.system, -assembler.rate(self.state, velocities))
-            rates = None if solved is None else solved.x[:, 1]
+            rates = None if solved is None else solved[:, 1]
             finite = rates is not None and bool(np.isfinite(rates).all())
             self._known[velocities] = rates if finite else None
         return self._known[velocities]
@@ -82,14 +82,12 @@ class PathTangent:
 
     def predicted(self, state: State, t: float) -> State:
         """State at a load parameter along the tangent from a state, which has the tangent's displacements."""
-        length = t - state.load_parameter
-        moved = self.newton.prescribed(state, t)
         rates = self.rates(state.load_parameter, t)
         if rates is None:
-            return moved
-        return self.newton.update(moved, length * rates, self.system, along=length)
+            return self.newton.prescribed(state, t)
+        return self.newton.update(state, (t - state.load_parameter) * rates, self.system, t=t)
 
-    def missed(self, before: State, after: State) -> float:
+    def unexplained(self, before: State, after: State) -> float:
         """Part of the step between two states that the tangent does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
         model, newton = self.newton.model, self.newton
         step = (after.q - before.q)[model.free]

@@ -3,29 +3,39 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tsm.contact import arc_position, handed_over
+from tsm.contact import handed_over
 from tsm.contact_set import owned
 from tsm.model import Model, PairModel
-from tsm.rods.profile import alike
+from tsm.projection import arc_position
 from tsm.state import State, Touch
+
+
+def weights_at(times: Sequence[Any], t: Any) -> list[Any]:
+    """Weights, at t, of values at earlier times in the polynomial through them (Lagrange): numbers, or arrays over many structures."""
+    return [
+        math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
+        for n, time in enumerate(times)
+    ]
+
+
+def weighted(weights: Sequence[Any], values: Iterable[Any]) -> Any:
+    """Weighted sum."""
+    return sum(weight * value for weight, value in zip(weights, values, strict=True))
 
 
 def extrapolate(model: Model, history: list[State], t: float) -> State:
     """State at t by the polynomial through earlier states, all with the same closed contacts."""
-    if model.rods:
-        history = alike(model.rods, history)
-    at = [state.load_parameter for state in history]
-    weights = [
-        math.prod((t - other) / (own - other) for k, other in enumerate(at) if k != n)
-        for n, own in enumerate(at)
-    ]
+    for group in model.groups:
+        history = group.alike(history)
+    weights = weights_at([state.load_parameter for state in history], t)
     last = history[-1]
-    moved = replace(last, load_parameter=t, q=_sum(weights, [state.q for state in history]))
+    moved = replace(last, load_parameter=t, q=weighted(weights, [state.q for state in history]))
     if last.profile:
-        angle = _sum(weights, [state.profile.angle for state in history if state.profile])
+        angle = weighted(weights, [state.profile.angle for state in history if state.profile])
         moved = replace(moved, profile=replace(last.profile, angle=angle))
     touches: list[Touch | None] = []
     for k, pair in enumerate(model.pairs):
@@ -38,14 +48,10 @@ def extrapolate(model: Model, history: list[State], t: float) -> State:
 def _touch(pair: PairModel, weights: list[float], trail: list[Touch]) -> Touch:
     """Extrapolated contact, on the element that owned it last."""
     last = trail[-1]
-    arc = _sum(weights, [arc_position(pair.target, touch.element, touch.xi) for touch in trail])
+    arc = weighted(weights, [arc_position(pair.target, touch.element, touch.xi) for touch in trail])
     place = last.element - pair.target.first
     xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
-    x, y = (_sum(weights, [touch.force[c] for touch in trail]) for c in range(2))
+    x, y = (weighted(weights, [touch.force[c] for touch in trail]) for c in range(2))
     return Touch(
-        element=last.element, xi=xi, force=(x, y), angle=_sum(weights, [touch.angle for touch in trail])
+        element=last.element, xi=xi, force=(x, y), angle=weighted(weights, [touch.angle for touch in trail])
     )
-
-
-def _sum(weights: list[float], values: list[Any]) -> Any:
-    return sum(weight * value for weight, value in zip(weights, values, strict=True))

@@ -1,8 +1,7 @@
-"""What a solution states: histories over the prescribed load parameters, shapes, section forces."""
+"""Result of a solution: histories over the prescribed load parameters, shapes, section forces."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,16 +9,15 @@ from typing import Any
 import numpy as np
 
 from tsm import present
-from tsm.axis import axis_line, is_exact
-from tsm.contact import arc_position, project
+from tsm.axis import axis_line
 from tsm.critical import CriticalPoint
 from tsm.deformation import Deformation, deformation
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.rods.accuracy import deflected, truncation
-from tsm.rods.shape import Stations, pieces
+from tsm.projection import arc_position
+from tsm.rods.shape import Stations
 from tsm.status import Status
 from tsm.step import Step
 from tsm.system import Assembler
@@ -135,11 +133,14 @@ class Result:
     @cached_property
     def integration_error(self) -> float:
         """Largest estimated error of the integration inside exact elements, see `Settings.accuracy`; 0 without such elements."""
-        rods = self.model.rods
-        balances = [equilibrium.system.rods for equilibrium in self.equilibria]
-        if rods is None:
-            return 0.0
-        return max((truncation(rods, own.entry) for own in balances if own is not None), default=0.0)
+        return max(
+            (
+                group.integration_error(forces)
+                for equilibrium in self.equilibria
+                for group, forces in zip(self.model.groups, equilibrium.system.groups, strict=True)
+            ),
+            default=0.0,
+        )
 
     def shape(self, beam: str, k: int) -> Array:
         """Deformed nodes of a beam at accepted load parameter k: x, y, rotation; shape (elements + 1, 3)."""
@@ -170,25 +171,11 @@ class Result:
         here = self.equilibria[k]
         return axis_line(self.model, here.state, here.system, beam, points_per_element)
 
-    def _exact(self, beam: str) -> bool:
-        return is_exact(self.model, beam)
-
     def stations(self, beam: str, k: int) -> Stations:
         """Lines along a beam at accepted load parameter k: its elements, or short pieces of the segments of exact ones."""
         place, state = self.model.beams[beam], self.equilibria[k].state
-        if not self._exact(beam):
-            shape, forces = self.shape(beam, k), self.section_forces(beam, k)
-            pairs = np.arange(len(forces))[:, None] + np.arange(2)
-            return Stations(np.array(place.arcs)[pairs], shape[pairs, :2], shape[pairs, 2], forces)
-        rods = self.model.rods
-        assert rods is not None, "an exact element has rods"
-        count = max(4, math.ceil(60 / place.beam.elements))
-        axis = deflected(rods, state)
-        parts = [
-            pieces(rods, axis, int(self.model.place[e]), count) for e in range(place.first, place.last + 1)
-        ]
-        parts = [part._replace(arc=part.arc + arc) for arc, part in zip(place.arcs, parts, strict=False)]
-        return Stations(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        shape, forces = self.shape(beam, k), self.section_forces(beam, k)
+        return self.model.group_of(place).stations(place, state, shape, forces)
 
     def section_forces(self, beam: str, k: int) -> Array:
         """Axial force, shear force and moment at both ends of the elements of a beam.
@@ -201,22 +188,12 @@ class Result:
         ndarray, shape (elements, 2, 3)
         """
         place, system = self.model.beams[beam], self.equilibria[k].system
-        part = self.model.place[place.first : place.last + 1]
-        if self._exact(beam):
-            assert system.rods is not None, "exact elements have a balance"
-            force = system.rods.residual[[0, 1, 2, 6, 7, 8]][:, part].T
-        else:
-            force = system.closed_force[:, part].T
-        shape = self.shape(beam, k)
-        d = np.diff(shape[:, :2], axis=0)
-        t = d / np.linalg.norm(d, axis=1)[:, None]
+        group = self.model.group_of(place)
+        numbers = self.model.place[place.first : place.last + 1]
+        force = system.groups[group.number].ends[:, numbers].T
         out = np.empty((len(force), 2, 3))
-        for end, sign in ((0, -1), (1, 1)):
-            if self._exact(beam):
-                p = self.model.element[place.first]
-                angle = np.arctan2(p.dy0, p.dx0) + shape[end : len(shape) - 1 + end, 2]
-                t = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-            f = sign * force[:, 3 * end : 3 * end + 3]
+        for end, t in enumerate(group.section_axes(place, self.shape(beam, k))):
+            f = (2 * end - 1) * force[:, 3 * end : 3 * end + 3]
             out[:, end, 0] = f[:, 0] * t[:, 0] + f[:, 1] * t[:, 1]
             out[:, end, 1] = f[:, 1] * t[:, 0] - f[:, 0] * t[:, 1]
             out[:, end, 2] = f[:, 2]
@@ -276,11 +253,11 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     if touch is not None:
         left = 0.0
         if pair.slot >= 0:
-            own = equilibrium.system.residual[model.equations + pair.slot :]
-            left = float(np.hypot(own[0], own[1]))
+            residual = equilibrium.system.residual[model.equations + pair.slot :]
+            left = float(np.hypot(residual[0], residual[1]))
         arc = arc_position(pair.target, touch.element, touch.xi)
         return normal_force(model, equilibrium, k), arc, left
-    seen = project(model, pair, state)
+    seen = pair.group.project(pair, state)
     over = state.armed[k] and seen.overshoot <= 0
     return 0.0, np.nan, seen.gap if over else np.nan
 
@@ -294,8 +271,8 @@ def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, Su
     for name, node in model.support_node.items():
         nodes.setdefault(name.rpartition(".")[0], []).append(node)
     tables = {
-        beam: np.array([forces[own] for forces in reactions]).reshape(-1, len(own), 3)
-        for beam, own in nodes.items()
+        beam: np.array([forces[held_nodes] for forces in reactions]).reshape(-1, len(held_nodes), 3)
+        for beam, held_nodes in nodes.items()
     }
     return {
         beam: SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])

@@ -12,7 +12,7 @@ BRANCHES = ("stop", "stable", "primary")
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """How hard to try.
+    """Numerical settings of a solution.
 
     Parameters
     ----------

@@ -17,7 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tsm.elements.properties import Array
+from tsm.groups import ExactGroup
 from tsm.inertia import Symmetric, negatives
+from tsm.rods.assembly import RodBalance
 from tsm.rods.layout import OWN
 from tsm.rods.variation import Bordered, modes_at_least, variation
 from tsm.state import State
@@ -58,28 +60,30 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Parameters
     ----------
     assembler : Assembler
-        Of the model.
+        Assembler of the model.
     state : State
-        In equilibrium under the model's own loads.
+        Configuration in equilibrium under the model's own loads.
     system : Linearisation
-        There.
+        Residual and tangent at that state.
 
     Returns
     -------
     int
-        Of an exact element with more than some hundred modes a lower bound; -1 where there is none: a singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
+        Number of negative eigenvalues; for an exact element with more than a few hundred modes, a lower bound. -1 where there is no index: a
+        singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
         force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
     """
-    if system.rods is not None and (hidden := modes_at_least(system.rods)):
-        return hidden
+    for forces in system.groups:
+        if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
+            return hidden
     with np.errstate(all="ignore"):
         symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
         return UNDEFINED
-    found = negatives(symmetric)
-    if found is None:
+    counted = negatives(symmetric)
+    if counted is None:
         return UNDEFINED
-    held = found - symmetric.multipliers
+    held = counted - symmetric.multipliers
     model = assembler.model
     idle = [
         slot
@@ -111,11 +115,11 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
     Parameters
     ----------
     assembler : Assembler
-        Of the model.
+        Assembler of the model.
     state : State
-        In equilibrium.
+        Configuration in equilibrium.
     system : Linearisation
-        There.
+        Residual and tangent at that state.
 
     Returns
     -------
@@ -162,8 +166,9 @@ def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> Sym
                 return None
             closed += 1
     units = model.units / math.sqrt(model.force_scale * model.length)
-    if model.rods is not None:
-        return _with_rods(assembler, state, system, units, 2 * closed)
+    for group, forces in zip(model.groups, system.groups, strict=True):
+        if isinstance(group, ExactGroup) and isinstance(forces, RodBalance):
+            return _with_variation(assembler, state, system, (group, forces), (units, 2 * closed))
     tangent, beside = system.tangent, units[model.banded :]
     return Symmetric(
         band=tangent.band[:, 2 * assembler.k :].T,
@@ -174,41 +179,53 @@ def _symmetric(assembler: Assembler, state: State, system: Linearisation) -> Sym
     )
 
 
-def _with_rods(
-    assembler: Assembler, state: State, system: Linearisation, units: Array, multipliers: int
+def _with_variation(
+    assembler: Assembler,
+    state: State,
+    system: Linearisation,
+    exact: tuple[ExactGroup, RodBalance],
+    symmetric: tuple[Array, int],
 ) -> Symmetric:
-    """The same with exact elements, whose own tangent gives way to their second variation."""
-    model = assembler.model
-    assert model.rods is not None, "the model has exact elements"
-    assert system.rods is not None, "the model has exact elements"
-    known = system.tangent.rods if model.coefficients or "tangent" in system.__dict__ else None
-    found = variation(model.rods, state, system.rods, known.transfer if known else None)
+    """Symmetric tangent in which the second variation of exact elements takes the place of their tangent.
+
+    Parameters
+    ----------
+    assembler, state, system
+        As for `index`.
+    exact : tuple
+        The exact elements, and their forces.
+    symmetric : tuple
+        Units of the unknowns, and how many forces of contacts are unknown.
+    """
+    model, (group, balance), (units, multipliers) = assembler.model, exact, symmetric
+    mixed = len(model.groups) > 1
+    known = system.tangent.groups[group.number] if mixed or "tangent" in system.__dict__ else None
+    second = variation(group.rods, state, balance, known.transfer if known else None)
     border, aside, before = model.border, model.border_dofs, 36 * len(model.closed)
-    moments = [part.moments for part in found.bordered]
-    angles = [part.slots.count(-1) - part.moments for part in found.bordered]
+    moments = [part.moments for part in second.bordered]
+    angles = [part.slots.count(-1) - part.moments for part in second.bordered]
     right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
     corner = np.eye(right.shape[1])
-    values = found.tangent.reshape(len(found.tangent), -1).T
-    if model.coefficients:
+    values = second.tangent.reshape(len(second.tangent), -1).T
+    if mixed:
         tangent = system.tangent
-        assert tangent.rods is not None, "the model has exact elements"
-        values = values - tangent.rods.tangent
+        values = values - tangent.groups[group.number].tangent
         right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     flat = values.ravel()
     band = np.bincount(assembler.scatter[before:], flat, assembler.band_size + 1)[:-1].reshape(
         model.banded, -1
     )
-    if model.coefficients:
+    if mixed:
         band = band + system.tangent.band
     if aside:
         added = np.bincount(assembler.scatter_right[before:], flat, assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
     spare = border
-    for part in found.bordered:
+    for part in second.bordered:
         own, spare = _columns(part, aside, spare)
-        if model.coefficients:
+        if mixed:
             right[:, own] = corner[own] = corner[:, own] = 0.0
-        right[model.equation[model.exact_dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
+        right[model.equation[group.dofs[:, part.element], None], own] = part.matrix[:OWN, OWN:]
         corner[own[:, None], own] = part.matrix[OWN:, OWN:]
     for pair, touch in zip(model.pairs, state.touches, strict=True):
         if pair.node >= 0 and pair.cuts and touch is not None:

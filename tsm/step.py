@@ -1,8 +1,8 @@
-"""What a march hands on after every step."""
+"""Accepted steps, and what is noted on the way from one to the next."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tsm.critical import CriticalPoint
 from tsm.events import Event
@@ -42,3 +42,29 @@ class Step:
     events: tuple[Event, ...]
     critical: tuple[CriticalPoint, ...] = ()
     index: int = -1
+
+
+@dataclass(kw_only=True)
+class StepLog:
+    """What a march has noted since the last step that it handed on; attributes as in `Step`."""
+
+    iterations: int = 0
+    cutbacks: int = 0
+    events: list[Event] = field(default_factory=list)
+    critical: list[CriticalPoint] = field(default_factory=list)
+
+    def hand_on(self, equilibrium: Equilibrium, requested: bool, status: Status, index: int) -> Step:
+        """Return the step that ends here, and start anew."""
+        step = Step(
+            equilibrium=equilibrium,
+            requested=requested,
+            status=status,
+            iterations=self.iterations,
+            cutbacks=self.cutbacks,
+            events=tuple(self.events),
+            critical=tuple(self.critical),
+            index=index,
+        )
+        self.iterations = self.cutbacks = 0
+        self.events, self.critical = [], []
+        return step

@@ -1,4 +1,4 @@
-"""March along the load: predictor, step control, contact events.
+"""March along the load: it tries a step, and accepts what the path, its stability and its contacts allow.
 
 A step goes to the next prescribed load parameter, or less far after a cut-back. It starts from the extrapolation of the
 last accepted states. Where an event lies inside the step, the step ends on the event, the
@@ -12,12 +12,9 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
-from tsm.contact import arc_position, project
 from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
 from tsm.critical import (
-    Bracket,
     CriticalKind,
-    CriticalPoint,
     critical_point,
     locate_bifurcation,
     mode_shape,
@@ -39,18 +36,16 @@ from tsm.fall import Fall, descends, met
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
+from tsm.projection import arc_position
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
-from tsm.step import Step
+from tsm.step import Step, StepLog
+from tsm.step_control import StepControl, allowed
 from tsm.track import FAR, Track
 
-_SAFE = 0.8
-"""Part of the step that the tangents would still allow, of which the next one is tried."""
-_SHORTENED = 0.1
-"""Shortest part of a refused step that is tried next."""
 _STRAIGHT = 0.02
-"""A step that changes the index, and misses its tangents by less, has passed a bifurcation; another may have left the path."""
+"""A step that changes the index has passed a bifurcation if its tangents leave less than this part of it unexplained; it may have left the path otherwise."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
 _NEAR = 1e-9
@@ -60,22 +55,34 @@ _COINCIDENT = 1e-6
 
 
 class Stepper:
-    """One march; holds what the predictor and the step control remember."""
+    """One march.
+
+    Attributes
+    ----------
+    track : Track
+        The path so far, from which the next state is predicted.
+    control : StepControl
+        How long the next step is.
+    log : StepLog
+        What has happened since the last step that was handed on.
+    margins : list of Margin
+        What the contacts of the last equilibrium may do next.
+    chatter : Counter
+        Changes of every contact pair at every load parameter.
+    target : float
+        Load parameter that the march is on the way to.
+    """
 
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model = model
         self.settings = settings
         self.newton = Newton(model, settings)
-        self.iterations = 0
-        self.cutbacks = 0
-        self.events: list[Event] = []
-        self.critical: list[CriticalPoint] = []
-        self.chatter: Counter[tuple[int, float]] = Counter()
         start = self.newton.solve(initial_state(model))
-        self.track = Track(self.newton, start)
+        self.track, self.log = Track(self.newton, start), StepLog()
+        self.control = StepControl(settings, start.status)
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
-        self.step, self.shortened, self.target = 1.0, 1 / 2, 0.0
-        self.failure = start.status
+        self.chatter: Counter[tuple[int, float]] = Counter()
+        self.target = 0.0
 
     @property
     def accepted(self) -> Equilibrium:
@@ -94,7 +101,7 @@ class Stepper:
         """
         self.track.resume(accepted)
         self.margins = self._measure(self.accepted)
-        self.step = step
+        self.control.step = step
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
@@ -113,21 +120,20 @@ class Stepper:
                     return
                 attempts += 1
                 left = target - t
-                step = min(self.step, self.track.room())
+                step = min(self.control.step, self.track.room())
                 goal = target if left <= step * (1 + 1e-6) else t + step
                 here = step < self.settings.smallest_step
-                status = self._refuse(1 / 2) if here else self._attempt(goal)
+                status = self.control.refuse() if here else self._attempt(goal)
                 if status is Status.CONVERGED:
                     reached = self.accepted.state.load_parameter
                     yield self._record(reached == target and target in asked, status)
-                elif status is not self.failure:
+                elif status is not self.control.failure:
                     yield self._record(False, status)
                     return
                 else:
-                    self.cutbacks += 1
-                    self.step = min(step, left) * self.shortened
-                    if self.step < self.settings.smallest_step:
-                        status = self._verdict()
+                    self.log.cutbacks += 1
+                    if self.control.cut_back(min(step, left)):
+                        status = self.control.verdict(self.track.folds())
                         if status is Status.LIMIT_POINT:
                             status = self._meet_limit_point()
                         yield self._record(False, status)
@@ -143,39 +149,14 @@ class Stepper:
         apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + _NEAR]
         return sorted([*load_parameters, *apart])
 
-    def _verdict(self) -> Status:
-        """Why no step goes on from here, as precisely as it can be told."""
-        told = {
-            Status.NOT_FINITE,
-            Status.SINGULAR_TANGENT,
-            Status.INACCURATE,
-            Status.TWO_CONTACTS,
-            Status.PING_PONG,
-        }
-        if self.failure in told or self.settings.smallest_step > 0.5:
-            return self.failure
-        return Status.LIMIT_POINT if self.track.folds() else Status.CUTBACK_FLOOR
-
     def _record(self, requested: bool, status: Status) -> Step:
-        step = Step(
-            equilibrium=self.accepted,
-            requested=requested,
-            status=status,
-            iterations=self.iterations,
-            cutbacks=self.cutbacks,
-            events=tuple(self.events),
-            critical=tuple(self.critical),
-            index=self.track.tangent.index,
-        )
-        self.iterations = self.cutbacks = 0
-        self.events, self.critical = [], []
-        return step
+        return self.log.hand_on(self.accepted, requested, status, self.track.tangent.index)
 
     def _attempt(self, goal: float) -> Status:
         """Go to a load parameter or to the first event before it."""
         reached = self._solve(goal)
         if reached is None:
-            return self.failure
+            return self.control.failure
         crossed = crossing(self.model, self.accepted.state, reached.state)
         if crossed is not None and crossed[0] > self.accepted.state.load_parameter:
             return self._attempt(crossed[0])
@@ -192,137 +173,118 @@ class Stepper:
     def _advance(self, reached: Equilibrium) -> Status:
         """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
         before, tangent = self.accepted.state, PathTangent(self.newton, reached)
-        missed = max(self.track.missed(at, reached) for at in (self.track.tangent, tangent))
-        fitting = _SAFE * FOLLOWED / max(missed, 1e-9)
-        if missed > FOLLOWED:
-            return self._refuse(fitting)
+        unexplained = max(self.track.unexplained(end, reached) for end in (self.track.tangent, tangent))
+        fitting = allowed(unexplained)
+        if unexplained > FOLLOWED:
+            return self.control.refuse(fitting)
         old, new = self.track.index, tangent.index
         changed = 0 <= new != old and (new > old or self.track.tangent.index == old)
         if changed:
-            if missed > _STRAIGHT:
-                return self._refuse(1 / 2)
-            bracket = Bracket((before.load_parameter, old), (reached.state.load_parameter, new))
-            return self._meet_bifurcation(bracket, reached)
+            if unexplained > _STRAIGHT:
+                return self.control.refuse()
+            return self._meet_bifurcation(reached, tangent)
         self._accept(reached, tangent)
-        taken = reached.state.load_parameter - before.load_parameter
-        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+        self.control.grow(reached.state.load_parameter - before.load_parameter, fitting)
         return Status.CONVERGED
 
-    def _meet_bifurcation(self, bracket: Bracket, reached: Equilibrium) -> Status:
+    def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
-        at = locate_bifurcation(self.newton, bracket, self._solve)
-        if at is None:
-            return self._refuse(1 / 2)
-        self._note_critical(CriticalKind.BIFURCATION, at, at.state.load_parameter)
+        singular = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
+        if singular is None:
+            return self.control.refuse()
+        self._note_critical(CriticalKind.BIFURCATION, singular, singular.state.load_parameter)
         primary = self.settings.branch == "primary"
-        self._accept(reached if primary else at)
+        self._accept(reached if primary else singular)
         if primary:
             return Status.CONVERGED
-        return self._turn(at) if self.settings.branch == "stable" else Status.BIFURCATION
+        return self._turn(singular) if self.settings.branch == "stable" else Status.BIFURCATION
 
     def _meet_limit_point(self) -> Status:
         """End the path beside a limit point, or let the structure fall to the stable branch."""
         self._note_critical(CriticalKind.LIMIT_POINT, self.accepted, self.track.limit())
         return self._turn(self.accepted) if self.settings.branch == "stable" else Status.LIMIT_POINT
 
-    def _note_critical(self, kind: CriticalKind, at: Equilibrium, load_parameter: float) -> None:
-        self.critical.append(critical_point(self.newton, kind, at, load_parameter))
-        self.events.append(
-            Event(
-                kind=EventKind[kind.name],
-                load_parameter=load_parameter,
-                pair="",
-                element=-1,
-                arc_position=float("nan"),
-                force=0.0,
-            )
-        )
+    def _note_critical(self, kind: CriticalKind, equilibrium: Equilibrium, load_parameter: float) -> None:
+        self.log.critical.append(critical_point(self.newton, kind, equilibrium, load_parameter))
+        self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
-    def _turn(self, at: Equilibrium) -> Status:
+    def _turn(self, critical: Equilibrium) -> Status:
         """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
-        t, model = at.state.load_parameter, self.model
+        t, model = critical.state.load_parameter, self.model
         ahead = t + min(_AHEAD, (self.target - t) / 2)
-        found_mode = mode_shape(self.newton, at)
-        if found_mode is None:
+        mode = mode_shape(self.newton, critical)
+        if mode is None:
             return Status.FALLING
-        push = found_mode[0] * (_PUSH * model.length)
-        held = self.newton.prescribed(at.state, ahead)
-        found: list[tuple[float, Equilibrium]] = []
+        push = mode[0] * (_PUSH * model.length)
+        held = self.newton.prescribed(critical.state, ahead)
+        rests: list[tuple[float, Equilibrium]] = []
         for way in (1.0, -1.0):
-            start = self.newton.update(held, way * push, at.system)
+            start = self.newton.update(held, way * push, critical.system)
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(start, self.newton.potential(start))
-            self.iterations += fall.iterations
+            self.log.iterations += fall.iterations
             if rest is not None and PathTangent(self.newton, rest).index <= 0:
-                found.append((self.newton.potential(rest.state), rest))
-        if not found:
+                rests.append((self.newton.potential(rest.state), rest))
+        if not rests:
             return Status.FALLING
-        least, rest = min(found, key=lambda pair: pair[0])
-        self.events[-1] = replace(self.events[-1], released=self.newton.potential(held) - least)
+        least, rest = min(rests, key=lambda pair: pair[0])
+        self.log.events[-1] = replace(self.log.events[-1], released=self.newton.potential(held) - least)
         self.track.history = []
         self._accept(rest)
-        self.step = 1.0
+        self.control.step = 1.0
         return Status.CONVERGED
-
-    def _refuse(self, part: float) -> Status:
-        """Try a part of the step."""
-        self.failure, self.shortened = Status.ITERATION_LIMIT, min(max(part, _SHORTENED), 1 / 2)
-        return self.failure
 
     def _solve(self, t: float) -> Equilibrium | None:
         """Equilibrium at t from the predicted state, if the tangent leads to it."""
         start = self.track.predicted(t)
         equilibrium = self.newton.solve(start)
-        self.iterations += equilibrium.iterations
-        self.shortened = 1 / 2
+        self.log.iterations += equilibrium.iterations
         if equilibrium.status is not Status.CONVERGED:
-            self.failure = equilibrium.status
+            self.control.fail(equilibrium.status)
             return None
-        missed = self.track.missed(self.track.tangent, equilibrium)
-        if missed > FOLLOWED or self.track.strays(start, equilibrium):
-            self._refuse(_SAFE * FOLLOWED / missed if missed > FOLLOWED else 1 / 2)
+        unexplained = self.track.unexplained(self.track.tangent, equilibrium)
+        if unexplained > FOLLOWED or self.track.strays(start, equilibrium):
+            self.control.refuse(allowed(unexplained) if unexplained > FOLLOWED else 1 / 2)
             return None
         return equilibrium
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
-        """End the step on its first event; where a force or position jumps instead, the step was too large to tell."""
+        """End the step on its first event; where a force or position jumps instead, the step is too long and refused."""
         t = self.accepted.state.load_parameter
         first: tuple[Equilibrium, Margin] | None = None
         for before, after in events:
             if before.value <= ROUND_OFF:
-                found: tuple[Equilibrium, Margin] | None = (self.accepted, before)
+                located: tuple[Equilibrium, Margin] | None = (self.accepted, before)
             else:
-                found = locate((t, before), (goal, after), self._solve, self._measure)
-            if found is None:
-                return self.failure
-            if after.kind is EventKind.TOUCH and before.value < 1.0 and found[1].value < -ROUND_OFF:
-                self.failure = Status.ITERATION_LIMIT
-                return self.failure
-            if first is None or found[0].state.load_parameter < first[0].state.load_parameter:
-                first = found
+                located = locate((t, before), (goal, after), self._solve, self._measure)
+            if located is None:
+                return self.control.failure
+            if after.kind is EventKind.TOUCH and before.value < 1.0 and located[1].value < -ROUND_OFF:
+                return self.control.refuse()
+            if first is None or located[0].state.load_parameter < first[0].state.load_parameter:
+                first = located
         assert first is not None, "events is not empty"
-        at, margin = first
-        past = [other for other in self._measure(at) if other.value < -_COINCIDENT]
+        event, margin = first
+        past = [other for other in self._measure(event) if other.value < -_COINCIDENT]
         if any(other.kind is not EventKind.TOUCH or other.pair != margin.pair for other in past):
-            self.failure = Status.ITERATION_LIMIT
-            return self.failure
+            return self.control.refuse()
         together = [
             other
-            for before, other in zip(self.margins, self._measure(at), strict=True)
+            for before, other in zip(self.margins, self._measure(event), strict=True)
             if {other.kind, margin.kind} == {EventKind.TOUCH, EventKind.SLIP_OFF}
             and other.value <= _COINCIDENT
             and other.value < before.value
         ]
-        return self._switch(at, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
+        return self._switch(event, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
 
-    def _switch(self, at: Equilibrium, changes: list[Margin]) -> Status:
-        """Accept the events' configuration, then open and close its contacts."""
-        if at is not self.accepted:
-            status = self._advance(at)
-            if status is not Status.CONVERGED or self.accepted.system is not at.system:
+    def _switch(self, event: Equilibrium, changes: list[Margin]) -> Status:
+        """Accept the configuration of the events, then open and close its contacts."""
+        if event is not self.accepted:
+            status = self._advance(event)
+            if status is not Status.CONVERGED or self.accepted.system is not event.system:
                 return status
-        model, state, jump = self.model, at.state, False
-        noted = len(self.events)
+        model, state, jump = self.model, event.state, False
+        noted = len(self.log.events)
         for margin in changes:
             k, pair = margin.pair, model.pairs[margin.pair]
             self.chatter[k, state.load_parameter] += 1
@@ -334,7 +296,7 @@ class Stepper:
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens"
             arc = arc_position(pair.target, touch.element, touch.xi)
-            self._note(margin.kind, k, touch.element, arc, normal_force(model, at, k))
+            self._note(margin.kind, k, touch.element, arc, normal_force(model, event, k))
             if margin.kind is EventKind.LINE_CONTACT:
                 return Status.LINE_CONTACT
             refused = forbidden(model, margin.kind, pair, arc)
@@ -344,9 +306,9 @@ class Stepper:
             state = changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
         if crowded(model, state):
             return Status.TWO_CONTACTS
-        status = self._resume(at, state, jump=jump)
-        if status is not Status.CONVERGED and status is self.failure:
-            del self.events[noted:]
+        status = self._resume(event, state, jump=jump)
+        if status is not Status.CONVERGED and status is self.control.failure:
+            del self.log.events[noted:]
         return status
 
     def _close(self, state: State, margin: Margin) -> State:
@@ -354,18 +316,18 @@ class Stepper:
         k, pair = margin.pair, self.model.pairs[margin.pair]
         if margin.value < -ROUND_OFF:
             return changed(self.model, state, k, None, armed=False)
-        seen = project(self.model, pair, state)
+        seen = pair.group.project(pair, state)
         element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
         self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
-    def _resume(self, at: Equilibrium, state: State, *, jump: bool) -> Status:
+    def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
-        energy = began = self.newton.potential(at.state)
+        energy = began = self.newton.potential(event.state)
         while True:
             equilibrium = self._settled(state, energy if jump else None)
             if equilibrium is None:
-                return Status.FALLING if jump else self.failure
+                return Status.FALLING if jump else self.control.failure
             state = equilibrium.state
             energy = self.newton.potential(state)
             pulling = [
@@ -379,7 +341,7 @@ class Stepper:
             touch = state.touches[k]
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
-            before = normal_force(self.model, at, k) if at.state.touches[k] is not None else 0.0
+            before = normal_force(self.model, event, k) if event.state.touches[k] is not None else 0.0
             arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
@@ -397,26 +359,26 @@ class Stepper:
     def _settled(self, state: State, energy: float | None) -> Equilibrium | None:
         """Equilibrium with other contacts: near the state, or, where a jump frees `energy`, to which the structure falls."""
         equilibrium = self.newton.solve(state)
-        self.iterations += equilibrium.iterations
-        found = equilibrium.status is Status.CONVERGED
-        near = found and self.newton.apart(state, equilibrium.state) <= FAR
+        self.log.iterations += equilibrium.iterations
+        converged = equilibrium.status is Status.CONVERGED
+        near = converged and self.newton.apart(state, equilibrium.state) <= FAR
         down = near and (energy is None or descends(self.newton, energy, equilibrium.state))
         if energy is not None and not (down and not met(self._measure(equilibrium))):
             fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
             rest = fall.rest(state, energy)
-            self.iterations += fall.iterations
+            self.log.iterations += fall.iterations
             return rest
-        self.failure = equilibrium.status
-        return equilibrium if found else None
+        self.control.fail(equilibrium.status)
+        return equilibrium if converged else None
 
     def _note_release(self, released: float) -> None:
         """Enter the energy of a jump with the slip-off that set it off, the last one noted."""
-        n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
-        self.events[n] = replace(self.events[n], released=released)
+        n = max(n for n, event in enumerate(self.log.events) if event.kind is EventKind.SLIP_OFF)
+        self.log.events[n] = replace(self.log.events[n], released=released)
 
     def _note(self, kind: EventKind, k: int, element: int, arc: float, force: float) -> None:
         pair = self.model.pairs[k]
-        self.events.append(
+        self.log.events.append(
             Event(
                 kind=kind,
                 load_parameter=self.accepted.state.load_parameter,
@@ -430,6 +392,6 @@ class Stepper:
     def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""
         if self.track.history:
-            self.events.extend(passes(self.model, self.accepted, equilibrium))
+            self.log.events.extend(passes(self.model, self.accepted, equilibrium))
         self.track.accept(replace(equilibrium, state=rearm(self.model, equilibrium.state)), tangent)
         self.margins = self._measure(self.accepted)

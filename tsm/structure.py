@@ -1,4 +1,4 @@
-"""What a user states: sections, beams, supports, pins, contact pairs.
+"""Statement of a problem: sections, beams, supports, pins, contact pairs.
 
 Everything here is immutable, holds plain numbers and checks itself; nothing is computed yet.
 """
@@ -275,7 +275,7 @@ class Pin:
         return self._reached[-1]
 
     def _leg(self, load_parameter: float) -> int:
-        """Number of the leg at a load parameter, at a corner that of the leg before it."""
+        """Number of the leg at a load parameter; at a corner, the leg before it."""
         at = bisect_left(self._reached, load_parameter * self.length)
         return min(max(at, 1), len(self.path) - 1) - 1
 

@@ -1,4 +1,4 @@
-"""What a march knows of its path: the last equilibrium, the states before it, and the tangents there.
+"""The path up to the last accepted equilibrium: states and tangents, and what they predict.
 
 The next step starts from the extrapolation of the last accepted states, or along the tangent where they are few. It has followed the
 path if the tangents at both of its ends explain it.
@@ -18,7 +18,7 @@ MEMORY = 4
 _MEMORY_WHOLE = 8
 """The same where nothing is passed."""
 FAR = 1.0
-"""Longest way of an equilibrium from its prediction, in largest Newton steps; of 2, one random pin in a hundred ends on another branch."""
+"""Largest distance of an equilibrium from its prediction, in largest Newton steps; with 2, one random pin in a hundred ends on another branch."""
 _FEW = 3
 """Fewer states than these are extrapolated along the tangent."""
 _FOLD = 100.0
@@ -78,9 +78,9 @@ class Track:
             return self.tangent.predicted(self.accepted.state, t)
         return self.newton.prescribed(extrapolate(self.newton.model, self.history, t), t)
 
-    def missed(self, tangent: PathTangent, reached: Equilibrium) -> float:
-        """Part of the step to an equilibrium that a tangent does not explain; nothing is asked of contacts without an energy."""
-        return 0.0 if self.chord_contact() else tangent.missed(self.accepted.state, reached.state)
+    def unexplained(self, tangent: PathTangent, reached: Equilibrium) -> float:
+        """Part of the step to an equilibrium that a tangent does not explain; 0 with contacts that have no energy, whose tangents are not compared."""
+        return 0.0 if self.chord_contact() else tangent.unexplained(self.accepted.state, reached.state)
 
     def strays(self, predicted: State, reached: Equilibrium) -> bool:
         """Whether an equilibrium lies too far away; where contacts on chords allow no tangent, too far from its prediction."""

@@ -21,10 +21,11 @@ import tsm
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models.translate import to_rod, to_structure
 from comparisons.scene import load_scene
-from tsm import contact, contact_set, newton, path
+from tsm import path
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
+from tsm.groups import exact
 from tsm.rods import assembly, profile, shape
 from tsm.rods.assembly import Rods
 from tsm.rods.layout import layout
@@ -198,19 +199,19 @@ def starts_sampled(rods: Rods, axis: shape.RodShape, state: State, cuts: Cuts, _
 def axis_by_steps(rods: Rods, state: State, *_: Any) -> shape.RodShape:
     """Deflected axis, integrated to `SHAPE_ORDER` Gauss nodes of every segment."""
     entry = rods.enter(state)
-    at, nodes = entry.at, collocation(SHAPE_ORDER).c
+    at, nodes = entry.segments, collocation(SHAPE_ORDER).c
     own = np.repeat(np.arange(len(at.length)), SHAPE_ORDER)
     flexibility = rod.Flexibility(*(value[own] for value in at.flexibility))
     arcs = (at.length * nodes).reshape(-1, 1)
     course = assembly.rod.field(rod.Segments(flexibility, at.force[:, own], arcs, at.angle[own]))
     at = at._replace(angle=course.end.reshape(-1, SHAPE_ORDER))
-    return shape.plain_shape(rods, state, entry._replace(at=at, of=rod.field(at)))
+    return shape.plain_shape(rods, state, entry._replace(segments=at, field=rod.field(at)))
 
 
 @contextmanager
 def fixed() -> Iterator[None]:
     """Keep the accuracy inside exact elements as it is, and count no index: it is made from Gauss nodes."""
-    with patch.object(newton, "finer", lambda *_: None), patch.object(path, "index", lambda *_: 0):
+    with patch.object(exact, "finer", lambda *_: None), patch.object(path, "index", lambda *_: 0):
         yield
 
 
@@ -219,10 +220,10 @@ def explicit(steps: int) -> Iterator[None]:
     """Integrate exact elements by DOP853."""
     with (
         patch.object(assembly, "rod", Explicit(steps)),
-        patch.object(contact_set, "undeformed", starts_undeformed),
+        patch.object(exact, "undeformed", starts_undeformed),
         patch.object(profile, "sampled", starts_sampled),
         patch.object(profile, "plain_shape", axis_by_steps),
-        patch.object(contact, "deflected", axis_by_steps),
+        patch.object(exact, "deflected", axis_by_steps),
         fixed(),
     ):
         yield

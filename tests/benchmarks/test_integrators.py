@@ -30,7 +30,7 @@ def _run(inputs, starts):
     of = kernel.field(at)
     found = kernel.arrival(at, of, start, moment, end)
     gain, *vector = of.sums[:, :, 0] * length[:, 0]
-    return np.stack([found.miss, moment[:, 0] + gain, *vector], axis=1), kernel.condense(
+    return np.stack([found.end_residual, moment[:, 0] + gain, *vector], axis=1), kernel.condense(
         at, of, found, moment
     )
 

@@ -18,8 +18,8 @@ from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.test_certify import BEAM, PORTAL
 from tsm import path, stepping, track
 from tsm.events import EventKind
+from tsm.groups import ClosedFormGroup
 from tsm.model import Model
-from tsm.system import Assembler
 
 FINDINGS = Path(__file__).parent / "findings"
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -46,7 +46,7 @@ def without(kind: EventKind) -> Callable[[Any, Any], Any]:
 
 def another_branch(patch: pytest.MonkeyPatch) -> None:
     """Any equilibrium that Newton's method finds is taken."""
-    patch.setattr(track.Track, "missed", lambda *_: 0.0)
+    patch.setattr(track.Track, "unexplained", lambda *_: 0.0)
     patch.setattr(path.PathTangent, "index", 0)
 
 
@@ -61,7 +61,7 @@ def a_pulling_force(patch: pytest.MonkeyPatch) -> None:
 
 def a_wrong_normal(patch: pytest.MonkeyPatch) -> None:
     """The contact force has a tangential part of a tenth of its y component."""
-    true = Assembler._contact
+    true = ClosedFormGroup.contact
 
     def tilted(*given: Any) -> Any:
         gradient, tangent = true(*given)
@@ -69,19 +69,19 @@ def a_wrong_normal(patch: pytest.MonkeyPatch) -> None:
         tangent[10, 9] += 0.1
         return gradient, tangent
 
-    patch.setattr(Assembler, "_contact", tilted)
+    patch.setattr(ClosedFormGroup, "contact", tilted)
 
 
 def a_missing_moment(patch: pytest.MonkeyPatch) -> None:
     """A force inside an element acts on its nodes without the moments of its place."""
-    true = Assembler._contact
+    true = ClosedFormGroup.contact
 
     def central(*given: Any) -> Any:
         gradient, tangent = true(*given)
         gradient[[2, 5]], tangent[[2, 5]] = 0.0, 0.0
         return gradient, tangent
 
-    patch.setattr(Assembler, "_contact", central)
+    patch.setattr(ClosedFormGroup, "contact", central)
 
 
 def a_load_not_applied(patch: pytest.MonkeyPatch) -> None:

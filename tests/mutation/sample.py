@@ -24,6 +24,7 @@ from trial import ROOT, Outcome, Trials, project_copy
 SURVIVORS = Path(__file__).with_name("survivors.toml")
 MODULES = (
     "tsm/elements/*.py",
+    "tsm/groups/*.py",
     "tsm/rods/*.py",
     "tsm/contact.py",
     "tsm/contact_set.py",
@@ -34,6 +35,9 @@ MODULES = (
     "tsm/newton.py",
     "tsm/path.py",
     "tsm/predictor.py",
+    "tsm/projection.py",
+    "tsm/root.py",
+    "tsm/step_control.py",
     "tsm/stepping.py",
     "tsm/track.py",
     "comparisons/exact/*.py",

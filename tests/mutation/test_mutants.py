@@ -34,7 +34,7 @@ CHANGES = {
 }
 _EVENTS = "tests/tsm/test_contact_events.py"
 WORST = [
-    ("tsm/contact.py", "height = ((py * tx + px * ty)) / math.hypot(tx, ty)", _EVENTS),
+    ("tsm/groups/closed_form.py", "height = ((py * tx + px * ty)) / math.hypot(tx, ty)", _EVENTS),
     ("tsm/events.py", "push = model.pairs[k].side * ((fy * dx + fx * dy))", _EVENTS),
     (
         "tsm/stepping.py",

@@ -192,7 +192,7 @@ def tangent_index(newton: Newton, found: Equilibrium, rng: np.random.Generator) 
     along = (assembler.linearise(ahead).residual - assembler.linearise(back).residual) / 2
     found_along = whole @ direction
     assert np.abs((along - found_along)[kept]).max() <= 1e-5 * np.abs(found_along).max()
-    units = np.concatenate([np.array([L, L, 1.0])[model.kind], *([F, F, L] for t in state.touches if t)])
+    units = model.units[kept]
     plain = (K + K.T) / 2 * np.outer(units, units) / (F * L)
     force = np.concatenate([np.zeros(model.equations), np.tile([1, 1, 0], len(own) // 3)]).astype(bool)
     A, G, C = plain[np.ix_(~force, ~force)], plain[np.ix_(force, ~force)], -plain[np.ix_(force, force)]

@@ -13,11 +13,10 @@ import tsm
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 from tsm.batch import march
+from tsm.batch.constants import constants_of, take
 from tsm.batch.elimination import eliminate, reach, row_length
-from tsm.batch.equations import Equations, Points
+from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import project
-from tsm.batch.numbers import collect_numbers, some
-from tsm.contact import project as project_one
 from tsm.elements import mixed_contact
 from tsm.elements.properties import Properties
 from tsm.model import Model
@@ -304,7 +303,7 @@ def test_elimination() -> None:
     assert len(set(sign)) == 2
 
 
-def crowd(rng: np.random.Generator, count: int) -> tuple[list[tsm.Structure], Points]:
+def crowd(rng: np.random.Generator, count: int) -> tuple[list[tsm.Structure], Configurations]:
     """Double beams in any configuration; in some, pin and upper tip touch one element of the lower beam."""
     structures = [double(rng) for _ in range(count)]
     structures = [
@@ -315,7 +314,7 @@ def crowd(rng: np.random.Generator, count: int) -> tuple[list[tsm.Structure], Po
     first = np.array([pair.target.first for pair in model.pairs])
     element = first[:, None] + rng.integers(0, 6, (3, count))
     element[2] = np.where(rng.random(count) < 0.7, element[1], element[2])
-    at = Points(
+    at = Configurations(
         q=0.1 * rng.standard_normal((model.dof_count, count)),
         closed=rng.random((3, count)) < 0.7,
         element=element,
@@ -330,7 +329,7 @@ def crowd(rng: np.random.Generator, count: int) -> tuple[list[tsm.Structure], Po
     return structures, at
 
 
-def alone(at: Points, n: int) -> State:
+def alone(at: Configurations, n: int) -> State:
     touches = tuple(
         Touch(element=int(at.element[k, n]), xi=float(at.xi[k, n]), force=tuple(at.force[k, :, n].tolist()))
         if at.closed[k, n]
@@ -343,9 +342,9 @@ def alone(at: Points, n: int) -> State:
 def test_residual_and_step_are_those_of_the_assembler() -> None:
     structures, at = crowd(np.random.default_rng(1), 12)
     model = Model(structures[0])
-    equations, numbers = Equations(model), collect_numbers(structures, model)
-    system = equations.linearise(numbers, at)
-    residual = np.concatenate([system.nodal[model.free], system.own])
+    equations, constants = Equations(model), constants_of(structures, model)
+    system = equations.linearise(constants, at)
+    residual = np.concatenate([system.nodal[model.free], system.contacts])
     dq, dz, sign = equations.solve(system)
     together = at.closed[1] & at.closed[2] & (at.element[1] == at.element[2])
     assert together.any()
@@ -357,25 +356,25 @@ def test_residual_and_step_are_those_of_the_assembler() -> None:
         solved = assembler.solve(expected)
         assert solved is not None
         step = np.concatenate([dq[:, n], dz[:, n]])
-        np.testing.assert_allclose(step, solved.x[:, 0], rtol=1e-7, atol=1e-7 * np.abs(solved.x).max())
-        assert sign[n] == solved.orientation
+        np.testing.assert_allclose(step, solved[:, 0], rtol=1e-7, atol=1e-7 * np.abs(solved).max())
+        assert sign[n] == np.linalg.slogdet(assembler.whole(expected.tangent).toarray()).sign
 
 
 def test_tangent_is_the_derivative_of_the_residual() -> None:
     structures, at = crowd(np.random.default_rng(4), 8)
     model = Model(structures[0])
-    equations, numbers = Equations(model), collect_numbers(structures, model)
+    equations, constants = Equations(model), constants_of(structures, model)
 
     def residual(along: float) -> np.ndarray:
         own = along * dz.reshape(3, 3, -1)
         moved = at._replace(q=at.q.copy(), force=at.force + own[:, :2])
         moved.q[model.free] += along * dq
-        l0 = np.stack([numbers.properties.l0[e, np.arange(len(e))] for e in at.element])
-        system = equations.linearise(numbers, moved._replace(xi=at.xi + own[:, 2] / l0))
-        return np.concatenate([system.nodal[model.free], system.own])
+        l0 = np.stack([constants.properties.l0[e, np.arange(len(e))] for e in at.element])
+        system = equations.linearise(constants, moved._replace(xi=at.xi + own[:, 2] / l0))
+        return np.concatenate([system.nodal[model.free], system.contacts])
 
-    system = equations.linearise(numbers, at)
-    before = np.concatenate([system.nodal[model.free], system.own])
+    system = equations.linearise(constants, at)
+    before = np.concatenate([system.nodal[model.free], system.contacts])
     dq, dz, _ = equations.solve(system)
     largest = np.maximum(np.abs(dq).max(axis=0), 1e-3 * np.abs(dz).max(axis=0))
     dq, dz = dq / largest, dz / largest
@@ -389,12 +388,12 @@ def test_projection_is_that_of_one_structure() -> None:
     at.q[:] *= 0.2
     at.closed[0] = at.closed[2] = False
     model = Model(structures[0])
-    equations, numbers = Equations(model), collect_numbers(structures, model)
+    equations, constants = Equations(model), constants_of(structures, model)
     for k in (0, 2):
-        seen = project(equations, numbers, at, k, np.arange(len(structures)))
+        seen = project(equations, constants, at, k, np.arange(len(structures)))
         for n, structure in enumerate(structures):
             own = Model(structure)
-            expected = project_one(own, own.pairs[k], alone(at, n))
+            expected = own.pairs[k].group.project(own.pairs[k], alone(at, n))
             got = (*(float(value[n]) for value in seen),)
             assert got == pytest.approx(tuple(map(float, expected)), abs=1e-9)
 
@@ -403,12 +402,12 @@ def test_paths_of_the_pins() -> None:
     rng = np.random.default_rng(8)
     structures = [pushed(rng) for _ in range(20)]
     assert len({len(structure.pins[0].path) for structure in structures}) == 3
-    numbers = collect_numbers(structures, Model(structures[0]))
+    constants = constants_of(structures, Model(structures[0]))
     which = np.arange(3, 20)
     t = rng.random(17)
     t[:3] = 0.0, 0.5, 1.0
     with np.errstate(all="ignore"):
-        found = numbers.paths.position(0, t, which)
+        found = constants.paths.position(0, t, which)
     expected = [structures[n].pins[0].position(float(at)) for n, at in zip(which, t, strict=True)]
     np.testing.assert_allclose(found.T, expected, rtol=0, atol=1e-14)
 
@@ -435,8 +434,8 @@ def test_some_structures_of_a_record() -> None:
     rng = np.random.default_rng(10)
     structures = [pushed(rng) for _ in range(4)]
     model = Model(structures[0])
-    part = some(collect_numbers(structures, model), np.array([False, True, False, True]))
-    expected = collect_numbers(structures[1::2], model)
+    part = take(constants_of(structures, model), np.array([False, True, False, True]))
+    expected = constants_of(structures[1::2], model)
     np.testing.assert_array_equal(part.coefficients.constant, expected.coefficients.constant)
     np.testing.assert_array_equal(part.arc, expected.arc)
-    np.testing.assert_array_equal(part.noise, expected.noise)
+    np.testing.assert_array_equal(part.scales.noise, expected.scales.noise)

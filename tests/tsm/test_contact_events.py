@@ -8,29 +8,11 @@ import numpy as np
 import pytest
 
 import tsm
-from tsm.contact import Projection, nearest_chord, project, slide
+from tests.tsm.structures import SECTION, cantilever
+from tsm.contact import nearest_chord
 from tsm.elements.curve import Curve
 from tsm.model import Model
-
-SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
-
-
-def cantilever(path, *, elements=10, side="right", element="mixed", offset=0.0):
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(
-                name="b",
-                start=(0.0, 0.0),
-                end=(1.0, 0.0),
-                section=SECTION,
-                elements=elements,
-                element=element,
-            ),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=path),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side=side, offset=offset),),
-    )
+from tsm.projection import Projection, slide
 
 
 def kinds(result):
@@ -241,10 +223,10 @@ def test_two_pins_on_one_beam():
 def test_owner_of_a_position():
     model = Model(cantilever(((0.8, 0.0), (0.8, 0.1))))
     beam = model.beams["b"]
-    assert slide(beam, 4, 1.25) == (5, pytest.approx(0.25))
-    assert slide(beam, 4, -2.25) == (1, pytest.approx(0.75))
-    assert slide(beam, 4, 1.0) == (4, 1.0)
-    assert slide(beam, 9, 1.5) == (9, 1.5)
+    assert slide(beam.lengths, 4, 1.25) == (5, pytest.approx(0.25))
+    assert slide(beam.lengths, 4, -2.25) == (1, pytest.approx(0.75))
+    assert slide(beam.lengths, 4, 1.0) == (4, 1.0)
+    assert slide(beam.lengths, 9, 1.5) == (9, 1.5)
 
 
 @pytest.mark.parametrize("bend", [0.3, -0.3])
@@ -276,7 +258,9 @@ def test_projection_is_the_closest_point():
     arc, xy = np.add.outer(np.arange(10), xi).ravel() / 10, np.concatenate(lines)
     for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
         moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
-        seen = project(model, replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,)))
+        seen = pair.group.project(
+            replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,))
+        )
         distance = np.hypot(*(xy - np.array(target)).T)
         nearest = int(np.argmin(distance))
         assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)
@@ -297,7 +281,7 @@ def test_projection_on_exact_elements_is_the_closest_point(elements):
         for distance in (0.3 * radius, 1.1 * radius):
             point = distance * np.sin(angle), radius - distance * np.cos(angle)
             pair = replace(model.pairs[0], pin=tsm.Pin(name="p", path=(point, (9.0, 9.0))))
-            seen = project(model, pair, replace(state, load_parameter=0.0))
+            seen = pair.group.project(pair, replace(state, load_parameter=0.0))
             assert (seen.element + seen.xi) / elements == pytest.approx(angle / turn, abs=1e-9)
             assert seen.gap == pytest.approx(distance - radius, abs=1e-9)
 

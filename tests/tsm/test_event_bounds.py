@@ -9,32 +9,17 @@ import numpy as np
 import pytest
 
 import tsm
+from tests.tsm.structures import cantilever
 from tsm.contact_set import initial_state, rearm
 from tsm.crossing import crossing
 from tsm.events import EventKind, Margin, broken
 from tsm.model import Model
 from tsm.newton import Newton
 
-SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
-
-
-def cantilever(*path, element="mixed"):
-    """A beam of length 1 along x, and a pin that pushes it from below along its path."""
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(
-                name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=SECTION, elements=10, element=element
-            ),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=path),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side="right"),),
-    )
-
 
 def open_states(*path):
     """The model, and the undeformed states in which the pin is at the places of its path."""
-    model = Model(cantilever((0.5, -1.0), *path))
+    model = Model(cantilever(((0.5, -1.0), *path)))
     start = initial_state(model)
     assert start.touches == (None,)
     lengths = np.cumsum(np.hypot(*np.diff([(0.5, -1.0), *path], axis=0).T))
@@ -92,7 +77,7 @@ def test_a_margin_is_broken_below_round_off():
 def test_no_contact_is_so_stiff_that_a_large_residual_is_round_off():
     """Round-off of a stiff contact counts up to 1e-6 of the force scale, whatever the stiffness: beyond it lies the critical area."""
     newton = Newton(
-        Model(cantilever((0.5, 0.0), (0.5, 0.1), element="euler-bernoulli-simple")), tsm.Settings()
+        Model(cantilever(((0.5, 0.0), (0.5, 0.1)), element="euler-bernoulli-simple")), tsm.Settings()
     )
     scale = newton.model.force_scale
     stiff = SimpleNamespace(noise=1e3 * scale)

@@ -218,14 +218,14 @@ def test_a_tangent_without_finite_rates_predicts_nothing(
 
     def overflowing(system, right):  # type: ignore[no-untyped-def]
         solved = solve(system, right)
-        solved.x[0, 1] = value
+        solved[0, 1] = value
         return solved
 
     monkeypatch.setattr(newton.assembler, "solve", overflowing)
     tangent = PathTangent(newton, at)
     assert tangent.rates(0.1, 0.2) is None
     assert tangent.speed() == np.inf
-    assert tangent.missed(at.state, at.state) == 0.0
+    assert tangent.unexplained(at.state, at.state) == 0.0
     assert np.isfinite(tangent.predicted(at.state, 0.2).q).all()
 
 
@@ -238,8 +238,8 @@ def test_another_branch_is_not_explained_by_the_tangent() -> None:
     newton = Newton(bent[0].model, tsm.Settings())
     before, after, mirrored = bent[0].equilibria[0], bent[0].equilibria[1], bent[1].equilibria[1]
     tangent = PathTangent(newton, before)
-    assert tangent.missed(before.state, after.state) < 0.15
-    assert tangent.missed(before.state, mirrored.state) > 0.9
+    assert tangent.unexplained(before.state, after.state) < 0.15
+    assert tangent.unexplained(before.state, mirrored.state) > 0.9
 
 
 @pytest.mark.parametrize("element", ["mixed", "exact"])

@@ -84,7 +84,7 @@ def outputs(at, start, moment, end):
     of = rod.field(at)
     found = rod.arrival(at, of, start, moment, end)
     total = at.length * of.sums[:, :, 0].T
-    ends = [found.miss[:, None], moment + total[:, :1], total[:, 1:]]
+    ends = [found.end_residual[:, None], moment + total[:, :1], total[:, 1:]]
     return np.concatenate([found.inside, *ends], axis=1)
 
 
@@ -147,10 +147,10 @@ def shot(order, section, length, start, moment, force):
     for _ in range(30):
         of = rod.field(at)
         found = rod.arrival(at, of, start, moment, end)
-        if max(np.abs(found.inside).max(), abs(found.miss[0])) < 1e-15:
+        if max(np.abs(found.inside).max(), abs(found.end_residual[0])) < 1e-15:
             break
         condensed = rod.condense(at, of, found, moment)
-        turned = -(found.miss[0] + condensed.transfer[0, 0, 6]) / condensed.transfer[0, 0, 2]
+        turned = -(found.end_residual[0] + condensed.transfer[0, 0, 6]) / condensed.transfer[0, 0, 2]
         at = at._replace(angle=at.angle + condensed.inner[:, :, 2] * turned + condensed.inner[:, :, 6])
         end = end + turned
     return np.concatenate([end[0], outputs(at, start, moment, end)[0, order + 1 :]])
@@ -311,7 +311,9 @@ def perturbed(newton, equilibrium, rng):
     """A state out of equilibrium in every unknown."""
     model = newton.model
     step = 0.02 * rng.normal(size=model.equations + model.contact_unknowns) / newton.scale
-    step[: model.equations][newton.per_limit > 0] = 0.01 * rng.normal(size=int((newton.per_limit > 0).sum()))
+    step[: model.equations][newton.per_step[: model.equations] > 0] = 0.01 * rng.normal(
+        size=int((newton.per_step[: model.equations] > 0).sum())
+    )
     for pair in model.pairs:
         if pair.cuts:
             step[model.equations + pair.slot + 2 : model.equations + pair.slot + 4] = 0.01 * rng.normal(
@@ -368,7 +370,7 @@ def test_what_the_residual_inside_carries():
         off = newton.assembler.linearise(
             replace(state, profile=replace(state.profile, angle=state.profile.angle + d * shift))
         )
-        carried = off.tangent.carried
+        carried = off.tangent.condensed_residual
         assert np.abs((off.residual - goal) * newton.scale).max() > 100 * newton.tolerance
         missed.append(np.abs((off.residual + carried - goal) * newton.scale).max())
     assert 3.5 < missed[0] / missed[1] < 4.5
@@ -486,7 +488,9 @@ def test_resampling_and_cutting_keep_the_shape():
     for more in (order + 4, 2 * order):
         assert np.abs(axis(rods, profile.resampled(rods, state, more)) - shape).max() <= 1e-9
     for xi in (0.0, 0.3, first.xi, 0.97, 1.0):
-        cut = profile.recut(rods, state, (first, Touch(element=0, xi=xi, force=(0.0, 0.0))))
+        cut = profile.recut(
+            rods, state, replace(state, touches=(first, Touch(element=0, xi=xi, force=(0.0, 0.0))))
+        )
         assert cut.profile.angle.shape == (3, order)
         assert rods.balance(cut).inside <= 1e-7
         assert np.abs(axis(rods, settled(Newton(result.model, tsm.Settings()), cut)) - shape).max() <= 1e-9

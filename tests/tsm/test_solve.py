@@ -176,7 +176,7 @@ def test_a_solution_goes_on_from_accepted_states_as_if_it_had_not_stopped(ks):
     whole, first, second = (Stepper(model, tsm.Settings()) for _ in range(3))
     *_, end = whole.march(TWENTIETHS)
     *_, half = first.march(TWENTIETHS[:10])
-    second.resume(list(first.track.history), first.step)
+    second.resume(list(first.track.history), first.control.step)
     *_, gone_on = second.march(TWENTIETHS)
     assert half.equilibrium.state.load_parameter == 0.5
     assert gone_on.equilibrium.state.load_parameter == 1.0

@@ -5,9 +5,8 @@
     [ A    B ] [ x ]   [ r ]
     [ B^T  D ] [ z ] = [ s ]
 
-``A = L diag(d) L^T`` without exchange of rows: what is small by chance makes one system inaccurate, and Newton's method of that
-structure slower, but nothing wrong: whether an iteration has converged is read from the residual. The signs of the pivots are
-those of the determinant.
+``A = L diag(d) L^T`` without exchange of rows. A pivot that is small by chance makes the solution of its system inaccurate and Newton's
+method slower there; convergence is read from the residual, so no result is wrong. The determinant has the sign of the product of the pivots.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ def reach(rows: Array, columns: Array, n: int) -> list[int]:
 
 
 def eliminate(
-    band: Array, last: list[int], right: Array, corner: Array, given: Array
+    band: Array, last: list[int], right: Array, corner: Array, border_side: Array
 ) -> tuple[Array, Array, Array]:
     """Solve all systems; those that break down have entries that are not finite.
 
@@ -53,7 +52,7 @@ def eliminate(
         r, then the columns of B; overwritten.
     corner : ndarray, shape (b, b, N)
         D; overwritten.
-    given : ndarray, shape (b, N)
+    border_side : ndarray, shape (b, N)
         s; overwritten.
 
     Returns
@@ -87,10 +86,10 @@ def eliminate(
         band[j, 1 : near + 1] = lower
     scaled = right[1:] * inverse
     for a in range(len(corner)):
-        given[a] -= np.einsum("jn,jn->n", scaled[a], right[0])
+        border_side[a] -= np.einsum("jn,jn->n", scaled[a], right[0])
         for b in range(a + 1):
             corner[a, b] -= np.einsum("jn,jn->n", scaled[a], right[1 + b])
-    z, sign = _dense(corner, given)
+    z, sign = _dense(corner, border_side)
     x = right[0] * inverse
     for a in range(len(corner)):
         x -= scaled[a] * z[a]
@@ -101,19 +100,19 @@ def eliminate(
     return x, z, np.where(odd, -sign, sign)
 
 
-def _dense(matrix: Array, given: Array) -> tuple[Array, Array]:
+def _dense(matrix: Array, border_side: Array) -> tuple[Array, Array]:
     """Solutions and signs of the determinants of symmetric systems, of which the lower half is given; overwrites both."""
     size = len(matrix)
-    sign = np.ones(given.shape[1])
+    sign = np.ones(border_side.shape[1])
     for j in range(size):
         sign = np.where(matrix[j, j] < 0, -sign, sign)
         for i in range(j + 1, size):
             factor = matrix[i, j] / matrix[j, j]
             for m in range(j + 1, i + 1):
                 matrix[i, m] -= factor * matrix[m, j]
-            given[i] -= factor * given[j]
+            border_side[i] -= factor * border_side[j]
     for j in range(size - 1, -1, -1):
-        given[j] /= matrix[j, j]
+        border_side[j] /= matrix[j, j]
         for i in range(j):
-            given[i] -= matrix[j, i] * given[j]
-    return given, sign
+            border_side[i] -= matrix[j, i] * border_side[j]
+    return border_side, sign

@@ -1,7 +1,7 @@
 """Residual and tangent of many structures: `Assembler` with the structure as last axis.
 
-The element forces and tangents come in the reduced variables of `beam` and of the contact law, contacts are added to those of
-their element, and one sparse product spreads them over the equations.
+Element forces and tangents are in the reduced variables of `beam` and of the contact law. Contacts are added to the forces of their
+element, and one sparse product spreads the sum over the equations.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsm.batch.constants import BatchConstants
 from tsm.batch.elimination import eliminate, reach, row_length
-from tsm.batch.numbers import Numbers
 from tsm.elements import Coupling, beam
 from tsm.elements.contact_law import UPPER
 from tsm.elements.properties import Array, Properties
@@ -21,7 +21,7 @@ OWN = 3
 """Unknowns of a contact: force (x, y) and arc position."""
 
 
-class Points(NamedTuple):
+class Configurations(NamedTuple):
     """Configurations of N structures with p pairs.
 
     Attributes
@@ -29,7 +29,7 @@ class Points(NamedTuple):
     q : ndarray, shape (dofs, N)
         Displacements of the nodes.
     closed : ndarray of bool, shape (p, N)
-        Whether the pairs are closed; where they are not, what follows says nothing.
+        Whether the pairs are closed; what follows has no meaning for open pairs.
     element : ndarray of int, shape (p, N)
         Owners.
     xi : ndarray, shape (p, N)
@@ -48,14 +48,14 @@ class Points(NamedTuple):
     node: Array
 
 
-class System(NamedTuple):
+class BatchLinearisation(NamedTuple):
     """Residual and tangent.
 
     Attributes
     ----------
     nodal : ndarray, shape (dofs, N)
         Forces on the nodes.
-    own : ndarray, shape (contact unknowns, N)
+    contacts : ndarray, shape (contact unknowns, N)
         Residuals of the contacts.
     entries : ndarray, shape (10, e, N)
         Tangents of the elements, `beam.PAIRS`.
@@ -66,7 +66,7 @@ class System(NamedTuple):
     """
 
     nodal: Array
-    own: Array
+    contacts: Array
     entries: Array
     right: Array
     corner: Array
@@ -106,14 +106,13 @@ class Equations:
     Parameters
     ----------
     model : Model
-        Of any of the structures.
+        Numbering, the same for all structures.
     """
 
     def __init__(self, model: Model) -> None:
         from scipy.sparse import csr_array
 
         self.model = model
-        self.turning = model.kind == 2
         elements = len(model.element_nodes)
         element, entry, i = _everything(elements, 4, 6)
         where = (model.dofs[i, element], entry * elements + element)
@@ -129,39 +128,41 @@ class Equations:
         shape = (model.banded * length, 10 * elements)
         self.spread = csr_array((values[keep], where), shape=shape)
 
-    def linearise(self, numbers: Numbers, at: Points) -> System:
+    def linearise(self, constants: BatchConstants, iterate: Configurations) -> BatchLinearisation:
         """Residual and tangent at some configurations."""
-        model, count = self.model, at.q.shape[-1]
-        force, entries = beam.reduced_response(numbers.coefficients, at.q[model.dofs])
+        model, count = self.model, iterate.q.shape[-1]
+        force, entries = beam.reduced_response(constants.coefficients, iterate.q[model.dofs])
         unknowns = model.contact_unknowns
-        own = np.zeros((unknowns, count))
+        contacts = np.zeros((unknowns, count))
         right = np.zeros((1 + unknowns, model.equations + 1, count))
         corner = np.zeros((unknowns, unknowns, count))
-        closings = [self._contact(numbers, at, k) for k in range(len(model.pairs))]
+        closings = [self._contact(constants, iterate, k) for k in range(len(model.pairs))]
         for which, e, gradient, block in closings:
             force[:, e, which] += gradient[:4]
             entries[:, e, which] += block[:10]
         nodal = self.gather @ force.reshape(-1, count)
         for k, closing in enumerate(closings):
-            self._enter(numbers, at, k, closing, (nodal, own, right, corner))
+            self._enter(constants, iterate, k, closing, (nodal, contacts, right, corner))
         for k in range(len(closings)):
             for other in range(k):
-                self._share(numbers, at, (other, k), own, corner)
-        return System(nodal, own, entries, right, corner)
+                self._share(constants, iterate, (other, k), contacts, corner)
+        return BatchLinearisation(nodal, contacts, entries, right, corner)
 
-    def _contact(self, numbers: Numbers, at: Points, k: int) -> tuple[Array, Array, Array, Array]:
+    def _contact(
+        self, constants: BatchConstants, iterate: Configurations, k: int
+    ) -> tuple[Array, Array, Array, Array]:
         """Structures in which pair k is closed, its owner, gradient (7, m) and tangent (37, m) in reduced variables."""
-        which = np.flatnonzero(at.closed[k])
-        e = at.element[k, which]
-        p = properties_of(numbers, e, which)
-        x = at.q[self.model.dofs[:, e], which]
-        offset = numbers.offset[k, which]
+        which = np.flatnonzero(iterate.closed[k])
+        e = iterate.element[k, which]
+        p = properties_of(constants, e, which)
+        x = iterate.q[self.model.dofs[:, e], which]
+        offset = constants.offset[k, which]
         gradient, hessian = coupling_of(self.model.pairs[k]).jet(
             p,
             x,
-            at.xi[k, which],
-            at.force[k][:, which],
-            numbers.side[k, which],
+            iterate.xi[k, which],
+            iterate.force[k][:, which],
+            constants.side[k, which],
             offset if offset.any() else 0.0,
         )
         gradient, block = _FORCE @ gradient, _TANGENT @ hessian
@@ -172,8 +173,8 @@ class Equations:
 
     def _enter(
         self,
-        numbers: Numbers,
-        at: Points,
+        constants: BatchConstants,
+        iterate: Configurations,
         k: int,
         closing: tuple[Array, Array, Array, Array],
         system: tuple[Array, Array, Array, Array],
@@ -181,18 +182,18 @@ class Equations:
         """Enter pair k where it is closed; where it is open, its unknowns stand alone."""
         model, pair = self.model, self.model.pairs[k]
         which, e, gradient, block = closing
-        nodal, own, right, corner = system
+        nodal, contacts, right, corner = system
         slots = pair.slots
         for n in range(slots.start, slots.stop):
-            corner[n, n] = ~at.closed[k]
+            corner[n, n] = ~iterate.closed[k]
         if not len(e):
             return
-        dofs, F = model.dofs[:, e], at.force[k][:, which]
-        start = numbers.coordinates[model.element_nodes[e, 0], :, which].T + at.q[dofs[:2], which]
+        dofs, F = model.dofs[:, e], iterate.force[k][:, which]
+        start = constants.coordinates[model.element_nodes[e, 0], :, which].T + iterate.q[dofs[:2], which]
         nodal[dofs[:2], which] -= F
-        node = self.node(numbers, at, k, which)
-        own[slots, which] = gradient[4:]
-        own[slots.start : slots.start + 2, which] -= start - node
+        node = self.node(constants, iterate, k, which)
+        contacts[slots, which] = gradient[4:]
+        contacts[slots.start : slots.start + 2, which] -= start - node
         columns = block[10:28].reshape(OWN, 6, -1)
         columns[0, 0] -= 1
         columns[1, 1] -= 1
@@ -206,40 +207,51 @@ class Equations:
             for c in range(2):
                 right[1 + pair.slot + c, model.equation[dof + c], which] += 1.0
 
-    def _share(self, numbers: Numbers, at: Points, pairs: tuple[int, int], own: Array, corner: Array) -> None:
+    def _share(
+        self,
+        constants: BatchConstants,
+        iterate: Configurations,
+        pairs: tuple[int, int],
+        contacts: Array,
+        corner: Array,
+    ) -> None:
         """Let two contacts feel each other's dent where they are on one element."""
-        together = at.closed[list(pairs)].all(axis=0) & (at.element[pairs[0]] == at.element[pairs[1]])
-        ordered = at.xi[pairs[0]] <= at.xi[pairs[1]]
+        together = iterate.closed[list(pairs)].all(axis=0) & (
+            iterate.element[pairs[0]] == iterate.element[pairs[1]]
+        )
+        ordered = iterate.xi[pairs[0]] <= iterate.xi[pairs[1]]
         for (one, two), where in ((pairs, ordered), (pairs[::-1], ~ordered)):
             which = np.flatnonzero(together & where)
             if not len(which):
                 continue
-            p = properties_of(numbers, at.element[one, which], which)
-            xi = (at.xi[one, which], at.xi[two, which])
+            p = properties_of(constants, iterate.element[one, which], which)
+            xi = (iterate.xi[one, which], iterate.xi[two, which])
             coupling = coupling_of(self.model.pairs[one])
-            gradient, block = coupling.crossing(p, xi, at.force[one][:, which], at.force[two][:, which])
+            gradient, block = coupling.crossing(
+                p, xi, iterate.force[one][:, which], iterate.force[two][:, which]
+            )
             rows = np.r_[self.model.pairs[one].slots, self.model.pairs[two].slots]
-            own[rows[:, None], which] += gradient
+            contacts[rows[:, None], which] += gradient
             corner[rows[:, None, None], rows[:, None], which] += block
 
-    def node(self, numbers: Numbers, at: Points, k: int, which: Array) -> Array:
+    def node(self, constants: BatchConstants, iterate: Configurations, k: int, which: Array) -> Array:
         """Positions of pair k's contacting node in some structures, shape (2, m)."""
         pair = self.model.pairs[k]
         if pair.pin is not None:
-            pin: Array = at.node[k][:, which]
+            pin: Array = iterate.node[k][:, which]
             return pin
         dof = 3 * pair.node
-        position: Array = numbers.coordinates[pair.node][:, which] + at.q[dof : dof + 2][:, which]
+        position: Array = constants.coordinates[pair.node][:, which] + iterate.q[dof : dof + 2][:, which]
         return position
 
-    def solve(self, system: System) -> tuple[Array, Array, Array]:
+    def solve(self, system: BatchLinearisation) -> tuple[Array, Array, Array]:
         """Newton's step of the equations and of the contact unknowns, and the sign of the determinant."""
         model, count = self.model, system.nodal.shape[-1]
         band = self.spread @ system.entries.reshape(-1, count)
         right = system.right[:, : model.banded]
         np.negative(system.nodal[model.free], out=right[0])
         band = band.reshape(model.banded, -1, count)
-        return eliminate(band, self.last, right, system.corner, -system.own)
+        return eliminate(band, self.last, right, system.corner, -system.contacts)
 
 
 def _everything(*sizes: int) -> list[Array]:
@@ -247,6 +259,6 @@ def _everything(*sizes: int) -> list[Array]:
     return [part.ravel() for part in np.indices(sizes)]
 
 
-def properties_of(numbers: Numbers, e: Array, which: Array) -> Properties:
+def properties_of(constants: BatchConstants, e: Array, which: Array) -> Properties:
     """Constants of one element of each of some structures."""
-    return Properties(*(column[e, which] for column in numbers.properties))
+    return Properties(*(column[e, which] for column in constants.properties))

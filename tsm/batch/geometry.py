@@ -6,19 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.batch.equations import Equations, Points, coupling_of, properties_of
-from tsm.batch.numbers import Numbers
+from tsm import projection
+from tsm.batch.constants import BatchConstants
+from tsm.batch.equations import Configurations, Equations, coupling_of, properties_of
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 from tsm.model import BeamModel
 
-_EXACT = 1e-14
-"""Step at which a projection is found."""
-_STEPS = 20
 
-
-class Seen(NamedTuple):
-    """Closest points of a beam's axis, each of shape (m,), see `tsm.contact.Projection`."""
+class Projections(NamedTuple):
+    """Closest points of a beam's axis, each of shape (m,), see `tsm.projection.Projection`."""
 
     element: Array
     xi: Array
@@ -26,8 +23,10 @@ class Seen(NamedTuple):
     overshoot: Array
 
 
-def slide(l0: Array, target: BeamModel, element: Array, xi: Array, which: Array) -> tuple[Array, Array]:
-    """Hand positions that left their element over to the neighbours, by distances along the axis.
+def slide(
+    l0: Array, target: BeamModel, element: Array, xi: Array, which: Array, past: float = 0.0
+) -> tuple[Array, Array]:
+    """Hand positions that left their element over to the neighbours, see `tsm.projection.slide`.
 
     Parameters
     ----------
@@ -39,90 +38,75 @@ def slide(l0: Array, target: BeamModel, element: Array, xi: Array, which: Array)
         Owners and positions.
     which : ndarray of int, shape (m,)
         Structures.
+    past : float
+        Part of the length by which a position may lie past a node.
     """
-    if ((xi >= 0) & (xi <= 1)).all():
+    outside = np.flatnonzero((xi < -past) | (xi > 1 + past))
+    if not len(outside):
         return element, xi
-    element, xi = element.copy(), xi.copy()
-    for _ in range(target.last - target.first):
-        on, back = (xi > 1) & (element < target.last), (xi < 0) & (element > target.first)
-        moving = np.flatnonzero(on | back)
-        if not len(moving):
-            break
-        old, s = element[moving], which[moving]
-        new = np.where(on[moving], old + 1, old - 1)
-        start = np.where(on[moving], 1.0, 0.0)
-        end = 1 - start
-        xi[moving] = end + (xi[moving] - start) * (l0[old, s] / l0[new, s])
-        element[moving] = new
+    element, xi, elements = element.copy(), xi.copy(), slice(target.first, target.last + 1)
+    for n, lengths in zip(outside.tolist(), l0[elements, which[outside]].T.tolist(), strict=True):
+        k, xi[n] = projection.slide(lengths, int(element[n]) - target.first, float(xi[n]), past)
+        element[n] = target.first + k
     return element, xi
 
 
-def measure(equations: Equations, numbers: Numbers, at: Points, which: Array) -> tuple[Array, Array]:
+def measure(
+    equations: Equations, constants: BatchConstants, iterate: Configurations, which: Array
+) -> tuple[Array, Array]:
     """Contact forces and arc positions of all pairs in some structures, shapes (p, m); 0 and nan where a pair is open.
 
     Forces are positive where they push.
     """
-    p, dofs = numbers.properties, equations.model.dofs
-    normal, arc = np.zeros((2, len(at.closed), len(which)))
+    p, dofs = constants.properties, equations.model.dofs
+    normal, arc = np.zeros((2, len(iterate.closed), len(which)))
     arc[:] = np.nan
-    for k, closed in enumerate(at.closed[:, which]):
+    for k, closed in enumerate(iterate.closed[:, which]):
         here = which[closed]
-        e = at.element[k, here]
-        shift = at.q[dofs[3:5, e], here] - at.q[dofs[:2, e], here]
-        fx, fy = at.force[k][:, here]
-        push = numbers.side[k, here] * (fy * (p.dx0[e, here] + shift[0]) - fx * (p.dy0[e, here] + shift[1]))
+        e = iterate.element[k, here]
+        shift = iterate.q[dofs[3:5, e], here] - iterate.q[dofs[:2, e], here]
+        fx, fy = iterate.force[k][:, here]
+        push = constants.side[k, here] * (fy * (p.dx0[e, here] + shift[0]) - fx * (p.dy0[e, here] + shift[1]))
         size = np.sqrt(fx * fx + fy * fy)
         normal[k, closed] = np.where(push >= 0, size, -size)
-        arc[k, closed] = numbers.arc[e, here] + at.xi[k, here] * p.l0[e, here]
+        arc[k, closed] = constants.arc[e, here] + iterate.xi[k, here] * p.l0[e, here]
     return normal, arc
 
 
-def project(equations: Equations, numbers: Numbers, at: Points, k: int, which: Array) -> Seen:
+def project(
+    equations: Equations, constants: BatchConstants, iterate: Configurations, k: int, which: Array
+) -> Projections:
     """Closest points of the deflected axis to pair k's node, with the dents of the contacts that are closed."""
     model = equations.model
     pair = model.pairs[k]
-    node = equations.node(numbers, at, k, which)
-    element, xi = _nearest_chord(numbers, at, pair.target, node, which)
-    l0 = numbers.properties.l0
-    for _ in range(_STEPS):
-        p, x = properties_of(numbers, element, which), at.q[model.dofs[:, element], which]
+    node = equations.node(constants, iterate, k, which)
+    nodes = pair.target.nodes
+    shift = iterate.q[3 * nodes[:, None] + np.arange(2)][..., which]
+    owner, xis = projection.project_on_chords(constants.coordinates[nodes][..., which] + shift, node)
+    element, xi = pair.target.first + owner, xis[owner, np.arange(len(which))]
+    l0 = constants.properties.l0
+    for _ in range(projection.PROJECTIONS):
+        p, x = properties_of(constants, element, which), iterate.q[model.dofs[:, element], which]
         curve = Curve(p, x)
-        start = numbers.coordinates[model.element_nodes[element, 0], :, which].T
-        rx, ry = start + x[:2] - node
-        (w, dw, ddw), dx, dy = curve.deflection(xi), curve.dx, curve.dy
-        px, py = rx + xi * dx - w * dy, ry + xi * dy + w * dx
-        tx, ty = dx - dw * dy, dy + dw * dx
-        step = (px * tx + py * ty) / (tx * tx + ty * ty + ddw * (py * dx - px * dy))
+        start = constants.coordinates[model.element_nodes[element, 0], :, which].T
+        step, (px, py), (tx, ty) = curve.approach(xi, *(start + x[:2] - node))
         element, xi = slide(l0, pair.target, element, xi - step, which)
-        if not (np.abs(step) >= _EXACT).any():
+        if not (np.abs(step) >= projection.PROJECTED).any():
             break
     coupling = coupling_of(pair)
     for other in range(len(model.pairs)):
-        there = at.closed[other, which] & (at.element[other, which] == element)
+        there = iterate.closed[other, which] & (iterate.element[other, which] == element)
         if there.any():
-            own = Properties(*(column[there] for column in properties_of(numbers, element, which)))
-            xis = np.stack([xi[there], at.xi[other, which[there]]])
-            dent = coupling.dent(own, xis.min(axis=0), xis.max(axis=0))
-            fx, fy = at.force[other][:, which[there]]
+            constants_there = Properties(
+                *(column[there] for column in properties_of(constants, element, which))
+            )
+            xis = np.stack([xi[there], iterate.xi[other, which[there]]])
+            dent = coupling.dent(constants_there, xis.min(axis=0), xis.max(axis=0))
+            fx, fy = iterate.force[other][:, which[there]]
             px[there] += dent * fx
             py[there] += dent * fy
     height = (py * tx - px * ty) / np.hypot(tx, ty)
-    arc = numbers.arc[element, which] + xi * l0[element, which]
-    beyond = np.maximum(np.maximum(arc - numbers.span[k, which], -arc), 0.0)
+    arc = constants.arc[element, which] + xi * l0[element, which]
+    beyond = np.maximum(np.maximum(arc - constants.span[k, which], -arc), 0.0)
     beyond[(xi >= 0) & (xi <= 1)] = 0.0
-    return Seen(element, xi, numbers.side[k, which] * height - numbers.offset[k, which], beyond)
-
-
-def _nearest_chord(
-    numbers: Numbers, at: Points, target: BeamModel, node: Array, which: Array
-) -> tuple[Array, Array]:
-    """Owner by projection on the chords."""
-    nodes = target.nodes
-    dofs = 3 * nodes[:, None] + np.arange(2)
-    positions = numbers.coordinates[nodes][..., which] + at.q[dofs][..., which]
-    d = np.diff(positions, axis=0)
-    r = node - positions[:-1]
-    xi = (d * r).sum(axis=1) / (d * d).sum(axis=1)
-    miss = r - np.clip(xi, 0.0, 1.0)[:, None] * d
-    owner = np.argmin((miss * miss).sum(axis=1), axis=0)
-    return target.first + owner, xi[owner, np.arange(len(which))]
+    return Projections(element, xi, constants.side[k, which] * height - constants.offset[k, which], beyond)

@@ -3,7 +3,7 @@
 A structure whose iteration ends accepts its configuration and sets off for its next load parameter while the others still
 iterate. Whatever is not plain (a step that does not converge soon, a contact that opens or closes, a pin that turns, a change of the
 determinant's sign) is left to the `Stepper`: it goes on from the last accepted configurations to the next prescribed load parameter,
-and hands the structure back. So there is one stepper, and a batch finds what it finds.
+and hands the structure back. Events and critical points are found by the stepper alone.
 """
 
 from __future__ import annotations
@@ -13,10 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tsm.batch.checks import balanced, eventless, follows, largest_step, norm
-from tsm.batch.equations import OWN, Equations, System
-from tsm.batch.front import (
-    Front,
+from tsm.batch.checks import balanced, eventless, follows, norm
+from tsm.batch.constants import constants_of, take
+from tsm.batch.equations import OWN, BatchLinearisation, Equations
+from tsm.batch.geometry import measure, project, slide
+from tsm.batch.record import Record, empty
+from tsm.batch.state import (
+    BatchState,
     newest,
     predict,
     remember,
@@ -24,14 +27,13 @@ from tsm.batch.front import (
     states_of,
     undeformed,
 )
-from tsm.batch.geometry import measure, project, slide
-from tsm.batch.numbers import collect_numbers, some
-from tsm.batch.record import Record, empty
 from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, Passage
 from tsm.model import Model
 from tsm.newton import LONGEST
+from tsm.projection import AT_NODE
+from tsm.scaling import largest
 from tsm.settings import Settings
 from tsm.status import Status
 from tsm.stepping import Stepper
@@ -51,7 +53,7 @@ class March:
     structures : sequence of Structure
         All numbered alike.
     model : Model
-        Of the first.
+        Numbering, taken from the first structure.
     targets : ndarray, shape (s,)
         Prescribed load parameters.
     settings : Settings
@@ -88,37 +90,39 @@ class March:
         places = np.arange(len(self.structures))
         parts = np.array_split(places, math.ceil(len(places) * len(self.model.element_nodes) / _ENTRIES))
         with np.errstate(all="ignore"):
-            fronts = [self._at_rest(part) for part in parts]
-            for front in fronts:
-                self._march(front)
+            batches = [self._at_rest(part) for part in parts]
+            for batch in batches:
+                self._march(batch)
         return self.record
 
-    def _at_rest(self, part: Array) -> Front:
+    def _at_rest(self, part: Array) -> BatchState:
         """Some structures, undeformed."""
-        numbers = collect_numbers([self.structures[n] for n in part], self.model)
-        front = undeformed(self.equations, numbers, part)
-        self._close(front)
-        return front
+        constants = constants_of([self.structures[n] for n in part], self.model)
+        batch = undeformed(self.equations, constants, part)
+        self._close(batch)
+        return batch
 
-    def _march(self, front: Front) -> None:
-        self._start(front)
-        while (alive := front.target < len(self.targets)).any():
+    def _march(self, batch: BatchState) -> None:
+        self._start(batch)
+        while (alive := batch.target < len(self.targets)).any():
             if not alive.all():
-                front = some(front, alive)
-            self._iterate(front)
+                batch = take(batch, alive)
+            self._iterate(batch)
 
-    def _close(self, front: Front) -> None:
+    def _close(self, batch: BatchState) -> None:
         """Close pairs whose node lies on the surface, without force."""
-        at, numbers, everywhere = front.at, front.numbers, np.arange(len(front.structure))
-        small = ROUND_OFF * numbers.length
-        found = [project(self.equations, numbers, at, k, everywhere) for k in range(len(self.model.pairs))]
-        for k, seen in enumerate(found):
+        iterate, constants, everywhere = batch.iterate, batch.constants, np.arange(len(batch.structure))
+        small = ROUND_OFF * constants.sizes.length
+        closest = [
+            project(self.equations, constants, iterate, k, everywhere) for k in range(len(self.model.pairs))
+        ]
+        for k, seen in enumerate(closest):
             over = seen.overshoot <= small
             for n in np.flatnonzero(over & (seen.gap < -small)):
-                self._refuse(int(front.structure[n]))
-            at.closed[k] = over & (seen.gap <= small)
-            at.element[k] = np.where(at.closed[k], seen.element, at.element[k])
-            at.xi[k] = np.where(at.closed[k], np.clip(seen.xi, 0.0, 1.0), 0.0)
+                self._refuse(int(batch.structure[n]))
+            iterate.closed[k] = over & (seen.gap <= small)
+            iterate.element[k] = np.where(iterate.closed[k], seen.element, iterate.element[k])
+            iterate.xi[k] = np.where(iterate.closed[k], np.clip(seen.xi, 0.0, 1.0), 0.0)
 
     def _refuse(self, n: int) -> None:
         """Say in the stepper's words that a node starts behind its surface."""
@@ -127,148 +131,151 @@ class March:
         except ValueError as error:
             raise ValueError(f"structures[{n}]: {error}") from error
 
-    def _start(self, front: Front) -> None:
+    def _start(self, batch: BatchState) -> None:
         """Accept the undeformed configurations and set off."""
-        everywhere = np.arange(len(front.structure))
-        residual = norm(self.equations, front, self.equations.linearise(front.numbers, front.at))
+        everywhere = np.arange(len(batch.structure))
+        residual = norm(self.equations, batch, self.equations.linearise(batch.constants, batch.iterate))
         at_rest = residual <= self.settings.tolerance
         started = everywhere[at_rest]
-        remember(front, started)
-        front.normal[:, started], front.arc[:, started] = measure(
-            self.equations, front.numbers, front.at, started
+        remember(batch, started)
+        batch.normal[:, started], batch.arc[:, started] = measure(
+            self.equations, batch.constants, batch.iterate, started
         )
         for n in everywhere[~at_rest]:
-            self._alone(front, int(n))
-        self._depart(front, everywhere)
+            self._alone(batch, int(n))
+        self._depart(batch, everywhere)
 
-    def _iterate(self, front: Front) -> None:
+    def _iterate(self, batch: BatchState) -> None:
         """One iteration of all structures; those whose step ends set off on their next."""
-        system = self.equations.linearise(front.numbers, front.at)
-        residual = norm(self.equations, front, system)
-        twice = np.maximum(front.residual, residual)
-        converged = (residual <= self.settings.tolerance) | (twice <= front.numbers.noise)
-        stuck = ~converged & ~(np.isfinite(residual) & (front.iteration < self.soon))
-        found = np.flatnonzero(converged)
-        normal, arc = measure(self.equations, front.numbers, front.at, found)
+        system = self.equations.linearise(batch.constants, batch.iterate)
+        residual = norm(self.equations, batch, system)
+        twice = np.maximum(batch.residual, residual)
+        converged = (residual <= self.settings.tolerance) | (twice <= batch.constants.scales.noise)
+        stuck = ~converged & ~(np.isfinite(residual) & (batch.iteration < self.soon))
+        arrived = np.flatnonzero(converged)
+        normal, arc = measure(self.equations, batch.constants, batch.iterate, arrived)
         tolerance = self.settings.tolerance
-        plain = eventless(self.equations, front, found, normal, arc, tolerance)
-        plain &= follows(self.equations, front, found) & balanced(
-            self.equations, front, system, found, tolerance
+        plain = eventless(self.equations, batch, arrived, normal, arc, tolerance)
+        plain &= follows(self.equations, batch, arrived) & balanced(
+            self.equations, batch, system, arrived, tolerance
         )
-        self._accept(front, found[plain], system, normal[:, plain], arc[:, plain])
-        for n in [*found[~plain].tolist(), *np.flatnonzero(stuck).tolist()]:
-            self._alone(front, n)
+        self._accept(batch, arrived[plain], system, normal[:, plain], arc[:, plain])
+        for n in [*arrived[~plain].tolist(), *np.flatnonzero(stuck).tolist()]:
+            self._alone(batch, n)
         ended = converged | stuck
         if not ended.all():
-            self._move(front, system)
-        front.residual[:] = residual
-        front.iteration[:] += 1
-        self._depart(front, np.flatnonzero(ended))
+            self._move(batch, system)
+        batch.residual[:] = residual
+        batch.iteration[:] += 1
+        self._depart(batch, np.flatnonzero(ended))
 
-    def _move(self, front: Front, system: System) -> None:
+    def _move(self, batch: BatchState, system: BatchLinearisation) -> None:
         """Newton's steps, each shortened as by `Newton.update`."""
-        at, numbers = front.at, front.numbers
+        iterate, constants = batch.iterate, batch.constants
         dq, dz, sign = self.equations.solve(system)
-        longest = np.maximum(
-            largest_step(self.equations, dq, numbers.length),
-            np.abs(dz[2::OWN]).max(axis=0) / (0.3 * numbers.length),
-        )
-        factor = np.where(longest > LONGEST, LONGEST / longest, 1.0)
-        at.q[self.model.free] += factor * dq
-        own = (factor * dz).reshape(-1, OWN, len(factor))
-        everywhere, l0 = np.arange(len(factor)), numbers.properties.l0
-        at.force[:] += own[:, :2]
+        size = largest(np.concatenate([dq, dz]), constants.scales.step)
+        factor = np.where(size > LONGEST, LONGEST / size, 1.0)
+        iterate.q[self.model.free] += factor * dq
+        change = (factor * dz).reshape(-1, OWN, len(factor))
+        everywhere, l0 = np.arange(len(factor)), constants.properties.l0
+        iterate.force[:] += change[:, :2]
         for k, pair in enumerate(self.model.pairs):
-            xi = at.xi[k] + own[k, 2] / l0[at.element[k], everywhere]
-            at.element[k], at.xi[k] = slide(l0, pair.target, at.element[k], xi, everywhere)
-        front.last[:] = sign
-        front.first[:] = np.where(front.iteration == 0, sign, front.first)
+            xi = iterate.xi[k] + change[k, 2] / l0[iterate.element[k], everywhere]
+            iterate.element[k], iterate.xi[k] = slide(
+                l0, pair.target, iterate.element[k], xi, everywhere, AT_NODE
+            )
+        batch.last[:] = sign
+        batch.first[:] = np.where(batch.iteration == 0, sign, batch.first)
 
-    def _accept(self, front: Front, which: Array, system: System, normal: Array, arc: Array) -> None:
+    def _accept(
+        self, batch: BatchState, which: Array, system: BatchLinearisation, normal: Array, arc: Array
+    ) -> None:
         """Take the iterates of some structures as their configurations."""
-        self._note_passes(front, which, normal, arc)
-        front.normal[:, which], front.arc[:, which] = normal, arc
-        at, numbers = front.at, front.numbers
+        self._note_passes(batch, which, normal, arc)
+        batch.normal[:, which], batch.arc[:, which] = normal, arc
+        iterate, constants = batch.iterate, batch.constants
         for k in range(len(self.model.pairs)):
-            part = which[~(front.armed[k, which] | at.closed[k, which])]
+            part = which[~(batch.armed[k, which] | iterate.closed[k, which])]
             if len(part):
-                seen = project(self.equations, numbers, at, k, part)
-                small = ROUND_OFF * numbers.length[part]
-                front.armed[k, part] = (seen.overshoot > small) | (seen.gap > small)
-        remember(front, which)
-        last = front.last[which]
-        front.orientation[which] = np.where(last != 0, last, front.orientation[which])
-        front.step[which] = np.minimum(2 * front.step[which], 1.0)
-        front.spent[which] += front.iteration[which]
-        asked = front.goal[which] == self.targets[front.target[which]]
-        self._enter(front, which[asked], system.nodal[self.model.fixed[:, None], which[asked]])
+                seen = project(self.equations, constants, iterate, k, part)
+                small = ROUND_OFF * constants.sizes.length[part]
+                batch.armed[k, part] = (seen.overshoot > small) | (seen.gap > small)
+        remember(batch, which)
+        last = batch.last[which]
+        batch.orientation[which] = np.where(last != 0, last, batch.orientation[which])
+        batch.step[which] = np.minimum(2 * batch.step[which], 1.0)
+        batch.spent[which] += batch.iteration[which]
+        asked = batch.goal[which] == self.targets[batch.target[which]]
+        self._enter(batch, which[asked], system.nodal[self.model.fixed[:, None], which[asked]])
 
-    def _note_passes(self, front: Front, which: Array, normal: Array, arc: Array) -> None:
+    def _note_passes(self, batch: BatchState, which: Array, normal: Array, arc: Array) -> None:
         """Note changes of owner since the last configurations."""
-        at, history = front.at, front.history
+        iterate, history = batch.iterate, batch.history
         place = newest(history, which)
         before = history.element[place, :, which].T
-        for k, m in np.argwhere(at.closed[:, which] & (before != at.element[:, which])):
+        for k, m in np.argwhere(iterate.closed[:, which] & (before != iterate.element[:, which])):
             n = which[m]
             passage = Passage(
                 pair=int(k),
-                t=(float(history.t[place[m], n]), float(front.goal[n])),
-                element=(int(before[k, m]), int(at.element[k, n])),
-                arc=(float(front.arc[k, n]), float(arc[k, m])),
-                force=(float(front.normal[k, n]), float(normal[k, m])),
+                t=(float(history.t[place[m], n]), float(batch.goal[n])),
+                element=(int(before[k, m]), int(iterate.element[k, n])),
+                arc=(float(batch.arc[k, n]), float(arc[k, m])),
+                force=(float(batch.normal[k, n]), float(normal[k, m])),
             )
-            self.record.events[front.structure[n]].append(passage)
+            self.record.events[batch.structure[n]].append(passage)
 
-    def _enter(self, front: Front, which: Array, reaction: Array) -> None:
+    def _enter(self, batch: BatchState, which: Array, reaction: Array) -> None:
         """Record configurations at prescribed load parameters, and what the supports exert in them."""
-        record, at = self.record, front.at
-        n, k = front.structure[which], front.target[which]
-        record.q[n, k] = at.q[:, which].T
+        record, iterate = self.record, batch.iterate
+        n, k = batch.structure[which], batch.target[which]
+        record.q[n, k] = iterate.q[:, which].T
         for row, now in (
-            (record.closed, at.closed),
-            (record.armed, front.armed),
-            (record.element, at.element),
-            (record.xi, at.xi),
+            (record.closed, iterate.closed),
+            (record.armed, batch.armed),
+            (record.element, iterate.element),
+            (record.xi, iterate.xi),
         ):
             row[n, k] = now[:, which].T
-        record.force[n, k] = at.force[..., which].transpose(2, 0, 1)
-        record.normal[n, k], record.arc[n, k] = front.normal[:, which].T, front.arc[:, which].T
+        record.force[n, k] = iterate.force[..., which].transpose(2, 0, 1)
+        record.normal[n, k], record.arc[n, k] = batch.normal[:, which].T, batch.arc[:, which].T
         record.reaction[n, k] = reaction.T
-        record.iterations[n, k] = front.spent[which]
+        record.iterations[n, k] = batch.spent[which]
         record.reached[n] += 1
-        front.spent[which] = 0
-        front.target[which] += 1
+        batch.spent[which] = 0
+        batch.target[which] += 1
 
-    def _alone(self, front: Front, n: int) -> None:
+    def _alone(self, batch: BatchState, n: int) -> None:
         """Leave structure n to the stepper up to its next prescribed load parameter."""
-        record, structure = self.record, int(front.structure[n])
+        record, structure = self.record, int(batch.structure[n])
         stepper = self.steppers.get(structure)
         if stepper is None:
             stepper = Stepper(Model(self.structures[structure]), self.settings)
             self.steppers[structure] = stepper
-        if front.history.entered[n]:
-            stepper.resume(states_of(front, n), float(front.step[n]))
-        target = int(front.target[n])
+        if batch.history.entered[n]:
+            stepper.resume(states_of(batch, n), float(batch.step[n]))
+        target = int(batch.target[n])
         steps = list(stepper.march(self.targets[target : target + 1]))
         record.cutbacks[structure] += sum(step.cutbacks for step in steps)
         record.events[structure].extend(event for step in steps for event in step.events)
-        front.spent[n] += sum(step.iterations for step in steps)
+        batch.spent[n] += sum(step.iterations for step in steps)
         status = steps[-1].status
         if status is not Status.CONVERGED:
             record.status[structure] = status
             record.end[structure] = steps[-1]
-            front.target[n] = len(self.targets)
+            batch.target[n] = len(self.targets)
             return
-        replace_history(front, n, stepper.track.history)
+        replace_history(batch, n, stepper.track.history)
         which = np.array([n])
-        front.normal[:, which], front.arc[:, which] = measure(self.equations, front.numbers, front.at, which)
-        front.step[n], front.orientation[n] = stepper.step, 0
+        batch.normal[:, which], batch.arc[:, which] = measure(
+            self.equations, batch.constants, batch.iterate, which
+        )
+        batch.step[n], batch.orientation[n] = stepper.control.step, 0
         reaction = steps[-1].equilibrium.system.nodal[self.model.fixed]
-        self._enter(front, which, reaction[:, None])
+        self._enter(batch, which, reaction[:, None])
 
-    def _turning(self, front: Front, which: Array, t: Array) -> Array:
+    def _turning(self, batch: BatchState, which: Array, t: Array) -> Array:
         """Whether a pin turns on the way from the load parameters t to the goals, shape (m,)."""
-        places, goals = front.structure[which].tolist(), front.goal[which].tolist()
+        places, goals = batch.structure[which].tolist(), batch.goal[which].tolist()
         return np.array(
             [
                 any(now < turn < goal for turn in self.turns.get(n, ()))
@@ -277,21 +284,21 @@ class March:
             dtype=bool,
         )
 
-    def _depart(self, front: Front, which: Array) -> None:
+    def _depart(self, batch: BatchState, which: Array) -> None:
         """Set off for the next prescribed load parameters, as far as the steps go, where there is one."""
-        which = which[front.target[which] < len(self.targets)]
+        which = which[batch.target[which] < len(self.targets)]
         if not len(which):
             return
-        goal = self.targets[front.target[which]]
-        t = front.history.t[newest(front.history, which), which]
-        left, step = goal - t, front.step[which]
-        front.goal[which] = np.where(left <= step * (1 + 1e-6), goal, t + step)
-        turning = self._turning(front, which, t)
+        goal = self.targets[batch.target[which]]
+        t = batch.history.t[newest(batch.history, which), which]
+        left, step = goal - t, batch.step[which]
+        batch.goal[which] = np.where(left <= step * (1 + 1e-6), goal, t + step)
+        turning = self._turning(batch, which, t)
         for n in which[turning].tolist():
-            self._alone(front, n)
-        self._depart(front, which[turning])
+            self._alone(batch, n)
+        self._depart(batch, which[turning])
         which = which[~turning]
-        predict(self.equations, front, which)
-        front.iteration[which] = 0
-        front.residual[which] = np.inf
-        front.first[which] = front.last[which] = 0.0
+        predict(self.equations, batch, which)
+        batch.iteration[which] = 0
+        batch.residual[which] = np.inf
+        batch.first[which] = batch.last[which] = 0.0

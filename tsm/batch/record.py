@@ -1,4 +1,4 @@
-"""What is kept of every structure at the prescribed load parameters, the structure as first axis here."""
+"""Configurations of every structure at the prescribed load parameters, the structure as first axis here."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Record:
     cutbacks : ndarray of int, shape (N,)
         Steps given up.
     status : list of Status
-        Of each.
+        Outcomes of the structures.
     end : dict of Step
         Where structures stopped that did not reach the last load parameter.
     events : list of list
@@ -64,18 +64,22 @@ class Record:
 
     def state(self, n: int, k: int, t: float) -> State:
         """Configuration of structure n at load parameter k, whose value is t."""
-        touches = tuple(
-            Touch(element=int(e), xi=float(xi), force=(float(fx), float(fy))) if closed else None
-            for closed, e, xi, (fx, fy) in zip(
-                self.closed[n, k], self.element[n, k], self.xi[n, k], self.force[n, k], strict=True
-            )
-        )
+        touches = touches_of(self.closed[n, k], self.element[n, k], self.xi[n, k], self.force[n, k])
         armed = tuple(bool(flag) for flag in self.armed[n, k])
         return State(load_parameter=t, q=self.q[n, k].copy(), touches=touches, armed=armed)
 
 
+def touches_of(closed: Array, element: Array, xi: Array, force: Array) -> tuple[Touch | None, ...]:
+    """Contacts of one structure from arrays over its p pairs; the forces have the shape (p, 2)."""
+    rows = zip(closed, element.tolist(), xi.tolist(), force.tolist(), strict=True)
+    return tuple(
+        Touch(element=e, xi=place, force=(fx, fy)) if touching else None
+        for touching, e, place, (fx, fy) in rows
+    )
+
+
 def empty(model: Model, count: int, steps: int) -> Record:
-    """Record of nothing yet."""
+    """Record without configurations."""
     shape, pairs = (count, steps), (count, steps, len(model.pairs))
     return Record(
         q=np.zeros((*shape, model.dof_count)),

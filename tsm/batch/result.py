@@ -1,4 +1,4 @@
-"""What comes back of a batch: tables over all structures, and of each its `Result` when it is asked for."""
+"""Outcome of a batch: tables over all structures, and the `Result` of each when it is asked for."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class BatchResult(Sequence[Result]):
     Attributes
     ----------
     status : tuple of Status
-        COMPLETED or the reason for the stop, of each.
+        COMPLETED or the reason for the stop, for every structure.
     load_parameter : ndarray, shape (s,)
         Prescribed load parameters; what a structure did not reach is nan in the tables.
     force, arc_position : dict of ndarray, shape (N, s)
@@ -145,8 +145,8 @@ def from_record(
     supports = {}
     for beam in dict.fromkeys(name.rpartition(".")[0] for name in model.support_node):
         nodes = [node for name, node in model.support_node.items() if name.rpartition(".")[0] == beam]
-        of = held[:, :, nodes]
-        supports[beam] = SupportHistory(force=of[..., :2].sum(axis=2), moment=of[:, :, 0, 2])
+        reactions = held[:, :, nodes]
+        supports[beam] = SupportHistory(force=reactions[..., :2].sum(axis=2), moment=reactions[:, :, 0, 2])
     tips = {}
     for n, (name, place) in enumerate(model.beams.items()):
         dof = 3 * place.nodes[-1]
@@ -173,8 +173,8 @@ def from_results(results: Sequence[Result], targets: Array, seconds: float) -> B
 
     def table(rows: list[Array], fill: float = np.nan) -> Array:
         whole = np.full((len(rows), count, *rows[0].shape[1:]), fill, dtype=rows[0].dtype)
-        for own, row in zip(whole, rows, strict=True):
-            own[: len(row)] = row
+        for part, row in zip(whole, rows, strict=True):
+            part[: len(row)] = row
         return whole
 
     return BatchResult(

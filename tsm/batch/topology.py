@@ -27,8 +27,8 @@ def check_alike(structures: Sequence[Structure]) -> None:
         raise ValueError("structures = []: must not be empty")
     first = topology(structures[0])
     for n, structure in enumerate(structures):
-        own = topology(structure)
-        for what, value in own.items():
+        numbering = topology(structure)
+        for what, value in numbering.items():
             if value != first[what]:
                 raise ValueError(
                     f"structures[{n}].{what} = {value!r}: must be {first[what]!r}, as in structures[0]"

@@ -1,7 +1,7 @@
 """Beam elements and their contact, in one registry."""
 
 from tsm.elements.contact_law import ContactLaw, Coupling
-from tsm.elements.element_type import ClosedForm, ElementType
+from tsm.elements.element_type import ClosedForm, ElementType, Integrated
 from tsm.elements.kinds.exact import EXACT
 from tsm.elements.kinds.mixed import MIXED, MIXED_NO_BOW
 from tsm.elements.kinds.paper import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, PAPER, TIMOSHENKO
@@ -21,4 +21,5 @@ __all__ = [
     "ContactLaw",
     "Coupling",
     "ElementType",
+    "Integrated",
 ]

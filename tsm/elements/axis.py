@@ -24,7 +24,7 @@ class PointForce(NamedTuple):
 def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[PointForce], xi: Array) -> Array:
     """Positions along the axes of elements from their ends i: the rod's equations between their end states.
 
-    The internal force n is that of the element; sections turn by phi, t and n_ are their directions::
+    The element gives the internal force n; sections turn by phi, t and n_ are their directions::
 
         phi' = l0 (M + a + b xi)/EI,  M' = -(r' x n),  r' = l0 ((1 + n.t/EA) t + (n.n_/GA) n_)
 
@@ -50,21 +50,25 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
     turn = chord_rotation(p.dx0 * dy - p.dy0 * dx, p.dx0 * dx + p.dy0 * dy)
     first, last = unwind(x[2] - turn)[:, None], unwind(x[5] - turn)[:, None]
     chord = (dx + 1j * dy)[:, None]
-    at = np.unique(np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [own.xi for own in contacts]]))
-    n = np.repeat(-(force[0] + 1j * force[1])[:, None], len(at) - 1, axis=1)
-    for own in contacts:
-        n[own.element, at[:-1] >= own.xi] -= complex(*own.force)
+    stations = np.unique(
+        np.concatenate([np.linspace(0, 1, _PIECES + 1), xi, [contact.xi for contact in contacts]])
+    )
+    n = np.repeat(-(force[0] + 1j * force[1])[:, None], len(stations) - 1, axis=1)
+    for contact in contacts:
+        n[contact.element, stations[:-1] >= contact.xi] -= complex(*contact.force)
     n *= np.abs(chord) / chord
     inverse = p.l0[:, None] / p.EI[:, None]
-    r, b = at * np.abs(chord) + 0j, np.zeros_like(first)
+    r, b = stations * np.abs(chord) + 0j, np.zeros_like(first)
     for _ in range(_ROUNDS):
         bend = inverse * _sums(-(np.conj(np.diff(r)) * n).imag)
-        turned = _sums(np.diff(at) * (bend[:, 1:] + bend[:, :-1]) / 2)
+        turned = _sums(np.diff(stations) * (bend[:, 1:] + bend[:, :-1]) / 2)
         a = last - first - turned[:, -1:] - b / 2
-        r = _positions(p, first + turned + a * at + b * at**2 / 2, bend + a + b * at, n, at)
+        r = _positions(
+            p, first + turned + a * stations + b * stations**2 / 2, bend + a + b * stations, n, stations
+        )
         b += 12 * r[:, -1:].imag / r[:, -1:].real
-    own_points = (r * chord / r[:, -1:])[:, np.searchsorted(at, xi)]
-    return np.stack([own_points.real, own_points.imag], axis=-1)
+    points = (r * chord / r[:, -1:])[:, np.searchsorted(stations, xi)]
+    return np.stack([points.real, points.imag], axis=-1)
 
 
 def _sums(values: Array) -> Array:
@@ -74,9 +78,9 @@ def _sums(values: Array) -> Array:
     return sums
 
 
-def _positions(p: Properties, angle: Array, bend: Array, n: Array, at: Array) -> Array:
+def _positions(p: Properties, angle: Array, bend: Array, n: Array, stations: Array) -> Array:
     """Integrals of r' by Simpson's rule in every piece, where the curvature is linear."""
-    step, stretch, shear = np.diff(at), 1 / p.EA[:, None], (p.Phi * p.l0**2 / (12 * p.EI))[:, None]
+    step, stretch, shear = np.diff(stations), 1 / p.EA[:, None], (p.Phi * p.l0**2 / (12 * p.EI))[:, None]
     middle = angle[:, :-1] + step * (3 * bend[:, :-1] + bend[:, 1:]) / 8
     total = np.zeros(n.shape, complex)
     t_ends = np.exp(1j * angle)

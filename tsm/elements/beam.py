@@ -198,10 +198,10 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     reduced[2:] = moments
 
     entries = np.empty((10, *x.shape[1:]), dtype=x.dtype)
-    own = slope * coupling + stiffness
-    entries[7] = own[0] + a.r4 * mm
+    bending = slope * coupling + stiffness
+    entries[7] = bending[0] + a.r4 * mm
     entries[8] = slope[0] * coupling[1] + a.r2 * bend[0] * bend[1]
-    entries[9] = own[1]
+    entries[9] = bending[1]
     # of the chord vector, in the chord's own axes: tt, tn, nn, and across with m and h
     across = entries[7:9] / length
     tn = (shear - coupling[0]) / length

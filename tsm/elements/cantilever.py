@@ -27,10 +27,10 @@ def clamped(stiffness: Stiffness) -> ElementForce:
     def element_force(p: Properties, xi: Any, deformation: Array) -> tuple[Array, Array, Array]:
         K, dK = stiffness(p, xi)
         T = transformation(p, xi)
-        own = T @ deformation
-        S = K @ own
+        cantilever = T @ deformation
+        S = K @ cantilever
         # T depends on a in the one entry -a
-        slope = (dK @ own - K[:, 1] * deformation[0]) @ T
+        slope = (dK @ cantilever - K[:, 1] * deformation[0]) @ T
         slope[0] -= S[1]
         return S @ T, T.T @ K @ T, slope
 
@@ -38,7 +38,7 @@ def clamped(stiffness: Stiffness) -> ElementForce:
 
 
 def transformation(p: Properties, xi: Any) -> Array:
-    """Deformations of the cantilever from those of the beam simply supported on the chord."""
+    """Matrix that takes the deformations of the beam simply supported on the chord to the deformations of the cantilever."""
     return np.array([[-p.l0, 0, 0], [-xi * p.l0, 0, 1], [-1, 1, 0]])
 
 

@@ -87,6 +87,6 @@ def interpolation(order: int, x: Array) -> Array:
     if hit.any():
         apart[hit.any(axis=1)] = np.inf
         apart[hit] = 1.0
-    found: Array = table.barycentric / apart
-    found /= found.sum(axis=1, keepdims=True)
-    return found
+    weights: Array = table.barycentric / apart
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights

@@ -1,4 +1,4 @@
-"""What a contact inside an element in closed form does: the interface that solver, batch and energy call."""
+"""Contact laws: force, tangent and energy of a contact inside an element in closed form, for one structure and for many."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
 class ContactLaw:
     """A contact law.
 
-    Every function takes the constants `Properties` of the touched element first. Of one contact, ``x`` are the element's six
-    displacements, ``lever = x_i - x_c`` the vector from the contacting node to the element's end i, ``xi`` in [0, 1] the place on the
-    element, ``force`` the force on the beam, ``side`` +1 where the node comes from the right and -1 from the left, ``offset`` the
-    distance of the contact surface from the axis.
+    Every function takes the constants `Properties` of the touched element first. ``x`` are the element's six displacements,
+    ``lever = x_i - x_c`` the vector from the contacting node to the element's end i, ``xi`` in [0, 1] the position on the element,
+    ``force`` the force on the beam, ``side`` +1 where the node comes from the right and -1 from the left, ``offset`` the distance of the
+    contact surface from the axis.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class ContactLaw:
     energy : callable
         ``(p, x, lever, xi, force, side, offset) -> float``: what the contact adds to the strain energy in equilibrium.
     coupling : Coupling or None
-        What a law whose force and arc position are unknowns does besides; None where the force follows from the displacements.
+        Further functions of a law whose force and arc position are unknowns; None where the force follows from the displacements.
     """
 
     response: Callable[[Properties, Any, Any, Any, Any, float, float], tuple[Array, Array]]
@@ -44,7 +44,7 @@ class ContactLaw:
 
 @dataclass(frozen=True, kw_only=True)
 class Coupling:
-    """What a contact law with unknowns of its own states for several contacts at a time.
+    """A contact law with unknowns, for many contacts at a time and for two contacts on one element.
 
     Attributes
     ----------

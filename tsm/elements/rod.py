@@ -25,7 +25,7 @@ from tsm.elements.properties import Array, cosine, sine
 
 INPUTS = 7
 """Angle and moment at the start, angle at the end, force x and y, length; the last input is 1: the residual inside."""
-# the 13 entries of `_direct` in the transfer: rows miss, moment, vector
+# the 13 entries of `_direct` in the transfer: rows end residual, moment, vector
 _PARTS = np.zeros((13, 4, 7))
 _PARTS[0, [0, 0, 1], [0, 2, 1]] = 1, -1, 1
 _PARTS[[1, 2, 3, 4], 0, [1, 3, 4, 5]] = 1
@@ -36,7 +36,7 @@ _DIRECT = _PARTS.reshape(13, -1)
 
 
 class Flexibility(NamedTuple):
-    """Of segments; each of shape (s, 1).
+    """Flexibilities of segments, each of shape (s, 1).
 
     Attributes
     ----------
@@ -50,12 +50,12 @@ class Flexibility(NamedTuple):
 
 
 class Segments(NamedTuple):
-    """Rods between two loads each, s of them, and what is known of them.
+    """Rods between two loads, s of them.
 
     Attributes
     ----------
     flexibility : Flexibility
-        Of each.
+        Flexibilities of the segments.
     force : ndarray, shape (2, s, 1)
         Internal force, on the section that looks to the end.
     length : ndarray, shape (s, 1)
@@ -71,7 +71,7 @@ class Segments(NamedTuple):
 
 
 class Field(NamedTuple):
-    """What the angles say of the rod at the Gauss nodes.
+    """Forces and tangent vectors of the rod at the Gauss nodes.
 
     Attributes
     ----------
@@ -98,15 +98,15 @@ class Arrival(NamedTuple):
 
     Attributes
     ----------
-    miss : ndarray, shape (s,)
-        Angle on arrival less the angle that is there.
+    end_residual : ndarray, shape (s,)
+        Integrated angle at the end less the angle of the section there.
     inside : ndarray, shape (s, p)
         Residual of the angles inside [rad].
     bent : ndarray, shape (s, p)
         ``twice @ f``.
     """
 
-    miss: Array
+    end_residual: Array
     inside: Array
     bent: Array
 
@@ -117,7 +117,7 @@ class Condensed(NamedTuple):
     Attributes
     ----------
     transfer : ndarray, shape (s, 4, 7)
-        Derivatives of miss, moment at the end, and vector from start to end, by the inputs.
+        Derivatives of end residual, moment at the end, and vector from start to end, by the inputs.
     inner : ndarray, shape (s, p, 7)
         Derivatives of the angles inside by the inputs.
     """
@@ -126,11 +126,11 @@ class Condensed(NamedTuple):
     inner: Array
 
 
-def field(at: Segments) -> Field:
+def field(segments: Segments) -> Field:
     """Evaluate the rod's equations at the Gauss nodes."""
-    c, s = np.cos(at.angle), np.sin(at.angle)
-    nx, ny = at.force
-    stretch, shear, _ = at.flexibility
+    c, s = np.cos(segments.angle), np.sin(segments.angle)
+    nx, ny = segments.force
+    stretch, shear, _ = segments.flexibility
     g = stretch - shear
     N, q = nx * c + ny * s, nx * s - ny * c
     turn, gq = 1 + g * N, g * q
@@ -141,32 +141,36 @@ def field(at: Segments) -> Field:
     return Field(values, values @ collocation(c.shape[1]).ends, c, s, N, q, turn, gq)
 
 
-def arrival(at: Segments, of: Field, start: Array, moment: Array, end: Array) -> Arrival:
+def arrival(segments: Segments, values_at_nodes: Field, start: Array, moment: Array, end: Array) -> Arrival:
     """Residuals with given angle and moment at the start and angle at the end, each of shape (s, 1)."""
-    table = collocation(at.angle.shape[1])
-    by_bend = at.length * at.flexibility.bend
-    by_square = by_bend * at.length
+    table = collocation(segments.angle.shape[1])
+    by_bend = segments.length * segments.flexibility.bend
+    by_square = by_bend * segments.length
     rise = by_bend * moment
-    bent = of.values[0] @ table.twice.T
-    inside = at.angle - start - table.c * ((rise + end - start) / 2) - by_square * bent
-    miss = start + rise - end + by_square * of.sums[0, :, 1:]
-    return Arrival(miss[:, 0], inside, bent)
+    bent = values_at_nodes.values[0] @ table.twice.T
+    inside = segments.angle - start - table.c * ((rise + end - start) / 2) - by_square * bent
+    end_residual = start + rise - end + by_square * values_at_nodes.sums[0, :, 1:]
+    return Arrival(end_residual[:, 0], inside, bent)
 
 
-def condense(at: Segments, of: Field, found: Arrival, moment: Array) -> Condensed:
+def condense(segments: Segments, values_at_nodes: Field, arrived: Arrival, moment: Array) -> Condensed:
     """Eliminate the angles inside."""
-    table, h, bend = collocation(at.angle.shape[1]), at.length, at.flexibility.bend
+    table, h, bend = collocation(segments.angle.shape[1]), segments.length, segments.flexibility.bend
     by_bend = h * bend
     by_square = by_bend * h
-    slope = of.N * of.turn - of.gq * of.q
-    gc = (at.flexibility.stretch - at.flexibility.shear) * of.c
+    slope = values_at_nodes.N * values_at_nodes.turn - values_at_nodes.gq * values_at_nodes.q
+    gc = (segments.flexibility.stretch - segments.flexibility.shear) * values_at_nodes.c
     # derivatives of r' by the angle (x, y) and, less what is constant, by the force (xx, xy)
     values = np.empty((4, *slope.shape), dtype=slope.dtype)
-    np.subtract(-of.gq * of.c, of.turn * of.s, out=values[0])
-    np.subtract(of.turn * of.c, of.gq * of.s, out=values[1])
-    np.multiply(gc, of.c, out=values[2])
-    np.multiply(gc, of.s, out=values[3])
-    inner = _eliminate(at, found, slope, values[:2], moment)
+    np.subtract(
+        -values_at_nodes.gq * values_at_nodes.c, values_at_nodes.turn * values_at_nodes.s, out=values[0]
+    )
+    np.subtract(
+        values_at_nodes.turn * values_at_nodes.c, values_at_nodes.gq * values_at_nodes.s, out=values[1]
+    )
+    np.multiply(gc, values_at_nodes.c, out=values[2])
+    np.multiply(gc, values_at_nodes.s, out=values[3])
+    inner = _eliminate(segments, arrived, slope, values[:2], moment)
 
     weights = np.empty((len(h), 4, slope.shape[1]), dtype=slope.dtype)
     scaled = h * table.w
@@ -174,13 +178,13 @@ def condense(at: Segments, of: Field, found: Arrival, moment: Array) -> Condense
     np.multiply(slope, scaled, out=weights[:, 1])
     np.multiply(values[0], scaled, out=weights[:, 2])
     np.multiply(values[1], scaled, out=weights[:, 3])
-    return Condensed(weights @ inner + _direct(at, of, values @ table.ends, moment), inner)
+    return Condensed(weights @ inner + _direct(segments, values_at_nodes, values @ table.ends, moment), inner)
 
 
-def _eliminate(at: Segments, found: Arrival, slope: Array, turned: Array, moment: Array) -> Array:
+def _eliminate(segments: Segments, arrived: Arrival, slope: Array, turned: Array, moment: Array) -> Array:
     """Derivatives of the angles inside by the inputs, shape (s, p, 7)."""
-    table, h, bend = collocation(at.angle.shape[1]), at.length, at.flexibility.bend
-    count, p = at.angle.shape
+    table, h, bend = collocation(segments.angle.shape[1]), segments.length, segments.flexibility.bend
+    count, p = segments.angle.shape
     by_bend = h * bend
     by_square = by_bend * h
     matrix = (-by_square * slope)[:, None, :] * table.twice
@@ -193,28 +197,28 @@ def _eliminate(at: Segments, found: Arrival, slope: Array, turned: Array, moment
     right[:, :, 2] = half
     right[:, :, 3] = bent[0]
     right[:, :, 4] = bent[1]
-    right[:, :, 5] = 2 * by_bend * found.bent + (bend * moment) * half
-    right[:, :, 6] = -found.inside
+    right[:, :, 5] = 2 * by_bend * arrived.bent + (bend * moment) * half
+    right[:, :, 6] = -arrived.inside
     solved: Array = np.linalg.solve(matrix, right)
     return solved
 
 
-def _direct(at: Segments, of: Field, sums: Array, moment: Array) -> Array:
+def _direct(segments: Segments, values_at_nodes: Field, sums: Array, moment: Array) -> Array:
     """Part of the transfer that does not pass through the angles inside, shape (s, 4, 7)."""
-    stretch, shear, bend = (value[:, 0] for value in at.flexibility)
-    h = at.length[:, 0]
+    stretch, shear, bend = (value[:, 0] for value in segments.flexibility)
+    h = segments.length[:, 0]
     by_bend = h * bend
     total, later = sums[:, :, 0] * h, sums[:2, :, 1] * (-h * by_bend)
     entries = np.empty((13, len(h)), dtype=sums.dtype)
     entries[0] = 1
     entries[1] = by_bend
     entries[2:4] = later
-    entries[4] = bend * moment[:, 0] + 2 * by_bend * of.sums[0, :, 1]
+    entries[4] = bend * moment[:, 0] + 2 * by_bend * values_at_nodes.sums[0, :, 1]
     np.negative(total[:2], out=entries[5:7])
     entries[7] = h * shear + total[2]
     entries[8] = total[3]
     entries[9] = h * stretch - total[2]
-    entries[10:] = of.sums[:, :, 0]
+    entries[10:] = values_at_nodes.sums[:, :, 0]
     return (entries.T @ _DIRECT).reshape(-1, 4, INPUTS)
 
 

@@ -1,4 +1,4 @@
-"""How accurate the integration inside exact elements is, and what is done about it."""
+"""Error estimate of the integration inside exact elements, and its refinement."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ MOST_NODES = 96
 _AT_ONCE = 4
 """Nodes added at least."""
 _FALL = 100.0
-"""What the error is expected to fall by with two nodes more."""
+"""Expected ratio of the errors with two nodes more."""
 _SMOOTH = 1e-13
-"""Error inside that does not show."""
+"""Error of a polynomial inside that is round-off."""
 
 
 def truncation(rods: Rods, entry: Entry) -> float:
@@ -30,11 +30,11 @@ def truncation(rods: Rods, entry: Entry) -> float:
     At the ends of a segment the error is the product of two interpolation errors, of the solution and of the influence of an error inside;
     both are measured by the last two Legendre coefficients of moment and tangent vector, and both integrations divide by p.
     """
-    at, values = entry.at, entry.of.values
+    segments, values = entry.segments, entry.field.values
     order = values.shape[2]
     tail = np.abs(values @ collocation(order).legendre[-2:].T).max(axis=2)
-    length = np.abs(at.length[:, 0])
-    turn = tail[0] * length**2 * at.flexibility.bend[:, 0]
+    length = np.abs(segments.length[:, 0])
+    turn = tail[0] * length**2 * segments.flexibility.bend[:, 0]
     largest = np.maximum(turn, tail[1:].max(axis=0) * length / rods.model.length).max()
     return float(largest / order) ** 2
 
@@ -71,10 +71,10 @@ def _finer_inside(rods: Rods, state: State) -> Entry:
     finer = resampled(rods, state, 2 * profile_of(state).angle.shape[1])
     entry = rods.enter(finer)
     for _ in range(5):
-        arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         if np.abs(arrival.inside).max() < _SMOOTH:
             break
-        inner = rod.condense(entry.at, entry.of, arrival, entry.moment).inner
+        inner = rod.condense(entry.segments, entry.field, arrival, entry.moment).inner
         profile = profile_of(finer)
         finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
         entry = rods.enter(finer)

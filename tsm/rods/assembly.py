@@ -41,7 +41,7 @@ class Owned(NamedTuple):
     angle0, length : ndarray, shape (s,)
         Angle of the undeformed elements, and their length.
     flexibility : Flexibility
-        Of the elements.
+        Flexibilities of the elements.
     """
 
     place: Layout
@@ -58,9 +58,9 @@ class Entry(NamedTuple):
     ----------
     place : Layout
         To which elements they belong.
-    at : rod.Segments
+    segments : rod.Segments
         Force, length and angles inside.
-    of : rod.Field
+    field : rod.Field
         The rod's equations there.
     start, end, moment : ndarray, shape (s, 1)
         Angles at both ends, moment at the start.
@@ -71,8 +71,8 @@ class Entry(NamedTuple):
     """
 
     place: Layout
-    at: Segments
-    of: Field
+    segments: Segments
+    field: Field
     start: Array
     end: Array
     moment: Array
@@ -89,8 +89,8 @@ class RodBalance(NamedTuple):
         The segments.
     arrival : rod.Arrival
         Their residuals.
-    residual : ndarray, shape (9, r)
-        On node i, of the arrival at node j, and on node j.
+    nodal : ndarray, shape (9, r)
+        Forces on node i, arrival at node j, forces on node j.
     contacts : dict of list
         By pair: the rows of position (2), direction and arrival of the angle.
     tangents : dict of tuple
@@ -101,10 +101,16 @@ class RodBalance(NamedTuple):
 
     entry: Entry
     arrival: Arrival
-    residual: Array
+    nodal: Array
     contacts: dict[int, list[Any]]
     tangents: dict[int, tuple[rod.Tangent, rod.Tangent]]
     inside: float
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, r)."""
+        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
+        return ends
 
 
 class CutElement(NamedTuple):
@@ -133,7 +139,7 @@ class RodTangent(NamedTuple):
 
     Attributes
     ----------
-    carried : ndarray, shape (9, r)
+    condensed_residual : ndarray, shape (9, r)
         What the residual inside adds to the residual once it is eliminated.
     tangent : ndarray, shape (81, r)
         Derivative of the residual, row by row.
@@ -145,7 +151,7 @@ class RodTangent(NamedTuple):
         Derivatives of their outputs, see `rod.Condensed`.
     """
 
-    carried: Array
+    condensed_residual: Array
     tangent: Array
     cut: tuple[CutElement, ...]
     inner: Array
@@ -161,12 +167,21 @@ class Memo(NamedTuple):
 
 
 class Rods:
-    """The exact elements of a model."""
+    """The exact elements of a model.
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.dofs = model.exact_dofs
-        nodes, exact = model.element_nodes[model.exact], model.exact
+    Parameters
+    ----------
+    model : Model
+        The structure.
+    dofs : ndarray of int, shape (9, r)
+        Degrees of freedom of the elements.
+    exact : ndarray of int, shape (r,)
+        Global numbers of the elements.
+    """
+
+    def __init__(self, model: Model, dofs: Array, exact: Array) -> None:
+        self.model, self.dofs = model, dofs
+        nodes = model.element_nodes[exact]
         self.start, self.end = model.coordinates[nodes[:, 0]].T, model.coordinates[nodes[:, 1]].T
         p = model.properties
         self.angle0 = np.arctan2(p.dy0[exact], p.dx0[exact])
@@ -193,14 +208,14 @@ class Rods:
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - behind
-        at = Segments(flexibility, force, length[:, None], profile.angle)
-        of = rod.field(at)
-        sums = of.sums[:, :, 0] * length
+        segments = Segments(flexibility, force, length[:, None], profile.angle)
+        field = rod.field(segments)
+        sums = field.sums[:, :, 0] * length
         gain = sums[0]
         for element, _ in profile.cuts:
             for s in range(place.first[element], place.last[element]):
                 moment[s + 1] = moment[s] + gain[s]
-        return Entry(place, at, of, start[:, None], end[:, None], moment[:, None], gain, sums[1:])
+        return Entry(place, segments, field, start[:, None], end[:, None], moment[:, None], gain, sums[1:])
 
     def _owned(self, cuts: Cuts) -> Owned:
         if cuts not in self._constants:
@@ -218,14 +233,14 @@ class Rods:
     def balance(self, state: State) -> RodBalance:
         """Residual at a state."""
         entry = self.enter(state)
-        arrival = rod.arrival(entry.at, entry.of, entry.start, entry.moment, entry.end)
+        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         q = state.q[self.dofs]
         first, last = entry.place.first, entry.place.last
         residual = np.empty_like(q)
         residual[0:3] = -q[3:6]
         residual[3:5] = (self.start - self.end) + (q[0:2] - q[6:8]) + entry.vector[:, first]
-        residual[5] = arrival.miss[last]
-        residual[6:8] = entry.at.force[:, last, 0]
+        residual[5] = arrival.end_residual[last]
+        residual[6:8] = entry.segments.force[:, last, 0]
         residual[8] = entry.moment[last, 0] + entry.gain[last]
         contacts: dict[int, list[Any]] = {}
         tangents: dict[int, tuple[rod.Tangent, rod.Tangent]] = {}
@@ -239,7 +254,7 @@ class Rods:
                 pair, touch = self.model.pairs[k], touch_of(state, k)
                 cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
                 rows = contact_rows.residual((x - cx, y - cy), touch.force, tangents[k], pair.reach)
-                contacts[k] = [*rows, arrival.miss[s]]
+                contacts[k] = [*rows, arrival.end_residual[s]]
                 residual[3:5, element] += entry.vector[:, s + 1]
                 s += 1
         largest = float(np.abs(arrival.inside).max())
@@ -247,31 +262,31 @@ class Rods:
 
     def _tangents(self, state: State, k: int, entry: Entry, s: int) -> tuple[rod.Tangent, rod.Tangent]:
         """Tangent vectors before and after the contact at the end of segment s."""
-        flexibility = entry.at.flexibility
+        flexibility = entry.segments.flexibility
         stretch, shear = float(flexibility.stretch[s, 0]), float(flexibility.shear[s, 0])
         angle = touch_of(state, k).angle
-        (x, y), (xx, yy) = (entry.at.force[:, n, 0].tolist() for n in (s, s + 1))
+        (x, y), (xx, yy) = (entry.segments.force[:, n, 0].tolist() for n in (s, s + 1))
         return rod.tangent(stretch, shear, (x, y), angle), rod.tangent(stretch, shear, (xx, yy), angle)
 
     def linearise(self, state: State, balance: RodBalance) -> RodTangent:
         """Tangent at a state."""
         entry = balance.entry
-        condensed = rod.condense(entry.at, entry.of, balance.arrival, entry.moment)
+        condensed = rod.condense(entry.segments, entry.field, balance.arrival, entry.moment)
         first = entry.place.first
         tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
         tangent[:] = FIXED
         transfer = condensed.transfer[first]
         tangent[:, ROWS[:, None], COLUMNS] = transfer[:, :, :5]
-        carried = np.zeros_like(balance.residual)
-        carried[ROWS] = transfer[:, :, 6].T
+        condensed_residual = np.zeros_like(balance.nodal)
+        condensed_residual[ROWS] = transfer[:, :, 6].T
         cut = tuple(
             self._cut(state, e, pairs, balance, condensed.transfer) for e, pairs in profile_of(state).cuts
         )
         for part in cut:
             e = part.element
-            tangent[e], carried[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
+            tangent[e], condensed_residual[:, e] = part.tangent[:OWN, :OWN], part.tangent[:OWN, -1]
         return RodTangent(
-            carried, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer
+            condensed_residual, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer
         )
 
     def _cut(
@@ -297,7 +312,7 @@ class Rods:
         tangent[5], tangent[8] = out[0], out[1]
         return CutElement(element, pairs, tangent, inputs)
 
-    def inside(self, tangent: RodTangent, state: State, dq: Array, own: Array, constant: float) -> Array:
+    def inside(self, tangent: RodTangent, state: State, dq: Array, contacts: Array, constant: float) -> Array:
         """Change of the angles inside that belongs to a change of everything else.
 
         Parameters
@@ -308,8 +323,8 @@ class Rods:
             Where.
         dq : ndarray, shape (dofs,)
             Change of the displacements and element forces.
-        own : ndarray, shape (contact unknowns,)
-            Of the contacts' unknowns.
+        contacts : ndarray, shape (contact unknowns,)
+            Change of the contacts' unknowns.
         constant : float
             1 to remove the residual inside, 0 to follow a path on which it is zero.
         """
@@ -320,7 +335,7 @@ class Rods:
         inputs[:, 6] = constant
         for part in tangent.cut:
             slots = self.slots(part.pairs)
-            z = np.concatenate([x[:, part.element], own[slots], [constant]])
+            z = np.concatenate([x[:, part.element], contacts[slots], [constant]])
             first = place.first[part.element]
             inputs[first : first + len(part.inputs)] = part.inputs @ z
         change: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
@@ -333,11 +348,11 @@ class Rods:
     def energy(self, state: State) -> float:
         """Strain energy of the exact elements."""
         entry = self.enter(state)
-        at, of, (stretch, shear, bend) = entry.at, entry.of, entry.at.flexibility
-        table = collocation(at.angle.shape[1])
-        moment = entry.moment + at.length * (of.values[0] @ table.once.T)
-        density = bend * moment**2 + stretch * of.N**2 + shear * of.q**2
-        return float((at.length * density @ table.w).sum()) / 2
+        segments, field, (stretch, shear, bend) = entry.segments, entry.field, entry.segments.flexibility
+        table = collocation(segments.angle.shape[1])
+        moment = entry.moment + segments.length * (field.values[0] @ table.once.T)
+        density = bend * moment**2 + stretch * field.N**2 + shear * field.q**2
+        return float((segments.length * density @ table.w).sum()) / 2
 
 
 def profile_of(state: State) -> Profile:

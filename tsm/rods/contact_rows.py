@@ -44,7 +44,7 @@ def differentiate(rows: Array, force: Point, tangents: Tangents, reach: float, s
     Parameters
     ----------
     rows : ndarray, shape (3, n)
-        Derivatives by the unknowns; those of the axis' position are there.
+        Derivatives by the unknowns; the derivatives of the axis' position are entered already.
     force, tangents, reach
         As for `residual`.
     selectors : ndarray, shape (5, n)

@@ -20,7 +20,7 @@ COLUMNS = np.array([2, 5, 8, 3, 4])
 ROWS = np.array([5, 8, 3, 4])
 """Rows of an element that are the four outputs of its only segment."""
 FIXED = np.zeros((OWN, OWN))
-"""What no state changes in the tangent of an element."""
+"""Constant entries of the tangent of an element."""
 FIXED[[0, 1, 2, 3, 4], [3, 4, 5, 6, 7]] = -1
 FIXED[[6, 7, 3, 4], [3, 4, 0, 1]] = 1
 
@@ -53,7 +53,7 @@ def layout(count: int, cuts: Cuts) -> Layout:
 
 @lru_cache(maxsize=16)
 def chain(count: int) -> tuple[Array, Array, Array]:
-    """What is constant in an element with `count` cuts.
+    """Constant matrices of an element with `count` cuts.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Angles inside the exact elements as contacts move, open and close: where the elements are cut, and what is taken over."""
+"""Angles inside the exact elements as contacts move, open and close: the elements are cut anew, and the angles interpolated."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ START_ORDER = 14
 
 def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
     """Where touches cut the elements."""
-    found: dict[int, list[tuple[float, int]]] = {}
+    contacts_on: dict[int, list[tuple[float, int]]] = {}
     for k, (pair, touch) in enumerate(zip(rods.model.pairs, touches, strict=True)):
         if touch is not None and pair.cuts:
-            found.setdefault(int(rods.model.place[touch.element]), []).append((touch.xi, k))
-    return tuple((element, tuple(k for _, k in sorted(on))) for element, on in sorted(found.items()))
+            contacts_on.setdefault(int(rods.model.place[touch.element]), []).append((touch.xi, k))
+    return tuple((element, tuple(k for _, k in sorted(on))) for element, on in sorted(contacts_on.items()))
 
 
 def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
@@ -33,22 +33,23 @@ def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
     return Profile(cuts=cuts, angle=np.repeat(rods.angle0[owner][:, None], START_ORDER, axis=1))
 
 
-def recut(rods: Rods, state: State, touches: tuple[Touch | None, ...]) -> State:
-    """State with other touches, its profile cut where they are; a new touch takes the angle that it finds."""
+def recut(rods: Rods, state: State, after: State) -> State:
+    """State `after`, which has other touches, with its profile cut where they are; a new touch takes the angle that it finds."""
+    touches = after.touches
     cuts = cuts_of(rods, touches)
     if cuts == profile_of(state).cuts:
-        return replace(state, touches=touches)
-    shape, given, q = plain_shape(rods, state, rods.enter(state)), list(touches), state.q.copy()
+        return after
+    shape, touches_at_cuts, q = plain_shape(rods, state, rods.enter(state)), list(touches), state.q.copy()
     for element, pairs in cuts:
         for k in pairs:
             old, touch = state.touches[k], touches[k]
             assert touch is not None, "a cut is a closed contact"
             if old is None:
                 angle = shape.at(element, np.array([touch.xi * rods.length[element]])).angle[0]
-                given[k] = replace(touch, angle=float(angle))
+                touches_at_cuts[k] = replace(touch, angle=float(angle))
             else:
                 _shift(rods, q, old.element, touch)
-    cut = replace(state, q=q, touches=tuple(given))
+    cut = replace(after, q=q, touches=tuple(touches_at_cuts))
     return sampled(rods, shape, cut, cuts, profile_of(state).angle.shape[1])
 
 
@@ -63,13 +64,13 @@ def _shift(rods: Rods, q: Array, before: int, touch: Touch) -> None:
 def alike(rods: Rods, history: list[State]) -> list[State]:
     """The latest states that are cut alike, with as many Gauss nodes as the last."""
     cuts, order = profile_of(history[-1]).cuts, profile_of(history[-1]).angle.shape[1]
-    found: list[State] = []
+    states: list[State] = []
     for state in reversed(history):
         if profile_of(state).cuts != cuts:
             break
         same = profile_of(state).angle.shape[1] == order
-        found.insert(0, state if same else resampled(rods, state, order))
-    return found
+        states.insert(0, state if same else resampled(rods, state, order))
+    return states
 
 
 def resampled(rods: Rods, state: State, order: int) -> State:

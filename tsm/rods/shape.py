@@ -97,11 +97,11 @@ class RodShape:
             sigma = (arc - self.arc[segment]) / length if length else np.zeros(len(arc))
             return self.within(segment, sigma)
         parts = [self.at(element, arc[within == n]) for n in range(last - first + 1) if n in within]
-        found = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
+        stations = Station(*(np.empty((len(arc), *value.shape[1:])) for value in parts[0]))
         for n, part in zip(np.unique(within), parts, strict=True):
-            for whole, value in zip(found, part, strict=True):
+            for whole, value in zip(stations, part, strict=True):
                 whole[within == n] = value
-        return found
+        return stations
 
     def within(self, segment: int, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of a segment."""
@@ -113,32 +113,32 @@ class RodShape:
 
 def plain_shape(rods: Rods, state: State, entry: Entry) -> RodShape:
     """Polynomials through what is known at the Gauss nodes."""
-    at, of, place = entry.at, entry.of, entry.place
-    table = collocation(at.angle.shape[1])
-    moment = entry.moment + at.length * (of.values[0] @ table.once.T)
+    segments, field, place = entry.segments, entry.field, entry.place
+    table = collocation(segments.angle.shape[1])
+    moment = entry.moment + segments.length * (field.values[0] @ table.once.T)
     x, y = rods.start[:, place.owner] + state.q[rods.dofs[:2]][:, place.owner]
-    length = at.length[:, 0]
+    length = segments.length[:, 0]
     arc = np.zeros(len(length))
     for element, _ in profile_of(state).cuts:
         for s in range(place.first[element], place.last[element]):
             arc[s + 1] = arc[s] + length[s]
             x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
     start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
-    rates = np.stack([*of.values[1:], at.flexibility.bend * moment, of.values[0]])
-    return RodShape(place.first, place.last, arc, length, at.force[:, :, 0], start, rates)
+    rates = np.stack([*field.values[1:], segments.flexibility.bend * moment, field.values[0]])
+    return RodShape(place.first, place.last, arc, length, segments.force[:, :, 0], start, rates)
 
 
 def tangent_at(rods: Rods, element: int, at: Station) -> tuple[Array, Array]:
     """Tangent vector r' of the axis at a single station of an element, and its derivative along the arc."""
     stretch, shear, bend = (float(value[element]) for value in rods.flexibility)
     x, y = at.force[0].tolist()
-    found = rod.tangent(stretch, shear, (x, y), float(at.angle[0]))
-    return np.array(found.vector), np.array(found.turned) * (bend * float(at.moment[0]))
+    axis = rod.tangent(stretch, shear, (x, y), float(at.angle[0]))
+    return np.array(axis.vector), np.array(axis.turned) * (bend * float(at.moment[0]))
 
 
 def pieces(rods: Rods, shape: RodShape, element: int, count: int) -> Stations:
     """Lines along an element, `count` for every segment."""
-    found = []
+    lines = []
     for s in range(shape.first[element], shape.last[element] + 1):
         sigma = np.linspace(0, 1, count + 1)
         at = shape.within(s, sigma)
@@ -146,8 +146,8 @@ def pieces(rods: Rods, shape: RodShape, element: int, count: int) -> Stations:
         nx, ny = at.force.T
         forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
         arc = shape.arc[s] + sigma * shape.length[s]
-        found.append((arc, at.position, at.angle - rods.angle0[element], forces))
+        lines.append((arc, at.position, at.angle - rods.angle0[element], forces))
     pairs = np.arange(count)[:, None] + np.arange(2)
     return Stations(
-        *(np.concatenate([part[pairs] for part in column]) for column in zip(*found, strict=True))
+        *(np.concatenate([part[pairs] for part in column]) for column in zip(*lines, strict=True))
     )

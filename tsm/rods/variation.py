@@ -4,7 +4,7 @@ Between two loads the force n is constant and the positions follow from it, so a
 
     n . (r_j - r_i) + G,   G(phi_i, phi_j, n, h) = ext over phi(s) of  int EI phi'^2/2 - N - N^2/2EA - Q^2/2GA ds
 
-and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under constant n, are those of
+and a contact ``- F . (r + reach nu - x_c)``. The modes of a segment whose angles are held at both ends, under constant n, solve
 ``EI eta'' = f_phi eta``: none where ``- f_phi h^2/EI < pi^2`` everywhere (Sturm). Longer segments are divided, so every mode
 shows in the matrix; each component of n and F takes one negative eigenvalue of it, and the rest is the index. The rows of
 `tsm.rods.assembly` say the same in another form, which is not symmetric.
@@ -86,7 +86,7 @@ class _Pieces(NamedTuple):
     short : ndarray of bool, shape (p,)
         Those that keep their moment.
     hessian : ndarray, shape (p, 6, 6)
-        Of G, over the inputs of `rod`; only those of short pieces have the moment.
+        Second derivatives of G over the inputs of `rod`; the moment is an input of short pieces only.
     """
 
     counts: Array
@@ -105,9 +105,9 @@ def modes_at_least(balance: RodBalance) -> int:
     A segment pressed so hard that it takes more than `_MOST` pieces has this many negative eigenvalues at least, less those that the
     arrival of its end takes away.
     """
-    at, of = balance.entry.at, balance.entry.of
-    length, bend = at.length[:, 0], at.flexibility.bend[:, 0]
-    falling = (of.gq * of.q - of.N * of.turn) * (length * length * bend)[:, None]
+    segments, field = balance.entry.segments, balance.entry.field
+    length, bend = segments.length[:, 0], segments.flexibility.bend[:, 0]
+    falling = (field.gq * field.q - field.N * field.turn) * (length * length * bend)[:, None]
     most = np.sqrt(np.maximum(falling.max(axis=1), 0.0)) / _PIECE
     if not most.sum() > _MOST:
         return 0
@@ -126,7 +126,7 @@ def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | N
     balance : RodBalance
         Their residual there.
     transfer : ndarray, shape (s, 4, 7), optional
-        Of the segments there, see `rod.Condensed`, where it is known.
+        Transfer of the segments, see `rod.Condensed`, where it is known.
     """
     pieces = _pieces(rods, state, balance, transfer)
     place, pairs = balance.entry.place, dict(profile_of(state).cuts)
@@ -161,20 +161,20 @@ def _without_force(tangent: Array) -> Array:
 
 def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
     entry = balance.entry
-    at, of, start, moment, end = entry.at, entry.of, entry.start, entry.moment, entry.end
-    arrival, gain, bend = balance.arrival, entry.gain, entry.at.flexibility.bend[:, 0]
-    length, whole = at.length[:, 0], rods.length[entry.place.owner]
-    falling = (of.gq * of.q - of.N * of.turn).max(axis=1) * length * length * bend
+    segments, field, start, moment, end = entry.segments, entry.field, entry.start, entry.moment, entry.end
+    arrival, gain, bend = balance.arrival, entry.gain, entry.segments.flexibility.bend[:, 0]
+    length, whole = segments.length[:, 0], rods.length[entry.place.owner]
+    falling = (field.gq * field.q - field.N * field.turn).max(axis=1) * length * length * bend
     counts = np.ones(len(length), dtype=int)
     if falling.max() > _LONGEST:
         long = falling > _LONGEST
         counts[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
-        at, start, moment, end = _divided(rods, state, balance, counts)
-        of, transfer = rod.field(at), None
-        length, whole, bend = at.length[:, 0], np.repeat(whole, counts), np.repeat(bend, counts)
-        arrival, gain = rod.arrival(at, of, start, moment, end), of.sums[0, :, 0] * length
+        segments, start, moment, end = _divided(rods, state, balance, counts)
+        field, transfer = rod.field(segments), None
+        length, whole, bend = segments.length[:, 0], np.repeat(whole, counts), np.repeat(bend, counts)
+        arrival, gain = rod.arrival(segments, field, start, moment, end), field.sums[0, :, 0] * length
     if transfer is None:
-        transfer = rod.condense(at, of, arrival, moment).transfer
+        transfer = rod.condense(segments, field, arrival, moment).transfer
     bent, short = (moment[:, 0] + gain) * bend, length < _SHORT * whole
     hessian = _hessian(transfer, bent)
     if short.any():
@@ -187,16 +187,16 @@ def _divided(
 ) -> tuple[rod.Segments, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     entry, own = balance.entry, np.repeat(np.arange(len(count)), count)
-    shape, nodes = plain_shape(rods, state, entry), collocation(entry.at.angle.shape[1]).c
+    shape, nodes = plain_shape(rods, state, entry), collocation(entry.segments.angle.shape[1]).c
     inside, ends = [], []
     for s, parts in enumerate(count.tolist()):
         sigma = (np.arange(parts)[:, None] + nodes) / parts
         inside.append(shape.within(s, sigma.ravel()).angle.reshape(sigma.shape))
         at = shape.within(s, np.arange(parts + 1) / parts)
         ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
-    flexibility = rod.Flexibility(*(value[own] for value in entry.at.flexibility))
-    length = entry.at.length[own] / count[own, None]
-    segments = rod.Segments(flexibility, entry.at.force[:, own], length, np.concatenate(inside))
+    flexibility = rod.Flexibility(*(value[own] for value in entry.segments.flexibility))
+    length = entry.segments.length[own] / count[own, None]
+    segments = rod.Segments(flexibility, entry.segments.force[:, own], length, np.concatenate(inside))
     start, moment, end = np.concatenate(ends).T[:, :, None]
     return segments, start, moment, end
 
@@ -204,7 +204,7 @@ def _divided(
 def _hessian(transfer: Array, bent: Array) -> Array:
     """Hessians of G (s, 6, 6) over the inputs of segments: the moment at the start is that with which the angle arrives.
 
-    The length's own is that of ``dG/dh = - m^2/2EI - N - N^2/2EA - Q^2/2GA`` at the end.
+    The second derivative in the length follows from ``dG/dh = - m^2/2EI - N - N^2/2EA - Q^2/2GA`` at the end.
     """
     with np.errstate(all="ignore"):
         moment = transfer[:, 0, :6] / -transfer[:, 0, 1, None]
@@ -256,7 +256,7 @@ def _bordered(
 
 @lru_cache(maxsize=64)
 def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, Array, Array]:
-    """What is constant in an element whose segments have `counts` pieces, some of them short.
+    """Constant matrices of an element whose segments have `counts` pieces, which may be short.
 
     Returns
     -------

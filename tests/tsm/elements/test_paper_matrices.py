@@ -205,7 +205,7 @@ def test_round_off_of_the_force_equation_in_double_precision(formulation, end, p
     assert np.polyfit(np.log10(distances), np.log10(errors), 1)[0] == pytest.approx(power, abs=0.15)
 
 
-def test_verdicts_can_be_told_apart():
+def test_verdicts_differ():
     right = EI / a
     assert judged(right, EI / a) == "same"
     assert judged(right, 2 * EI / a) == "wrong factor"
@@ -318,8 +318,8 @@ def test_cantilever_is_the_simply_supported_element():
             CLOSED_FORM[name].contact.response(p, state, lever, 0.0, np.zeros(2), side, offset)
             for name in names
         )
-        for ours, theirs in zip(clamped, simple, strict=True):
-            assert np.abs(ours - theirs).max() <= 1e-11 * np.abs(theirs).max()
+        for one, other in zip(clamped, simple, strict=True):
+            assert np.abs(one - other).max() <= 1e-11 * np.abs(other).max()
 
 
 def evaluation_error(element_force, distance, end, samples=200):

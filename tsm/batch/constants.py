@@ -1,4 +1,4 @@
-"""Constants of many structures of one topology: what `Model` and `Newton` hold of each, the structure as last axis."""
+"""Constants of `Model` and `Newton` for many structures of one topology, the structure as last axis."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, ClosedForm
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.model import Model
-from tsm.newton import ROUND_OFF as NOISE
-from tsm.newton import SHARP
+from tsm.scaling import Scales, scales_of
+from tsm.sizes import Sizes
 from tsm.structure import Structure
 
 
 class Paths(NamedTuple):
-    """Paths of the control nodes of p pairs, all with the corners of the longest; those of beam ends stay empty.
+    """Paths of the control nodes of p pairs, all with as many corners as the longest; the path of a beam's end stays empty.
 
     Attributes
     ----------
@@ -36,20 +35,20 @@ class Paths(NamedTuple):
     def position(self, k: int, t: Array, which: Array) -> Array:
         """Positions of pair k's control node in some structures at their load parameters, shape (2, m)."""
         left = t * self.leg[k][:, which].sum(axis=0)
-        found = np.zeros((2, len(t)))
+        position = np.zeros((2, len(t)))
         todo = np.ones(len(t), dtype=bool)
         for c in range(self.leg.shape[1]):
             leg, last = self.leg[k, c, which], self.last[k, c, which]
             a, b = self.corner[k, c][:, which], self.corner[k, c + 1][:, which]
             here = todo & ((left <= leg) | last)
-            found = np.where(here, a + left / leg * (b - a), found)
+            position = np.where(here, a + left / leg * (b - a), position)
             todo &= ~here
             left = left - leg
-        return found
+        return position
 
 
-class Numbers(NamedTuple):
-    """Constants of N structures with n nodes, e elements, p pairs, and u unknowns (equations, then contact unknowns).
+class BatchConstants(NamedTuple):
+    """Constants of N structures with n nodes, e elements and p pairs.
 
     Attributes
     ----------
@@ -64,11 +63,11 @@ class Numbers(NamedTuple):
     side, offset : ndarray, shape (p, N)
         Sign of the contact's side, and distance of its surface from the axis.
     paths : Paths
-        Of the pins.
-    length, force : ndarray, shape (N,)
-        Longest beam and largest ``EI/L^2``: the units of the norm.
-    noise : ndarray, shape (N,)
-        Round-off of the residual.
+        Paths of the pins.
+    sizes : Sizes
+        Lengths and forces of the structures, each of shape (N,).
+    scales : Scales
+        Scales of residuals and steps, of shape (unknowns, N), and round-off.
     """
 
     coordinates: Array
@@ -79,12 +78,11 @@ class Numbers(NamedTuple):
     side: Array
     offset: Array
     paths: Paths
-    length: Array
-    force: Array
-    noise: Array
+    sizes: Sizes
+    scales: Scales
 
 
-def collect_numbers(structures: Sequence[Structure], model: Model) -> Numbers:
+def constants_of(structures: Sequence[Structure], model: Model) -> BatchConstants:
     """Constants of structures that are numbered as a model."""
     table = np.array(
         [
@@ -103,49 +101,23 @@ def collect_numbers(structures: Sequence[Structure], model: Model) -> Numbers:
         lengths.append(np.where(equal, beam[4] / (len(parts) - 1), np.diff(arc, axis=0)))
         arcs.append(arc[:-1])
     l0 = np.concatenate(lengths)
-    properties = _properties(model, coordinates, l0, table)
-    length = table[:, 4].max(axis=0)
-    force = (table[:, 7] / table[:, 4] ** 2).max(axis=0)
-    EA, EI = properties.EA, properties.EI
-    noise = NOISE * (EA * length / l0 + EI / l0**2).max(axis=0) / force
-    blur = NOISE * np.abs(coordinates).max(axis=(0, 1)) / (SHARP * length)
+    properties = model.properties_of(coordinates, l0, table[:, 5:].transpose(1, 0, 2))
+    sizes = model.sizes_of(coordinates, table[:, 4], table[:, 7])
     beams = [list(model.beams).index(pair.pair.beam) for pair in model.pairs]
     sides = [[1.0 if pair.side == "right" else -1.0 for pair in s.contacts] for s in structures]
     offsets = [[pair.offset for pair in s.contacts] for s in structures]
-    return Numbers(
+    return BatchConstants(
         coordinates=coordinates,
         properties=properties,
-        coefficients=_coefficients(model, properties),
+        coefficients=model.coefficients_of(properties),
         arc=np.concatenate(arcs),
         span=table[beams, 4],
         side=np.array(sides).T.copy(),
         offset=np.array(offsets, dtype=float).T.copy(),
         paths=_paths(structures, model),
-        length=length,
-        force=force,
-        noise=np.maximum(noise, blur),
+        sizes=sizes,
+        scales=scales_of(model, coordinates, properties, sizes),
     )
-
-
-def _properties(model: Model, coordinates: Array, l0: Array, table: Array) -> Properties:
-    """Constants of the elements from l0 and the table of the beams, of shape (beams, 8, N)."""
-    counts = [place.beam.elements for place in model.beams.values()]
-    EA, GA, EI = (np.repeat(table[:, column], counts, axis=0) for column in (5, 6, 7))
-    kinds = [ELEMENTS[place.beam.element] for place in model.beams.values()]
-    sheared = np.repeat([kind.sheared for kind in kinds], counts)
-    d = coordinates[model.element_nodes[:, 1]] - coordinates[model.element_nodes[:, 0]]
-    Phi = np.where(sheared[:, None], 12 * EI / (GA * l0**2), 0.0)
-    return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)
-
-
-def _coefficients(model: Model, properties: Properties) -> Coefficients:
-    parts = []
-    for place in model.beams.values():
-        kind = ELEMENTS[place.beam.element]
-        assert isinstance(kind, ClosedForm), "the elements are in closed form"
-        own = slice(place.first, place.last + 1)
-        parts.append(kind.coefficients(Properties(*(column[own] for column in properties))))
-    return Coefficients(*(np.concatenate(part, axis=-2) for part in zip(*parts, strict=True)))
 
 
 def _paths(structures: Sequence[Structure], model: Model) -> Paths:
@@ -164,8 +136,8 @@ def _paths(structures: Sequence[Structure], model: Model) -> Paths:
     return Paths(corner, np.hypot(*np.diff(corner, axis=1).transpose(2, 0, 1, 3)), last)
 
 
-def some(tree: Any, which: Array) -> Any:
+def take(tree: Any, which: Array) -> Any:
     """Take some structures of a record of arrays."""
     if isinstance(tree, np.ndarray):
         return np.ascontiguousarray(tree[..., which])
-    return type(tree)(*(some(part, which) for part in tree))
+    return type(tree)(*(take(part, which) for part in tree))

@@ -1,4 +1,4 @@
-"""Where every structure of a batch stands: its iterate, its accepted configurations, its own step control."""
+"""State of every structure of a batch: its iterate, its accepted configurations, its step control."""
 
 from __future__ import annotations
 
@@ -6,12 +6,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsm.batch.equations import Equations, Points
+from tsm.batch.constants import BatchConstants
+from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import slide
-from tsm.batch.numbers import Numbers
+from tsm.batch.record import touches_of
 from tsm.elements.properties import Array
-from tsm.state import State, Touch
+from tsm.predictor import weighted, weights_at
+from tsm.projection import AT_NODE
+from tsm.state import State
 from tsm.track import MEMORY
+
+_NEVER = 1e300 * np.arange(1, MEMORY + 1)
+"""Load parameters of places that are not filled: their weights in a polynomial vanish, and they leave the others as they are."""
 
 
 class History(NamedTuple):
@@ -24,7 +30,7 @@ class History(NamedTuple):
     t : ndarray, shape (MEMORY, N)
         Load parameters.
     q, element, xi, force : ndarray, shape (MEMORY, ..., N)
-        As in `Points`.
+        As in `Configurations`.
     """
 
     entered: Array
@@ -35,16 +41,16 @@ class History(NamedTuple):
     force: Array
 
 
-class Front(NamedTuple):
+class BatchState(NamedTuple):
     """N structures under way; all arrays are changed in place.
 
     Attributes
     ----------
     structure : ndarray of int, shape (N,)
         Which they are.
-    numbers : Numbers
+    constants : BatchConstants
         Their constants.
-    at : Points
+    iterate : Configurations
         Iterates.
     predicted : ndarray, shape (dofs, N)
         Displacements that the iterations began with.
@@ -69,8 +75,8 @@ class Front(NamedTuple):
     """
 
     structure: Array
-    numbers: Numbers
-    at: Points
+    constants: BatchConstants
+    iterate: Configurations
     predicted: Array
     goal: Array
     normal: Array
@@ -87,14 +93,14 @@ class Front(NamedTuple):
     last: Array
 
 
-def undeformed(equations: Equations, numbers: Numbers, structure: Array) -> Front:
+def undeformed(equations: Equations, constants: BatchConstants, structure: Array) -> BatchState:
     """Structures at rest, their pins at the start of their paths, all contacts open."""
     model, count = equations.model, len(structure)
     pairs, everywhere = len(model.pairs), np.arange(count)
     zero = np.zeros(count)
     owners = np.array([pair.target.first for pair in model.pairs])
-    node = np.stack([numbers.paths.position(k, zero, everywhere) for k in range(pairs)])
-    at = Points(
+    node = np.stack([constants.paths.position(k, zero, everywhere) for k in range(pairs)])
+    iterate = Configurations(
         q=np.zeros((model.dof_count, count)),
         closed=np.zeros((pairs, count), dtype=bool),
         element=np.repeat(owners[:, None], count, axis=1),
@@ -104,17 +110,17 @@ def undeformed(equations: Equations, numbers: Numbers, structure: Array) -> Fron
     )
     history = History(
         entered=np.zeros(count, dtype=int),
-        t=np.zeros((MEMORY, count)),
-        q=np.zeros((MEMORY, *at.q.shape)),
+        t=np.repeat(_NEVER[:, None], count, axis=1),
+        q=np.zeros((MEMORY, *iterate.q.shape)),
         element=np.zeros((MEMORY, pairs, count), dtype=int),
         xi=np.zeros((MEMORY, pairs, count)),
         force=np.zeros((MEMORY, pairs, 2, count)),
     )
-    return Front(
+    return BatchState(
         structure=structure,
-        numbers=numbers,
-        at=at,
-        predicted=np.zeros_like(at.q),
+        constants=constants,
+        iterate=iterate,
+        predicted=np.zeros_like(iterate.q),
         goal=zero.copy(),
         normal=np.zeros((pairs, count)),
         arc=np.full((pairs, count), np.nan),
@@ -137,88 +143,76 @@ def newest(history: History, which: Array) -> Array:
     return place
 
 
-def remember(front: Front, which: Array) -> None:
+def remember(batch: BatchState, which: Array) -> None:
     """Enter the iterates of some structures into their histories."""
-    history, at = front.history, front.at
+    history, iterate = batch.history, batch.iterate
     history.entered[which] += 1
     place = newest(history, which)
-    history.t[place, which] = front.goal[which]
+    history.t[place, which] = batch.goal[which]
     for ring, now in (
-        (history.q, at.q),
-        (history.element, at.element),
-        (history.xi, at.xi),
-        (history.force, at.force),
+        (history.q, iterate.q),
+        (history.element, iterate.element),
+        (history.xi, iterate.xi),
+        (history.force, iterate.force),
     ):
         ring[place, ..., which] = np.moveaxis(now[..., which], -1, 0)
 
 
-def replace_history(front: Front, n: int, states: list[State]) -> None:
+def replace_history(batch: BatchState, n: int, states: list[State]) -> None:
     """Take over the configurations that structure n was brought through alone, the last of them as its iterate."""
-    history, at = front.history, front.at
-    history.entered[n] = 0
+    history, iterate = batch.history, batch.iterate
+    history.entered[n], history.t[:, n] = 0, _NEVER
     for state in states[-MEMORY:]:
-        at.q[:, n] = state.q
+        iterate.q[:, n] = state.q
         for k, touch in enumerate(state.touches):
-            at.closed[k, n] = touch is not None
+            iterate.closed[k, n] = touch is not None
             if touch is not None:
-                at.element[k, n], at.xi[k, n], at.force[k, :, n] = touch.element, touch.xi, touch.force
-        front.armed[:, n] = state.armed
-        front.goal[n] = state.load_parameter
-        remember(front, np.array([n]))
+                iterate.element[k, n], iterate.xi[k, n], iterate.force[k, :, n] = (
+                    touch.element,
+                    touch.xi,
+                    touch.force,
+                )
+        batch.armed[:, n] = state.armed
+        batch.goal[n] = state.load_parameter
+        remember(batch, np.array([n]))
 
 
-def states_of(front: Front, n: int) -> list[State]:
+def states_of(batch: BatchState, n: int) -> list[State]:
     """Accepted configurations of structure n, oldest first."""
-    history = front.history
+    history = batch.history
     count = int(history.entered[n])
     states = []
     for place in (age % MEMORY for age in range(max(count - MEMORY, 0), count)):
-        touches = tuple(
-            Touch(element=int(e), xi=float(xi), force=(float(F[0]), float(F[1]))) if closed else None
-            for closed, e, xi, F in zip(
-                front.at.closed[:, n],
-                history.element[place, :, n],
-                history.xi[place, :, n],
-                history.force[place, :, :, n],
-                strict=True,
-            )
+        touches = touches_of(
+            batch.iterate.closed[:, n],
+            history.element[place, :, n],
+            history.xi[place, :, n],
+            history.force[place, :, :, n],
         )
         states.append(
             State(
                 load_parameter=float(history.t[place, n]),
                 q=history.q[place, :, n].copy(),
                 touches=touches,
-                armed=tuple(front.armed[:, n].tolist()),
+                armed=tuple(batch.armed[:, n].tolist()),
             )
         )
     return states
 
 
-def predict(equations: Equations, front: Front, which: Array) -> None:
+def predict(equations: Equations, batch: BatchState, which: Array) -> None:
     """Set the iterates of some structures to the polynomials through their accepted configurations."""
-    history, at, numbers = front.history, front.at, front.numbers
-    weights = _weights(history, front.goal[which], which)
-    q = sum(weights[n] * history.q[n][:, which] for n in range(MEMORY))
-    at.q[:, which] = front.predicted[:, which] = q
-    l0 = numbers.properties.l0
+    history, iterate, constants = batch.history, batch.iterate, batch.constants
+    weights = weights_at(list(history.t[:, which]), batch.goal[which])
+    iterate.q[:, which] = batch.predicted[:, which] = weighted(weights, history.q[..., which])
+    l0 = constants.properties.l0
     place = newest(history, which)
     for k, pair in enumerate(equations.model.pairs):
         elements = history.element[:, k, which]
-        arcs = numbers.arc[elements, which] + history.xi[:, k, which] * l0[elements, which]
+        arcs = constants.arc[elements, which] + history.xi[:, k, which] * l0[elements, which]
         last = history.element[place, k, which]
-        xi = ((weights * arcs).sum(axis=0) - numbers.arc[last, which]) / l0[last, which]
-        at.element[k, which], at.xi[k, which] = slide(l0, pair.target, last, xi, which)
-        at.force[k][:, which] = (weights[:, None] * history.force[:, k][..., which]).sum(axis=0)
+        xi = (weighted(weights, arcs) - constants.arc[last, which]) / l0[last, which]
+        iterate.element[k, which], iterate.xi[k, which] = slide(l0, pair.target, last, xi, which, AT_NODE)
+        iterate.force[k][:, which] = weighted(weights, history.force[:, k][..., which])
         if pair.pin is not None:
-            at.node[k][:, which] = numbers.paths.position(k, front.goal[which], which)
-
-
-def _weights(history: History, t: Array, which: Array) -> Array:
-    """Weights of the polynomials at t, shape (MEMORY, m), 0 for places that are not filled."""
-    times, filled = history.t[:, which], history.entered[which] > np.arange(MEMORY)[:, None]
-    weights = np.where(filled, 1.0, 0.0)
-    for n in range(MEMORY):
-        for k in range(MEMORY):
-            if k != n:
-                weights[n] *= np.where(filled[k] & filled[n], (t - times[k]) / (times[n] - times[k]), 1.0)
-    return weights
+            iterate.node[k][:, which] = constants.paths.position(k, batch.goal[which], which)

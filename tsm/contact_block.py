@@ -1,16 +1,18 @@
-"""The border of the system: the unknowns of the contacts, and the plain numbers that exact elements are solved in."""
+"""The contacts' part of the linear system: its border, and the units in which it is solved."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.model import Model, PairModel
-from tsm.rods.assembly import CutElement, RodBalance, RodTangent
+from tsm.rods.assembly import CutElement
 from tsm.rods.layout import CUT, OWN
-from tsm.state import State, Touch
+from tsm.state import Touch
+
+if TYPE_CHECKING:
+    from tsm.model import Model, PairModel
 
 
 class Bordered(NamedTuple):
@@ -24,18 +26,18 @@ class Bordered(NamedTuple):
         Border columns and rows.
     corner : ndarray, shape (border, border)
         Where they meet; the unknowns of open contacts stand alone in it.
-    carried : ndarray, shape (equations + contact unknowns,) or None
-        What the residual inside exact elements adds to the residual once it is eliminated.
-    rods : RodTangent or None
-        The exact elements.
+    condensed_residual : ndarray, shape (equations + contact unknowns,), or 0
+        What the residual inside elements adds to the residual once it is eliminated.
+    groups : tuple
+        Tangents of the element groups.
     """
 
     band: Array
     right: Array
     below: Array
     corner: Array
-    carried: Array | None
-    rods: RodTangent | None
+    condensed_residual: Array | float
+    groups: tuple[Any, ...]
 
 
 class Units:
@@ -60,7 +62,7 @@ class Units:
         self.below = self.rows[banded:, None] * np.append(self.columns[:last], 0.0)
         self.corner = self.rows[banded:, None] * self.columns[banded:]
 
-    def without(self, tangent: Bordered, given: Array) -> tuple[Bordered, Array]:
+    def without(self, tangent: Bordered, sides: Array) -> tuple[Bordered, Array]:
         """Tangent and right-hand sides as plain numbers."""
         plain = tangent._replace(
             band=tangent.band * self.band,
@@ -68,19 +70,35 @@ class Units:
             below=tangent.below * self.below,
             corner=tangent.corner * self.corner,
         )
-        return plain, given * self.rows[:, None]
+        return plain, sides * self.rows[:, None]
 
 
-class Border:
-    """Border of the system while its contacts are entered."""
+class ContactBlock:
+    """Unknowns and residuals of the contacts while the element groups enter them.
+
+    Attributes
+    ----------
+    right, below, corner : ndarray
+        Border of the tangent, see `Bordered`.
+    residual, condensed_residual : ndarray, shape (contact unknowns,)
+        Residuals of the contacts, and what is added once the unknowns inside elements are eliminated.
+    forces : dict
+        Force on the beam of every closed pair.
+    pushed : list
+        First degrees of freedom of the beam ends that touch, with the reaction (2,) on each.
+    stiffest : float
+        Largest stiffness of a contact whose force follows from the displacements.
+    crowded : bool
+        Whether two nodes touch one element whose matrix knows a single contact.
+    """
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.right = np.zeros((model.equations + 1, model.border))
         self.below = np.zeros((model.border, model.equations + 1))
         self.corner = np.zeros((model.border, model.border))
-        self.own = np.zeros(model.contact_unknowns)
-        self.carried = np.zeros(model.contact_unknowns)
+        self.residual = np.zeros(model.contact_unknowns)
+        self.condensed_residual = np.zeros(model.contact_unknowns)
         self.forces: dict[int, tuple[float, float]] = {}
         self.pushed: list[tuple[int, Array]] = []
         self.coupled: list[tuple[PairModel, int, Array]] = []
@@ -113,30 +131,30 @@ class Border:
                 eq = model.equation[3 * pair.node : 3 * pair.node + 2]
                 self.right[eq, slots], self.below[slots, eq] = block[6:8, 8:], block[8:, 6:8]
             self.corner[slots, slots] += block[8:, 8:]
-            self.own[pair.slots] += gradient[8:]
+            self.residual[pair.slots] += gradient[8:]
             for other, earlier in others:
                 self._share(model.element[e], (other, earlier), (pair, touch))
         others.append((pair, touch))
 
-    def balance(self, rods: RodBalance, state: State) -> None:
-        """Enter the residuals and forces of contacts on exact elements."""
-        for k, rows in rods.contacts.items():
-            pair, touch = self.model.pairs[k], state.touches[k]
+    def cut(self, contacts: dict[int, list[Any]], touches: tuple[Touch | None, ...]) -> None:
+        """Enter the residuals and forces of contacts that cut their elements."""
+        for k, rows in contacts.items():
+            pair, touch = self.model.pairs[k], touches[k]
             assert touch is not None, "a cut is a closed contact"
-            self.own[pair.slots] = rows
+            self.residual[pair.slots] = rows
             self.forces[k] = touch.force
             if pair.node >= 0:
                 self.pushed.append((3 * pair.node, np.array(touch.force)))
 
-    def cut(self, part: CutElement) -> None:
-        """Enter the contacts of an exact element."""
+    def cut_element(self, part: CutElement, dofs: Array) -> None:
+        """Enter the tangent of the contacts that cut an element with given degrees of freedom."""
         model, tangent = self.model, part.tangent
-        eq = model.equation[model.exact_dofs[:, part.element]]
+        eq = model.equation[dofs]
         own = [(model.pairs[k], slice(OWN + CUT * n, OWN + CUT * (n + 1))) for n, k in enumerate(part.pairs)]
         for pair, rows in own:
             slots = self._slots(pair)
             self.right[eq, slots], self.below[slots, eq] = tangent[:OWN, rows], tangent[rows, :OWN]
-            self.carried[pair.slots] = tangent[rows, -1]
+            self.condensed_residual[pair.slots] = tangent[rows, -1]
             for other, columns in own:
                 self.corner[slots, self._slots(other)] = tangent[rows, columns]
             if pair.node >= 0:
@@ -154,7 +172,7 @@ class Border:
         rows = (one.slots, two.slots)
         parts = (slice(0, 3), slice(3, 6))
         for own, part in zip(rows, parts, strict=True):
-            self.own[own] += gradient[part]
+            self.residual[own] += gradient[part]
         for pair_i, part_i in zip((one, two), parts, strict=True):
             for pair_j, part_j in zip((one, two), parts, strict=True):
                 self.corner[self._slots(pair_i), self._slots(pair_j)] += block[part_i, part_j]

@@ -1,0 +1,171 @@
+"""The interface of element groups: what the solver asks of elements, whatever their equations are."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+
+from tsm.contact_block import ContactBlock
+from tsm.elements.properties import Array
+from tsm.projection import Projection
+from tsm.rods.shape import Stations
+from tsm.state import State, Touch
+
+if TYPE_CHECKING:
+    from tsm.model import BeamModel, Model, PairModel
+
+
+class GroupForces(Protocol):
+    """Forces of a group of e elements, each with n degrees of freedom, at a configuration."""
+
+    @property
+    def nodal(self) -> Array:
+        """Residual of the degrees of freedom, shape (n, e)."""
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, e)."""
+
+    @property
+    def inside(self) -> float:
+        """Largest residual of the unknowns inside the elements [rad]; 0 without such unknowns."""
+
+
+class GroupTangent(Protocol):
+    """Tangent of a group, the unknowns inside its elements eliminated."""
+
+    @property
+    def tangent(self) -> Array:
+        """Derivative of the residual, row by row, shape (n n, e)."""
+
+    @property
+    def condensed_residual(self) -> Array:
+        """What the residual inside adds to the residual once it is eliminated, shape (n, e)."""
+
+
+class Change(NamedTuple):
+    """Change of a configuration.
+
+    Attributes
+    ----------
+    dofs : ndarray, shape (dofs,)
+        Change of all degrees of freedom.
+    contacts : ndarray, shape (contact unknowns,)
+        Change of the contacts' unknowns.
+    residual : float
+        Part of the residual that the change removes.
+    factor : float
+        Part of the change that is taken.
+    """
+
+    dofs: Array
+    contacts: Array
+    residual: float
+    factor: float
+
+
+class ElementGroup(ABC):
+    """Elements of a model that are stated in the same way.
+
+    Parameters
+    ----------
+    model : Model
+        The structure.
+    elements : ndarray of int, shape (e,)
+        Global numbers of the elements.
+    dofs : ndarray of int, shape (n, e)
+        Degrees of freedom of the elements.
+
+    Attributes
+    ----------
+    number : int
+        Number of the group in the model.
+    internal : bool
+        Whether an element has a force and a moment as degrees of freedom, and further unknowns inside, which are eliminated.
+    past_node : float
+        Part of an element's length by which a contact may lie past its end.
+    """
+
+    internal: ClassVar[bool]
+    past_node: ClassVar[float]
+
+    def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
+        self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
+
+    @abstractmethod
+    def forces(self, state: State, contacts: ContactBlock) -> GroupForces:
+        """Forces at a configuration; the residuals of the contacts are entered in their block."""
+
+    @abstractmethod
+    def tangent(self, state: State, forces: Any, contacts: ContactBlock) -> GroupTangent:
+        """Tangent where the forces are known; the tangents of the contacts are entered in their block."""
+
+    @abstractmethod
+    def rate(self, state: State, q: Array, contacts: Array) -> Array:
+        """Change (n, e) of the forces with the degrees of freedom; what belongs to the contacts' rows is added to `contacts`."""
+
+    @abstractmethod
+    def pin_rate(
+        self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
+    ) -> tuple[Array, Array]:
+        """Change of the nodal forces (6,) of the touched element, and of the contact's rows, as the pin moves."""
+
+    @abstractmethod
+    def energy(self, state: State) -> float:
+        """Strain energy of elements and contacts in equilibrium."""
+
+    @abstractmethod
+    def undeformed(self, state: State) -> State:
+        """State with the unknowns inside straight elements, without contacts."""
+
+    @abstractmethod
+    def with_touches(self, before: State, after: State) -> State:
+        """State `after`, which has other contacts than `before`, with the unknowns inside that belong to it."""
+
+    @abstractmethod
+    def with_change(self, before: State, after: State, tangent: Any, change: Change) -> State:
+        """State `after` a change, with the unknowns inside changed too."""
+
+    @abstractmethod
+    def alike(self, history: list[State]) -> list[State]:
+        """The latest states that can be extrapolated together."""
+
+    @abstractmethod
+    def refined(self, state: State, forces: Any, accuracy: float) -> State | None:
+        """State with a finer integration inside the elements, None where it is fine enough."""
+
+    @abstractmethod
+    def inaccurate(self, forces: Any, accuracy: float) -> bool:
+        """Whether the finest integration inside the elements does not suffice."""
+
+    @abstractmethod
+    def integration_error(self, forces: Any) -> float:
+        """Estimated error of the integration inside the elements, see `Settings.accuracy`."""
+
+    @abstractmethod
+    def project(self, pair: PairModel, state: State) -> Projection:
+        """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
+
+    @abstractmethod
+    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
+        """Direction of the beam at a contact, to which its force is normal; of any length."""
+
+    @abstractmethod
+    def curvature(self, k: int, touch: Touch, state: State, forces: Any, push: tuple[float, float]) -> float:
+        """Curvature of the axis at closed pair k, on which `push` acts, positive where the beam bends to the left."""
+
+    @abstractmethod
+    def intervals(self, elements: int) -> int:
+        """Intervals in which an element is drawn, in a beam of so many elements."""
+
+    @abstractmethod
+    def axes(self, beam: BeamModel, state: State, forces: Any, xi: Array) -> Array:
+        """Deflected axes of the elements of a beam, shape (elements, m, 2), at parts xi (m,) of their lengths."""
+
+    @abstractmethod
+    def section_axes(self, beam: BeamModel, shape: Array) -> Array:
+        """Unit vectors (2, elements, 2) of the axial force at both ends of a beam's elements, from its deformed nodes."""
+
+    @abstractmethod
+    def stations(self, beam: BeamModel, state: State, shape: Array, section_forces: Array) -> Stations:
+        """Short lines along a beam, from its deformed nodes and the section forces at the ends of its elements."""

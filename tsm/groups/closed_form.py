@@ -1,0 +1,246 @@
+"""Elements whose forces follow from their nodes' displacements in closed form, and the contacts inside them."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tsm.contact_block import ContactBlock
+from tsm.elements import beam as beam_element
+from tsm.elements.axis import PointForce, deflected_axes
+from tsm.elements.beam import Coefficients
+from tsm.elements.curve import Curve
+from tsm.elements.properties import Array, Properties
+from tsm.groups.base import Change, ElementGroup
+from tsm.projection import (
+    AT_NODE,
+    PROJECTED,
+    PROJECTIONS,
+    Projection,
+    arc_position,
+    overshoot,
+    project_on_chords,
+    slide,
+)
+from tsm.rods.shape import Stations
+from tsm.state import State, Touch
+
+if TYPE_CHECKING:
+    from tsm.model import BeamModel, PairModel
+
+_POINTS = 10
+"""Intervals in which an element is drawn."""
+
+
+class ClosedFormForces(NamedTuple):
+    """Forces and tangents of elements in closed form, their contacts included.
+
+    Attributes
+    ----------
+    nodal : ndarray, shape (6, e)
+        Nodal forces.
+    tangent : ndarray, shape (36, e)
+        Their derivatives, row by row.
+    """
+
+    nodal: Array
+    tangent: Array
+
+    @property
+    def ends(self) -> Array:
+        """Forces and moments at both ends of the elements, shape (6, e)."""
+        return self.nodal
+
+    @property
+    def inside(self) -> float:
+        """Residual inside the elements."""
+        return 0.0
+
+    @property
+    def condensed_residual(self) -> Array:
+        """What the residual inside adds to the residual: nothing."""
+        return np.zeros_like(self.nodal)
+
+
+class ClosedFormGroup(ElementGroup):
+    """Elements in closed form; their contacts follow the contact law of their element type."""
+
+    internal = False
+    past_node = AT_NODE
+
+    @cached_property
+    def coefficients(self) -> Coefficients:
+        """Coefficients of the elements' energy."""
+        return self.model.coefficients_of(self.model.properties)
+
+    def forces(self, state: State, contacts: ContactBlock) -> ClosedFormForces:
+        """Forces and tangents of elements and contacts."""
+        force, tangent = beam_element.response(self.coefficients, state.q[self.dofs])
+        for k, pair in self.model.pairs_of(self):
+            touch = state.touches[k]
+            if touch is None:
+                contacts.leave_open(pair)
+                continue
+            place = self.model.place[touch.element]
+            gradient, block = self.contact(pair, touch, state)
+            if pair.slot < 0:
+                force[:, place] = tangent[:, place] = 0.0
+            force[:, place] += gradient[:6]
+            tangent[:, place] += block[:6, :6].ravel()
+            contacts.close(k, pair, touch, gradient, block)
+        return ClosedFormForces(force, tangent)
+
+    def tangent(self, _state: State, forces: ClosedFormForces, _contacts: ContactBlock) -> ClosedFormForces:
+        """Tangent, which is known with the forces."""
+        return forces
+
+    def rate(self, state: State, q: Array, _contacts: Array) -> Array:
+        """Change (6, e) of the forces with the nodal displacements."""
+        _, tangent = beam_element.response(self.coefficients, state.q[self.dofs])
+        rate: Array = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.dofs])
+        return rate
+
+    def pin_rate(
+        self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
+    ) -> tuple[Array, Array]:
+        """Change of the nodal forces of the touched element, and of the contact's rows, as the pin moves."""
+        _, block = self.contact(pair, touch, state)
+        moved = block[:, 6:8] @ np.array(velocity)
+        return moved[:6], moved[8:]
+
+    def energy(self, state: State) -> float:
+        """Strain energy of elements and contacts."""
+        total = float(beam_element.energy(self.coefficients, state.q[self.dofs]).sum())
+        for k, pair in self.model.pairs_of(self):
+            if (touch := state.touches[k]) is None:
+                continue
+            p, x, lever = self._lever(pair, touch.element, state)
+            coupling = pair.law.coupling
+            total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+            for other in state.touches[:k]:
+                if coupling and other is not None and other.element == touch.element:
+                    dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
+                    total += coupling.dent(p, touch.xi, other.xi) * dot
+        return total
+
+    def contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
+        """Gradient and tangent of a closed contact, see `ContactLaw.response`."""
+        p, x, lever = self._lever(pair, touch.element, state)
+        return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+
+    def _lever(
+        self, pair: PairModel, element: int, state: State
+    ) -> tuple[Properties, list[float], tuple[float, float]]:
+        """Constants and displacements of an element, and the vector from the pair's node to its end i."""
+        model = self.model
+        cx, cy = model.node_position(pair, state.q, state.load_parameter)
+        x = state.q[model.dofs[:, element]].tolist()
+        start_x, start_y = model.element_start[element]
+        return model.element[element], x, (start_x + x[0] - cx, start_y + x[1] - cy)
+
+    def undeformed(self, state: State) -> State:
+        """The state: nothing is unknown inside the elements."""
+        return state
+
+    def with_touches(self, _before: State, after: State) -> State:
+        """The state `after`: nothing is unknown inside the elements."""
+        return after
+
+    def with_change(self, _before: State, after: State, _tangent: ClosedFormForces, _change: Change) -> State:
+        """The state `after`: nothing is unknown inside the elements."""
+        return after
+
+    def alike(self, history: list[State]) -> list[State]:
+        """All states."""
+        return history
+
+    def refined(self, _state: State, _forces: ClosedFormForces, _accuracy: float) -> None:
+        """Nothing is integrated."""
+
+    def inaccurate(self, _forces: ClosedFormForces, _accuracy: float) -> bool:
+        """Nothing is integrated."""
+        return False
+
+    def integration_error(self, _forces: ClosedFormForces) -> float:
+        """Nothing is integrated."""
+        return 0.0
+
+    def project(self, pair: PairModel, state: State) -> Projection:
+        """Closest point: the chords give the owner, Newton's method on the owner's curve the point."""
+        target, q, model = pair.target, state.q, self.model
+        node = model.node_position(pair, q, state.load_parameter)
+        positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]
+        owner, places = project_on_chords(positions, np.array(node))
+        e, xi = int(owner), float(places[owner])
+        for _ in range(PROJECTIONS):
+            p, x, lever = self._lever(pair, target.first + e, state)
+            step, (px, py), (tx, ty) = Curve(p, x).approach(xi, *lever)
+            e, xi = slide(target.lengths, e, xi - step)
+            if abs(step) < PROJECTED:
+                break
+        element, coupling = target.first + e, pair.law.coupling
+        for touch in state.touches:
+            if coupling and touch is not None and touch.element == element:
+                dent = coupling.dent(model.element[element], xi, touch.xi)
+                px, py = px + dent * touch.force[0], py + dent * touch.force[1]
+        height = (py * tx - px * ty) / math.hypot(tx, ty)
+        beyond = overshoot(target, arc_position(target, element, xi))
+        return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
+
+    def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
+        """Chord of the touched element."""
+        i, j = self.model.element_nodes[touch.element]
+        coordinates = self.model.coordinates
+        dx, dy = coordinates[j] - coordinates[i] + q[3 * j : 3 * j + 2] - q[3 * i : 3 * i + 2]
+        return dx, dy
+
+    def curvature(
+        self, k: int, touch: Touch, state: State, forces: ClosedFormForces, push: tuple[float, float]
+    ) -> float:
+        """Curvature from the moment and stretch that the forces at end i and the lever of the contact give."""
+        model, pair, p = self.model, self.model.pairs[k], self.model.element[touch.element]
+        x = state.q[model.dofs[:, touch.element]].tolist()
+        fx, fy, moment = forces.nodal[:3, model.place[touch.element]].tolist()
+        dx, dy = p.dx0 + x[3] - x[0], p.dy0 + x[4] - x[1]
+        chord = math.hypot(dx, dy)
+        size = math.hypot(*push)
+        normal = -pair.side * dy / chord, pair.side * dx / chord
+        away = (push[0] / size, push[1] / size) if size > 0 else normal
+        cx, cy = model.node_position(pair, state.q, state.load_parameter)
+        start_x, start_y = model.element_start[touch.element]
+        rx = cx + pair.pair.offset * away[0] - start_x - x[0]
+        ry = cy + pair.pair.offset * away[1] - start_y - x[1]
+        stretch = -(fx * dx + fy * dy) / (chord * p.EA)
+        return float((-moment + rx * fy - ry * fx) / p.EI / (1 + stretch))
+
+    def intervals(self, _elements: int) -> int:
+        """Intervals in which an element is drawn."""
+        return _POINTS
+
+    def axes(self, beam: BeamModel, state: State, forces: ClosedFormForces, xi: Array) -> Array:
+        """Deflected axes of the elements of a beam, shape (elements, m, 2)."""
+        model, elements = self.model, slice(beam.first, beam.last + 1)
+        x, places = state.q[model.dofs[:, elements]], model.place[elements]
+        p = Properties(*(np.asarray(values)[elements] for values in model.properties))
+        contacts = [
+            PointForce(touch.element - beam.first, touch.xi, touch.force)
+            for k in model.pairs_on.get(beam.beam.name, ())
+            if (touch := state.touches[k]) is not None and model.pairs[k].slot >= 0
+        ]
+        axes = deflected_axes(p, x, forces.nodal[:, places], contacts, xi)
+        starts: Array = np.array(model.element_start[elements]) + x[:2].T
+        return starts[:, None] + axes
+
+    def section_axes(self, _beam: BeamModel, shape: Array) -> Array:
+        """Directions of the chords, at both ends the same."""
+        d = np.diff(shape[:, :2], axis=0)
+        t = d / np.linalg.norm(d, axis=1)[:, None]
+        return np.stack([t, t])
+
+    def stations(self, beam: BeamModel, _state: State, shape: Array, section_forces: Array) -> Stations:
+        """The elements."""
+        ends: Any = np.arange(len(section_forces))[:, None] + np.arange(2)
+        return Stations(np.array(beam.arcs)[ends], shape[ends, :2], shape[ends, 2], section_forces)

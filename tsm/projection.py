@@ -1,0 +1,90 @@
+"""Places along a beam: arc positions, hand-over from element to element, projection on chords."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tsm.elements.properties import Array
+
+if TYPE_CHECKING:
+    from tsm.model import BeamModel
+
+AT_NODE = 1e-9
+"""Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""
+PROJECTIONS, PROJECTED = 20, 1e-14
+"""Newton steps of a projection at most, and the step at which the closest point is found."""
+
+
+class Projection(NamedTuple):
+    """Closest point of a beam's deflected axis to a node.
+
+    Attributes
+    ----------
+    element : int
+        Global number of the owner.
+    xi : float
+        Position on it.
+    gap : float
+        Distance from the contact surface to the node, positive on the stated side.
+    overshoot : float
+        How far the closest point lies beyond the beam's ends, along the axis [length]; 0 within.
+    """
+
+    element: int
+    xi: float
+    gap: float
+    overshoot: float
+
+
+def arc_position(target: BeamModel, element: int, xi: float) -> float:
+    """Distance along the undeformed axis from the beam's start."""
+    k = element - target.first
+    return (1.0 - xi) * target.arcs[k] + xi * target.arcs[k + 1]
+
+
+def overshoot(target: BeamModel, arc: float) -> float:
+    """How far an arc position lies outside the beam."""
+    return max(arc - target.beam.length, -arc, 0.0)
+
+
+def slide(lengths: Sequence[float], k: int, xi: float, past: float = 0.0) -> tuple[int, float]:
+    """Hand a position that left element k of a beam by more than a part of its length over to the neighbour.
+
+    Parameters
+    ----------
+    lengths : sequence of float
+        Undeformed lengths of the beam's elements.
+    k, xi : int, float
+        Element, counted from the beam's start, and position on it.
+    past : float
+        Part of the length by which a position may lie past a node.
+    """
+    if not math.isfinite(xi):
+        return k, xi
+    while xi > 1.0 + past and k < len(lengths) - 1:
+        xi, k = (xi - 1.0) * (lengths[k] / lengths[k + 1]), k + 1
+    while xi < -past and k > 0:
+        xi, k = 1.0 + xi * (lengths[k] / lengths[k - 1]), k - 1
+    return k, xi
+
+
+def project_on_chords(positions: Array, node: Array) -> tuple[Array, Array]:
+    """Chord that is nearest to a node, shape (...), and positions of the node's projections on all chords, shape (chords, ...).
+
+    Parameters
+    ----------
+    positions : ndarray, shape (nodes, 2, ...)
+        Ends of the chords of one beam, or of many in the last axis.
+    node : ndarray, shape (2, ...)
+        Position of the node.
+    """
+    d = np.diff(positions, axis=0)
+    r = node - positions[:-1]
+    xi = np.einsum("ij...,ij...->i...", d, r) / np.einsum("ij...,ij...->i...", d, d)
+    apart = r - np.clip(xi, 0.0, 1.0)[:, None] * d
+    owner = np.argmin(np.einsum("ij...,ij...->i...", apart, apart), axis=0)
+    return owner, xi

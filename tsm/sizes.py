@@ -1,0 +1,61 @@
+"""Sizes of a structure: the lengths and forces that everything else is measured by."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements.properties import Array
+
+
+class Sizes(NamedTuple):
+    """Sizes of a structure, or of many in the last axis.
+
+    Attributes
+    ----------
+    length, extent : ndarray, shape (...)
+        Length of the longest beam, and of the largest structure of joined beams.
+    force_scale, least_force : ndarray, shape (...)
+        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
+    """
+
+    length: Array
+    extent: Array
+    force_scale: Array
+    least_force: Array
+
+
+def sizes_of(lengths: Array, extents: Array, EI: Array) -> Sizes:
+    """Sizes from lengths, extents and bending stiffnesses of the beams, each of shape (beams, ...)."""
+    forces, least_forces = EI / lengths**2, EI / extents**2
+    return Sizes(lengths.max(axis=0), extents.max(axis=0), forces.max(axis=0), least_forces.max(axis=0))
+
+
+def joined_extents(element_nodes: Array, starts: Array, coordinates: Array, lengths: Array) -> Array:
+    """Diagonals of the structures of joined beams, or a beam's length if it is larger: how far the ends of a beam may go.
+
+    Parameters
+    ----------
+    element_nodes : ndarray of int, shape (elements, 2)
+        Nodes of the elements.
+    starts : ndarray of int, shape (beams,)
+        First nodes of the beams.
+    coordinates : ndarray, shape (nodes, 2, ...)
+        Undeformed node positions.
+    lengths : ndarray, shape (beams, ...)
+        Lengths of the beams.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    i, j = element_nodes.T
+    near = coo_array((np.ones(len(i)), (i, j)), shape=(len(coordinates),) * 2)
+    count, part = connected_components(near, directed=False)
+    least = np.full((count, *coordinates.shape[1:]), np.inf)
+    most = -least
+    np.minimum.at(least, part, coordinates)
+    np.maximum.at(most, part, coordinates)
+    diagonals = np.hypot(*np.moveaxis(most - least, 1, 0))
+    extents: Array = np.maximum(lengths, diagonals[part[starts]])
+    return extents

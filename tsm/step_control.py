@@ -1,0 +1,67 @@
+"""How long the load steps are: they grow while the path is followed, and are cut back where an attempt fails."""
+
+from __future__ import annotations
+
+from tsm.path import FOLLOWED
+from tsm.settings import Settings
+from tsm.status import Status
+
+_SAFE = 0.8
+"""Part of the step that the tangents would still allow, of which the next one is tried."""
+_SHORTEST = 0.1
+"""Shortest part of a refused step that is tried next."""
+_NAMED = {
+    Status.NOT_FINITE,
+    Status.SINGULAR_TANGENT,
+    Status.INACCURATE,
+    Status.TWO_CONTACTS,
+    Status.PING_PONG,
+}
+"""Failures that say more than that the step was cut back to its floor."""
+
+
+def allowed(unexplained: float) -> float:
+    """Return the part of a step that its tangents would still explain, from the part of it that they do not."""
+    return _SAFE * FOLLOWED / max(unexplained, 1e-9)
+
+
+class StepControl:
+    """Length of the next load step.
+
+    Attributes
+    ----------
+    step : float
+        Longest next step of the load parameter.
+    failure : Status
+        Why the last attempt failed.
+    part : float
+        Part of the failed step that is tried next.
+    """
+
+    def __init__(self, settings: Settings, failure: Status) -> None:
+        self.smallest = settings.smallest_step
+        self.step, self.failure, self.part = 1.0, failure, 1 / 2
+
+    def fail(self, status: Status, part: float = 1 / 2) -> Status:
+        """Give up an attempt; a part of its step is tried next."""
+        self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
+        return status
+
+    def refuse(self, part: float = 1 / 2) -> Status:
+        """Give up a step that is too long, whatever was found at its end."""
+        return self.fail(Status.ITERATION_LIMIT, part)
+
+    def cut_back(self, left: float) -> bool:
+        """Shorten the step, of which `left` was tried at most; return whether it is at its floor."""
+        self.step = min(self.step, left) * self.part
+        return self.step < self.smallest
+
+    def grow(self, taken: float, fitting: float) -> None:
+        """Lengthen the step after one that was taken and could have been `fitting` times as long."""
+        self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
+
+    def verdict(self, folds: bool) -> Status:
+        """Why no step goes on; `folds` where the path is as fast as beside a limit point."""
+        if self.failure in _NAMED or self.smallest > 0.5:
+            return self.failure
+        return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR
