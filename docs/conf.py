@@ -5,6 +5,8 @@ import sys
 from importlib import metadata
 from pathlib import Path
 
+from sphinx.application import Sphinx
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 for _name in ("skfem", "traitlets"):  # they tell of every mesh and every notebook
@@ -19,6 +21,7 @@ extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
     "numpydoc",
+    "sphinx_argparse_cli",
     "docs.extensions.mathml",
     "docs.extensions.proofs",
     "docs.extensions.generated",
@@ -44,6 +47,19 @@ html_theme_options = {"navigation_with_keys": True}
 default_role = "literal"  # single backticks of docstrings name parameters as well as objects
 autodoc_typehints = "none"  # docstrings state types with shapes and units
 autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True, "no-value": True}
 numpydoc_show_class_members = False
 add_module_names = False
 toc_object_entries = False
+
+
+def _list_keys(
+    _app: Sphinx, kind: str, _name: str, value: object, _options: object, lines: list[str]
+) -> None:
+    if kind == "data" and isinstance(value, dict):
+        lines += ["", "Keys: " + ", ".join(f"``{key}``" for key in value) + "."]
+
+
+def setup(app: Sphinx) -> None:
+    """Add the keys of a registry to its entry."""
+    app.connect("autodoc-process-docstring", _list_keys)

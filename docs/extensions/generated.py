@@ -4,17 +4,13 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
-from docs.extensions import api, command_line, messages, response, scene_file, statuses
+from docs.extensions import messages, response, scene_file, statuses
 
 PAGES = {
     "scene-file.md": scene_file.page,
-    "command-line.md": command_line.page,
     "messages.md": messages.page,
     "statuses.md": statuses.page,
     "response.md": response.page,
-    "api-tsm.md": lambda: api.page("tsm"),
-    "api-fem_reference.md": lambda: api.page("fem_reference"),
-    "api-comparisons.md": lambda: api.page("comparisons"),
 }
 """What makes the text of each page."""
 
