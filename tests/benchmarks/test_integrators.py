@@ -1,19 +1,13 @@
 """The explicit integrator of `integrators`: a fair opponent only if its derivative is exact and its answer the same."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import tsm
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
+from tests.benchmarks import integrators
 from tsm.elements import rod
-
-_spec = importlib.util.spec_from_file_location("integrators", Path(__file__).with_name("integrators.py"))
-integrators = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(integrators)
 
 STEP = 1e-30
 INPUTS = np.array(

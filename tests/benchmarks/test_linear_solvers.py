@@ -1,16 +1,11 @@
 """The systems of `linear_solvers` belong to equilibria, and every solver that is installed gives the same answer."""
 
-import importlib.util
-from pathlib import Path
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
 
-_spec = importlib.util.spec_from_file_location(
-    "linear_solvers", Path(__file__).with_name("linear_solvers.py")
-)
-linear_solvers = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(linear_solvers)
+from tests.benchmarks import linear_solvers
 
 MESH, LOAD = (200, 4), 0.5
 
@@ -33,7 +28,7 @@ def test_strip_is_in_equilibrium(folder):
 @pytest.mark.parametrize("name", list(linear_solvers.SOLVERS))
 def test_solvers_agree(folder, name):
     package = linear_solvers.SOLVERS[name][1]
-    if not importlib.util.find_spec(package):
+    if not find_spec(package):
         pytest.skip(f"{package} is not installed")
     x, reference = (linear_solvers.measure(one, LOAD, folder).x for one in (name, linear_solvers.REFERENCE))
     assert np.abs(x - reference).max() <= 1e-6 * np.abs(reference).max()

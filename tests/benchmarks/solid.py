@@ -1,0 +1,118 @@
+"""Ratios of the solid and the certificate: assembly, index, memory."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+import fem_reference
+import tsm
+from comparisons.models import solve
+from comparisons.models.options import Options
+from comparisons.models.translate import to_solid, to_structure
+from comparisons.referee import answer_state, certify, equilibrium
+from comparisons.scene import load_scene
+from fem_reference.tangent import linearise
+from tests.benchmarks.measure import Gate, seconds
+from tests.comparisons.referee.test_index import CROWD
+from tests.fem_reference import bilinear_reference as forms
+from tsm import path
+
+
+def index_and_certificate(gates: list[Gate], times: dict[str, float]) -> None:
+    """What stability costs of a solution, and what a certificate does."""
+    scene = load_scene("ks-cantilever")
+    load_parameters = np.array(scene.times)
+    solid = to_solid(scene, mesh=(50, 2))
+    for label, structure, bar in (
+        ("mixed 10", to_structure(scene, elements=10), 0.2),
+        ("exact", to_structure(scene, element="exact"), 0.2),
+    ):
+
+        def counted(structure: tsm.Structure = structure) -> None:
+            tsm.solve(structure, load_parameters)
+
+        def uncounted(structure: tsm.Structure = structure) -> None:
+            with patch.object(path, "index", lambda *_: 0):
+                tsm.solve(structure, load_parameters)
+
+        whole, rest = seconds(counted, uncounted, of=min)
+        gates.append(Gate(f"index of {label}, part of its solution", (whole - rest) / whole, bar, False))
+    steps = fem_reference.solve(solid, load_parameters[:10])
+    tangent = linearise(steps.model, steps.states[-1])
+    (signs,) = seconds(lambda: tangent.index(1e-12), repeats=15, of=min)
+    gates.append(
+        Gate(
+            "index of the solid, part of its solution",
+            signs * steps.substeps / steps.wall_seconds,
+            0.05,
+            False,
+        )
+    )
+    response, crowd = solve(scene, "tsm"), solve(CROWD, "tsm", Options(element="exact"))
+    times["certificate of ks-cantilever"], times["certificate of ten contacts"] = seconds(
+        lambda: certify(response, scene), lambda: equilibrium(CROWD, answer_state(crowd, CROWD, -1))
+    )
+    gates.append(
+        Gate("seconds of a certificate with ten contacts", times["certificate of ten contacts"], 0.3, False)
+    )
+
+
+def assembly(gates: list[Gate], times: dict[str, float]) -> None:
+    """Tangent and residual of the solid against scikit-fem's forms, and against the factorisation."""
+    from scipy.sparse.linalg import splu
+
+    from fem_reference.body import build_body
+
+    for mesh, repeats in (((50, 2), 7), ((200, 4), 7), ((1000, 20), 1)):
+        strip = replace(to_solid(load_scene("ks-cantilever"), mesh=mesh).strips[0], element="Q2-full")
+        body, name = build_body(strip), f"{mesh[0]}x{mesh[1]}"
+        u = 1e-4 * np.random.default_rng(0).standard_normal(body.mesh.nodes.shape)
+        E, nu = strip.youngs_modulus, strip.poissons_ratio
+        lam, mu = E * nu / (1 - nu**2), E / (2 * (1 + nu))
+        basis, K = forms.vector_basis(body.mesh.nodes, body.mesh.cells), body.tangent(u)
+
+        def batched(body: Any = body, u: Any = u) -> None:
+            body.internal_force(u)
+            body.tangent(u)
+
+        def bilinear(basis: Any = basis, u: Any = u, lam: float = lam, mu: float = mu) -> None:
+            forms.tangent_and_residual(basis, u.ravel(), lam, mu, 0.02)
+
+        def factorise(K: Any = K, ordering: str = "NATURAL" if mesh[1] < 8 else "MMD_AT_PLUS_A") -> None:
+            splu(K, permc_spec=ordering)
+
+        ours, theirs, factor = seconds(batched, bilinear, factorise, repeats=repeats)
+        times |= {
+            f"tangent + residual {name}, batched": ours,
+            f"tangent + residual {name}, BilinearForm": theirs,
+            f"factorisation {name}": factor,
+        }
+        gates.append(Gate(f"BilinearForm over batched products, {name}", theirs / ours, 15, True))
+        if mesh == (200, 4):
+            gates.append(Gate(f"assembly over factorisation, {name}", ours / factor, 1, False))
+
+
+PEAK = """
+import resource
+import numpy as np
+import fem_reference
+from comparisons.scene import load_scene
+from comparisons.models.translate import to_solid
+fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+def memory(gates: list[Gate], times: dict[str, float]) -> None:
+    """Peak memory of one load parameter on 1000x20, 164,000 unknowns."""
+    begin = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", PEAK], check=True, capture_output=True, text=True)
+    times["one load parameter, 1000x20"] = time.perf_counter() - begin
+    gates.append(Gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5, False))
