@@ -7,7 +7,8 @@ from comparisons.accuracy.beams import exact_to, graded_to
 from comparisons.accuracy.require import Requirement, required
 from comparisons.accuracy.solid import solid_to
 from comparisons.accuracy.theory import beam_theory
-from comparisons.models.options import QUANTITIES, ModelError
+from comparisons.models.options import ModelError
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import Scene
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from comparisons.accuracy.quantities import difference
 from comparisons.claims.junit import JUnitCase, junit_text
+from comparisons.errors import difference
 from comparisons.models.options import ModelError, Options
 from comparisons.models.registry import COARSE, certified, solve
 from comparisons.response import Response
@@ -21,7 +21,7 @@ class Bound:
     Attributes
     ----------
     quantity : str
-        Key of `comparisons.models.options.QUANTITIES`.
+        Key of `comparisons.quantities.QUANTITIES`.
     bound, error : float
         Relative, the largest over all load parameters; the error is infinite where a solution stopped.
     """

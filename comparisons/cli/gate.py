@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
-from comparisons.models.options import OPTIONS, QUANTITIES, Options
+from comparisons.models.options import OPTIONS, Options
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:

@@ -110,7 +110,7 @@ def _share(finding: Finding) -> float:
 
 def judged(cell: Cell, results: Results) -> Judgement:
     """Return the verdict on `cell` by the `results` of its `cases`."""
-    own = results[cell.case]
+    own = results[cell.case].response
     reached = bool(len(own.load_parameter))
     found = [check.finding(cell.case, own, results) for check in cell.checks] if reached else []
     findings = tuple(finding for finding in found if finding is not None)
@@ -129,5 +129,5 @@ def judged(cell: Cell, results: Results) -> Judgement:
         findings=findings,
         iterations=own.iterations,
         cutbacks=own.cutbacks,
-        seconds=own.seconds,
+        seconds=results[cell.case].seconds,
     )

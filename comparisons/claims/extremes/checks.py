@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from comparisons.accuracy.quantities import difference
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
 from comparisons.claims.extremes.allowance import (
@@ -17,8 +16,9 @@ from comparisons.claims.extremes.allowance import (
     element_lengths,
 )
 from comparisons.claims.extremes.units import in_units_of
+from comparisons.errors import difference
 from comparisons.exact.end_loads import tip_under_moment
-from comparisons.response import Array
+from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec
 
 COMPARED = ("force", "arc", "moment", "tip")
@@ -79,12 +79,12 @@ class Against:
         """The cases that must have been measured."""
         return (self.case,)
 
-    def finding(self, case: Case, own: Measurement, results: Results) -> Finding | None:
-        """Return the error of `own`, measured on `case`; infinite where it went further than its reference.
+    def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
+        """Return the error of `own`, to `case`; infinite where it went further than its reference.
 
         The elastica is another beam, which may go further; None if the reference has nothing to compare it with, or is too soft to be.
         """
-        other, beam = results[self.case], self.case.scene.beams[0]
+        other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed = self.allowed or allowance(case, bending(beam, other))
         if case.model == "elastica" and (allowed.error > LARGEST or not len(other.load_parameter)):
             return None
@@ -120,10 +120,10 @@ class Energy:
     rigid: bool = False
     needs: tuple[Case, ...] = field(default=(), init=False)
 
-    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+    def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest violation over ``2 EI sin b``."""
         beam, pin = case.scene.beams[0], case.scene.pins[0]
-        force = -own.support_force[beam.name]
+        force = -own.supports[beam.name].force
         closed = np.hypot(*force.T) > 0.0
         place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
         error = _violation(beam, force[closed], place[closed], rigid=self.rigid)
@@ -153,14 +153,14 @@ class Circle:
 
     needs: tuple[Case, ...] = field(default=(), init=False)
 
-    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+    def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest error of the tip's position over the length."""
         beam, load = case.scene.beams[0], case.scene.loads[0]
         exact = [
             tip_under_moment(load.moment * float(t), EI=beam.EI, length=beam.length)
             for t in own.load_parameter
         ]
-        error = float(np.hypot(*(own.tip[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
+        error = float(np.hypot(*(own.tips[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
         element = case.options.element
         turn = load.moment * element_lengths(case)[0] * beam.length / beam.EI * own.load_parameter
         if element == "exact":

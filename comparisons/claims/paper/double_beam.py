@@ -206,7 +206,7 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
         end=end,
         checks=_checks(depth, histories, exact_events),
         stages=_stages(depth, exact_events),
-        iterations=int(own.newton_iterations.sum()),
+        iterations=own.iterations,
         seconds=own.wall_seconds,
         attempts=attempts,
         stopped=tuple(f"mixed: {one.status}: {one.message}" for one in (own, response) if not one.completed),
