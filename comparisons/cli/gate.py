@@ -69,11 +69,9 @@ def run(given: argparse.Namespace) -> int:
         write_text(file, found.junit())
     print(f"{scene.name}: {given.model} against {found.reference.model}")
     for item in found.bounds:
-        print(f"  {item.quantity:8s} {item.error:9.3g}  {'<=' if item.held else '> '} {item.bound:g}")
+        print(f"  {item.name:8s} {item.error:9.3g}  {'<=' if item.holds else '> '} {item.allowed:g}")
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
     if status != DONE or found.held:
         return status
-    report(
-        f"crossval: {', '.join(item.quantity for item in found.bounds if not item.held)}: beyond the bound"
-    )
+    report(f"crossval: {', '.join(item.name for item in found.bounds if not item.holds)}: beyond the bound")
     return WRONG

@@ -150,7 +150,7 @@ def test_one_run_has_one_error_wherever_it_is_stated(scene: Scene) -> None:
     exact = Measurement.from_json(measure(Case(scene=scene, model="rod"), repeats=1).to_json()).response
     compared, kept = errors(beams, rod, scene)["path"], errors(stored, exact, scene)["path"]
     for item in bounds:
-        name = item.quantity
+        name = item.name
         assert item.error == difference(beams, rod, scene, name)
         if name == "arc" and not scene.contacts:
             assert np.isnan([compared[name], kept[name]]).all()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.manual.frames import lee_limit, toggle_limits
+from comparisons.claims.problems.frames import lee_limit, toggle_limits
 from comparisons.exact.elastica import three_point_bending_limit
 
 STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)

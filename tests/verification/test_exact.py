@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_bvp
 
 import tsm
-from comparisons.claims.manual.frames import lee_limit
+from comparisons.claims.problems.frames import lee_limit
 from comparisons.exact import elastica
 from comparisons.exact.coupled import coupled_rods
 from comparisons.exact.end_loads import tip_under_dead_load

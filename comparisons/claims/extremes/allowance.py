@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.cases.case import Case
+from comparisons.claims.claim import Allowance
 from comparisons.response import Response
 from comparisons.scene import BeamSpec
 
@@ -39,14 +40,6 @@ RIGID = ("euler-bernoulli-simple", "euler-bernoulli-cantilever")
 """The elements that do not shear."""
 PAPER = ("timoshenko", *RIGID)
 """The elements of the paper, whose misprints are corrected."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Allowance:
-    """Largest relative error allowed, and its largest part in words."""
-
-    error: float
-    why: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,14 +7,8 @@ import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
-from comparisons.claims.extremes.allowance import (
-    FLOOR,
-    LARGEST,
-    Allowance,
-    allowance,
-    bending,
-    element_lengths,
-)
+from comparisons.claims.claim import Allowance, Finding
+from comparisons.claims.extremes.allowance import FLOOR, LARGEST, allowance, bending, element_lengths
 from comparisons.claims.extremes.units import in_units_of
 from comparisons.errors import difference
 from comparisons.exact.end_loads import tip_under_moment
@@ -29,31 +23,6 @@ NEXT_TERM = 1.05
 
 Results = Mapping[Case, Measurement]
 """What was measured."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """An error, what is allowed, and why that much.
-
-    Attributes
-    ----------
-    against : str
-        What the answer is compared with.
-    error, allowed : float
-        Relative; infinite where one of the two has no answer.
-    why : str
-        Where the allowed error comes from.
-    """
-
-    against: str
-    error: float
-    allowed: float
-    why: str
-
-    @property
-    def holds(self) -> bool:
-        """Whether the error is within what is allowed; nan is not."""
-        return self.error <= self.allowed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +59,7 @@ class Against:
             return None
         if case.model != "elastica" and len(own.load_parameter) > len(other.load_parameter):
             return Finding(
-                against=self.name,
+                name=self.name,
                 error=np.inf,
                 allowed=allowed.error,
                 why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
@@ -98,7 +67,7 @@ class Against:
         ours = in_units_of(beam, case.scene.beams[0], own)
         theirs = in_units_of(beam, beam, other)
         error = max(difference(ours, theirs, self.case.scene, quantity) for quantity in COMPARED)
-        return Finding(against=self.name, error=error, allowed=allowed.error, why=allowed.why)
+        return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,7 +97,7 @@ class Energy:
         place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
         error = _violation(beam, force[closed], place[closed], rigid=self.rigid)
         what = "2 EI sin tc of the elastica" if self.rigid else "its energy integral"
-        return Finding(against=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
+        return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
 
 
 def _violation(beam: BeamSpec, force: Array, place: Array, *, rigid: bool) -> float:
@@ -171,7 +140,7 @@ class Circle:
             term, why = turn**2 / 24, "second order of the element"
         distance = np.hypot(*np.array(exact).reshape(-1, 2).T) / beam.length
         allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
-        return Finding(against="circle", error=error, allowed=allowed, why=why)
+        return Finding(name="circle", error=error, allowed=allowed, why=why)
 
 
 Check = Against | Energy | Circle

@@ -3,9 +3,10 @@
 import numpy as np
 
 from comparisons.claims.paper.cantilever_shapes import ELEMENTS, Lifts
-from comparisons.claims.paper.double_beam import LOWER, TIP, UPPER, Attempt, DoubleBeam
+from comparisons.claims.paper.double_beam import Attempt, DoubleBeam
 from comparisons.claims.paper.ks_shapes import Run8, Shapes
 from comparisons.claims.paper.verdict import Judgement, Verdict, claim, holds, over_readings, percent
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 
 KS = "ks-cantilever"

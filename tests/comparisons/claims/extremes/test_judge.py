@@ -10,8 +10,9 @@ import pytest
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure
 from comparisons.cases.store import ERROR, WORKER_LOST
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, Bending, allowance
-from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
+from comparisons.claims.claim import Allowance, Verdict
+from comparisons.claims.extremes.allowance import LARGEST, Bending, allowance
+from comparisons.claims.extremes.cell import Cell, Judgement, judged
 from comparisons.claims.extremes.checks import Against, Circle, Energy
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod
 from comparisons.claims.extremes.scenes import cantilever, cycles, half_circle, rolled_up, sheared

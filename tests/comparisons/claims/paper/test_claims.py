@@ -20,10 +20,11 @@ from comparisons.claims.paper.critical_area import (
     Floor,
     Measured,
 )
-from comparisons.claims.paper.double_beam import LOWER, TIP, UPPER, Attempt, Check, Happened, History
+from comparisons.claims.paper.double_beam import Attempt, Check, Happened, History
 from comparisons.claims.paper.ks_shapes import Run8
 from comparisons.claims.paper.turned_frame import NAME as TURNED
 from comparisons.claims.paper.verdict import Verdict, in_size, over_readings
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from comparisons.quantities import KEPT
 
