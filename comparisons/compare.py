@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import tsm
@@ -75,8 +75,9 @@ def _layer(run: Run) -> int:
 DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=_layer))
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 
+BRANCH = ("force", "moment", "tip")
 APART = 0.5
-"""Difference of force or moment over the largest, or of the tip over the length, beyond which two answers are different equilibria."""
+"""Error of one of these quantities beyond which two answers are different equilibria."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,8 +102,7 @@ class Comparison:
 
 def _apart(row: Row) -> bool:
     """Whether a run differs from the reference by more than its discretisation can explain."""
-    found = row.errors
-    return found is not None and max(found.contact_force, found.clamp_moment, found.tip) > APART
+    return row.errors is not None and max(row.errors["path"][name] for name in BRANCH) > APART
 
 
 def _silent(_: str) -> AbstractContextManager[Watch]:
@@ -130,8 +130,7 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     OutputError
         If `folder` cannot be written; nothing is computed.
     """
-    rod = to_rod(scene)
-    pair = None if rod.contact is None else rod.contact.pair
+    to_rod(scene)
     folder = writable_folder(folder)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
@@ -141,9 +140,7 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
         Row(
             label=label,
             response=response,
-            errors=None
-            if response is reference
-            else errors(response, reference, pair=pair, beam=rod.beam.name, length=rod.beam.length),
+            errors=None if response is reference else errors(response, reference, scene),
         )
         for label, response in responses.items()
     ]
@@ -233,16 +230,13 @@ def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, r
 
 
 def _summary(scene: Scene, rows: list[Row], files: list[Path]) -> str:
-    runs = [
-        {"label": row.label, **as_dict(row.response), "errors": row.errors and asdict(row.errors)}
-        for row in rows
-    ]
+    runs = [{"label": row.label, **as_dict(row.response), "errors": row.errors} for row in rows]
     summary = {
         "scene": scene.name,
         "scene_file": to_toml(scene),
         "reference": ROD.label,
         "versions": versions(),
         "files": [str(path) for path in files],
-        "runs": [{key: value for key, value in run.items() if key != "versions"} for run in runs],
+        "runs": runs,
     }
     return json.dumps(plain(summary), allow_nan=False, indent=1) + "\n"

@@ -1,84 +1,237 @@
-"""Errors of a response against a reference over the same load parameters."""
+"""The measure of the difference between two responses to one scene.
 
+A quantity is compared at the load parameters that both responses have; nothing is interpolated in the load parameter. Of several
+contacts, supports and beams the largest difference counts. Forces, moments and stresses are relative to the largest of the reference,
+positions to the length of their beam. A value that is not a number has an infinite error, and so has the arc position of a pair that is open
+in one response and closed in the other. The error of the arc position is not a number where the pair is open in both, and where the scene
+has no contact.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from comparisons.quantities import KEPT, QUANTITIES, SCOPES
 from comparisons.response import Array, Response
+from comparisons.response.axis import STATIONS, axes_at_stations
+from comparisons.scene import Scene
+
+AWAY = 1.5
+"""Heights beside clamp and contact within which a solid's stress is that of a point force."""
+
+Errors = Mapping[str, Mapping[str, float]]
+"""Errors by scope and quantity."""
+Steps = NDArray[np.integer]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Errors:
-    """Largest errors over all load parameters, and those at the last one.
+class Scales:
+    """The force and the moment that errors are relative to: the largest of the reference, 1 where that is zero."""
 
-    Forces and moments relative to the largest of the reference, positions relative to the beam's length:
-    ``|F - F_ref| / max |F_ref|`` and ``|s - s_ref| / L``. Where a beam's tip is moved without a contact, `contact_force` is
-    the error of the force on the tip and `arc_position` is nan.
-    """
-
-    contact_force: float
-    arc_position: float
-    clamp_moment: float
-    tip: float
-    contact_force_end: float
-    arc_position_end: float
-    clamp_moment_end: float
-    tip_end: float
+    force: float
+    moment: float
 
 
-def errors(response: Response, reference: Response, *, pair: str | None, beam: str, length: float) -> Errors:
-    """Return the errors of `response` against `reference`; nan where they do not share all load parameters.
+def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
+    """Return the scales of a reference over all its load parameters, or over the given ones."""
+    force = [values[steps] for values in forces(reference).values()]
+    moment = [support.moment[steps] for support in reference.supports.values()]
+    return Scales(force=_largest_size(force), moment=_largest_size(moment))
+
+
+def _largest_size(columns: Iterable[Array]) -> float:
+    return max((float(size(values).max(initial=0.0)) for values in columns), default=0.0) or 1.0
+
+
+def forces(response: Response) -> dict[str, Array]:
+    """Return the contact forces, shape (s,) by pair; of a scene without contact the support forces, (s, 2) by beam and end."""
+    if response.contacts:
+        return {pair: contact.force for pair, contact in response.contacts.items()}
+    found = {beam: support.force for beam, support in response.supports.items()}
+    ends = {f"{beam}.other_end": support.other_end for beam, support in response.supports.items()}
+    return found | {name: support.force for name, support in ends.items() if support is not None}
+
+
+def size(values: Array) -> Array:
+    """Return the magnitudes of numbers, shape (s,), or of vectors, shape (..., 2)."""
+    return np.abs(values) if values.ndim == 1 else np.hypot(values[..., 0], values[..., 1])
+
+
+def _distance(difference: Array) -> Array:
+    """Return the magnitudes of differences, infinite where a value is not a number."""
+    return np.nan_to_num(size(difference), nan=np.inf)
+
+
+def errors(
+    response: Response,
+    reference: Response,
+    scene: Scene,
+    *,
+    scale: Scales | None = None,
+    end: float | None = None,
+    quantities: Iterable[str] = KEPT,
+) -> Errors:
+    """Return the errors of a response by scope and quantity; nan for a response that does not reach the reference's end.
 
     Parameters
     ----------
     response, reference : Response
-        Over the same load parameters; they are never interpolated.
-    pair, beam : str
-        Contact pair, None without contact, and beam compared.
-    length : float
-        Length of the beam.
+        To the same scene; the response may have fewer load parameters.
+    scene : Scene
+        Gives the beams' lengths.
+    scale : Scales, optional
+        What forces and moments are relative to, the largest of the reference if not given.
+    end : float, optional
+        The load parameter of the scope ``end``, the reference's last if not given.
+    quantities : iterable of str
+        Keys of `comparisons.quantities.QUANTITIES`.
     """
-    if not np.array_equal(response.load_parameter, reference.load_parameter):
-        return Errors(**dict.fromkeys(Errors.__dataclass_fields__, np.nan))
-    differences = error_histories(response, reference, pair=pair, beam=beam, length=length)
-    largest = {name: _largest(values) for name, values in differences.items()}
-    return Errors(**largest, **{f"{name}_end": float(values[-1]) for name, values in differences.items()})
-
-
-def error_histories(
-    response: Response, reference: Response, *, pair: str | None, beam: str, length: float
-) -> dict[str, Array]:
-    """Return what `errors` takes the largest of, shape (s,) each, over the load parameters that both reached."""
-    ours, exact = (histories(item, pair=pair, beam=beam) for item in (response, reference))
-    s = min(len(response.load_parameter), len(reference.load_parameter))
+    names = tuple(quantities)
+    last = reference.load_parameter[-1:]
+    if not len(last) or last[0] not in response.load_parameter:
+        return {scope: dict.fromkeys(names, np.nan) for scope in SCOPES}
+    shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
+    at_end = shared == (last[0] if end is None else end)
     return {
-        "contact_force": _relative(ours["contact_force"][:s], exact["contact_force"]),
-        "arc_position": np.abs(ours["arc_position"][:s] - exact["arc_position"][:s]) / length,
-        "clamp_moment": _relative(ours["clamp_moment"][:s], exact["clamp_moment"]),
-        "tip": np.hypot(*(response.tips[beam][:s] - reference.tips[beam][:s]).T) / length,
+        "end": {name: _largest(values[at_end]) for name, values in found.items()},
+        "path": {name: _largest(values) for name, values in found.items()},
     }
 
 
-def histories(response: Response, *, pair: str | None, beam: str) -> dict[str, Array]:
-    """Return contact force, arc position and clamp moment over the load parameters, as `Errors` names and means them."""
-    force, arc = _driven(response, pair, beam)
-    return {"contact_force": force, "arc_position": arc, "clamp_moment": response.supports[beam].moment}
+def difference(response: Response, reference: Response, scene: Scene, quantity: str) -> float:
+    """Return the largest error of a quantity as far as both responses came, relative to the largest of the reference up to there.
+
+    Infinite where they share no load parameter; zero where both have nothing to compare, as a scene without contact has no arc position.
+    """
+    _, _, steps = _shared(response, reference)
+    if not len(steps):
+        return np.inf
+    _, found = error_histories(
+        response, reference, scene, scale=scales(reference, steps), quantities=[quantity]
+    )
+    worst = _largest(found[quantity])
+    return 0.0 if np.isnan(worst) else worst
 
 
-def _driven(response: Response, pair: str | None, beam: str) -> tuple[Array, Array]:
-    """Return the magnitude of the force that moves the beam, and its arc position."""
-    if pair is not None:
-        return response.contacts[pair].force, response.contacts[pair].arc_position
-    at_tip = response.supports[beam].other_end
-    assert at_tip is not None, "a beam without contact is moved by its other end"
-    return np.hypot(*at_tip.force.T), np.full(len(at_tip.force), np.nan)
+def error_histories(
+    response: Response,
+    reference: Response,
+    scene: Scene,
+    *,
+    scale: Scales | None = None,
+    quantities: Iterable[str] = KEPT,
+) -> tuple[Array, dict[str, Array]]:
+    """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
+    shared, ours, theirs = _shared(response, reference)
+    scale = scale or scales(reference)
+    pair = _Pair(response, reference, ours, theirs, scene, scale)
+    return shared, {name: _MEASURES[name](pair) for name in quantities}
 
 
-def _relative(values: Array, reference: Array) -> Array:
-    return np.asarray(np.abs(values - reference[: len(values)]) / np.abs(reference).max(initial=0.0))
+def _shared(response: Response, reference: Response) -> tuple[Array, Steps, Steps]:
+    return np.intersect1d(response.load_parameter, reference.load_parameter, return_indices=True)
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two responses, and the numbers of the n load parameters that both have."""
+
+    response: Response
+    reference: Response
+    ours: Steps
+    theirs: Steps
+    scene: Scene
+    scale: Scales
+
+    def worst(self, columns: Iterable[Array]) -> Array:
+        """Return the largest of the columns, shape (n,), leaving out what there is nothing to compare of; nan where nothing is left."""
+        none = np.full(len(self.ours), np.nan)
+        return np.asarray(np.fmax.reduce([none, *columns]))
+
+
+def _force(pair: _Pair) -> Array:
+    ours, theirs = forces(pair.response), forces(pair.reference)
+    apart = (_distance(ours[name][pair.ours] - values[pair.theirs]) for name, values in theirs.items())
+    return pair.worst(apart) / pair.scale.force
+
+
+def _moment(pair: _Pair) -> Array:
+    ours, theirs = pair.response.supports, pair.reference.supports
+    apart = (
+        _distance(ours[name].moment[pair.ours] - one.moment[pair.theirs]) for name, one in theirs.items()
+    )
+    return pair.worst(apart) / pair.scale.moment
+
+
+def _arc(pair: _Pair) -> Array:
+    columns = []
+    for contact in pair.scene.contacts:
+        ours = pair.response.contacts[contact.pair].arc_position[pair.ours]
+        theirs = pair.reference.contacts[contact.pair].arc_position[pair.theirs]
+        apart = np.abs(ours - theirs) / pair.scene.beam(contact.beam).length
+        columns.append(np.where(np.isfinite(ours) == np.isfinite(theirs), apart, np.inf))
+    return pair.worst(columns)
+
+
+def _tip(pair: _Pair) -> Array:
+    ours, theirs = pair.response.tips, pair.reference.tips
+    return pair.worst(
+        _distance(ours[beam.name][pair.ours] - theirs[beam.name][pair.theirs]) / beam.length
+        for beam in pair.scene.beams
+    )
+
+
+def _shape(pair: _Pair, norm: Callable[..., Array]) -> Array:
+    columns = []
+    for beam in pair.scene.beams:
+        ours = axes_at_stations(pair.response, beam.name, pair.ours)
+        theirs = axes_at_stations(pair.reference, beam.name, pair.theirs)
+        columns.append(norm(_distance(ours - theirs), axis=1) / beam.length)
+    return pair.worst(columns)
+
+
+def _stress(pair: _Pair) -> Array:
+    ours = np.array([_face_stress(pair.response, pair.scene, int(k)) for k in pair.ours])
+    theirs = np.array([_face_stress(pair.reference, pair.scene, int(k)) for k in pair.theirs])
+    both = np.isfinite(ours) & np.isfinite(theirs)
+    apart = np.where(both, np.abs(ours - theirs), 0.0).max(axis=1, initial=0.0)
+    return np.asarray(apart / np.abs(theirs[both]).max(initial=1e-300))
+
+
+def _face_stress(response: Response, scene: Scene, k: int) -> Array:
+    """Principal stress of the larger magnitude along both faces of the one beam, nan beside clamp, tip and contacts."""
+    beam, grid = scene.beams[0], response.grid(k)
+    area, inertia, _ = beam.cross_section
+    (tx, ty), height = beam.direction, beam.height or (12.0 * inertia / area) ** 0.5
+    from_start = grid.points - np.array(beam.start)
+    arc, across = from_start @ (tx, ty), from_start @ (-ty, tx)
+    xx, yy, xy = grid.point_data["cauchy_stress"].T
+    stress = (xx + yy) / 2 + np.sign(xx + yy) * np.hypot((xx - yy) / 2, xy)
+    at = STATIONS * beam.length
+    near = [0.0, beam.length, *(contact.arc_position[k] for contact in response.contacts.values())]
+    close = np.any([np.abs(at - place) < AWAY * height for place in near], axis=0)
+    found = []
+    for side in (-1.0, 1.0):
+        face = np.flatnonzero(np.abs(across - side * height / 2) < 1e-6 * height)
+        face = face[np.argsort(arc[face])]
+        found.append(np.where(close, np.nan, np.interp(at, arc[face], stress[face])))
+    return np.concatenate(found)
+
+
+_MEASURES: dict[str, Callable[[_Pair], Array]] = {
+    "force": _force,
+    "arc": _arc,
+    "moment": _moment,
+    "tip": _tip,
+    "shape": lambda pair: _shape(pair, np.max),
+    "shape_mean": lambda pair: _shape(pair, np.mean),
+    "stress": _stress,
+}
+assert set(_MEASURES) == set(QUANTITIES), "every quantity can be compared"
 
 
 def _largest(values: Array) -> float:
-    """Return the largest value, leaving out load parameters at which the pair is open in either."""
-    known = values[np.isfinite(values)]
-    return float(known.max()) if len(known) else np.nan
+    """Return the largest value, leaving out what is not a number; nan if nothing is left."""
+    return float(np.fmax.reduce(values, initial=np.nan))

@@ -2,6 +2,6 @@
 
 from comparisons.accuracy.answer import Answer
 from comparisons.accuracy.choose import solve_to
-from comparisons.models.options import QUANTITIES
+from comparisons.quantities import QUANTITIES
 
 __all__ = ["QUANTITIES", "Answer", "solve_to"]

@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.accuracy.answer import Discretised
 from comparisons.accuracy.pilot import SAFETY, pilot
-from comparisons.accuracy.quantities import difference
+from comparisons.errors import difference
 from comparisons.models import TSM, solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response

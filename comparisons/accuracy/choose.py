@@ -8,7 +8,8 @@ from comparisons.accuracy.require import Requirement, required
 from comparisons.accuracy.solid import solid_to
 from comparisons.accuracy.theory import beam_theory
 from comparisons.models import TSM
-from comparisons.models.options import QUANTITIES, ModelError
+from comparisons.models.options import ModelError
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import Scene
 from tsm.elements import MIXED, ClosedForm
 

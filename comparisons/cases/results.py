@@ -13,7 +13,7 @@ from comparisons.cases.schema import database_errors, open_for_reading
 from comparisons.cases.settings import in_order, settings
 from comparisons.files import OutputError
 from comparisons.output import Row, tabulated
-from comparisons.response import Array
+from comparisons.response import Array, Response
 
 DETAILS = ("moment:", "tip_x:", "tip_y:")
 """Columns that a table for a reader leaves out."""
@@ -97,7 +97,7 @@ def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
     `timings` seconds and memory, which differ from run to run, are left out.
     """
     names = varied(results)
-    answers = [_answers(result.measurement) for result in results]
+    answers = [_answers(result.measurement.response) for result in results]
     columns = list(dict.fromkeys(name for answer in answers for name in answer))
     rows = []
     for result, answer in zip(results, answers, strict=True):
@@ -106,12 +106,12 @@ def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
             "scene": result.scene,
             "model": result.model,
             **{name: _text(result.settings.get(name)) for name in names},
-            "status": measurement.status,
+            "status": measurement.response.status,
             "verdict": measurement.verdict,
             **{name: answer.get(name) for name in columns},
-            "iterations": measurement.iterations,
-            "cutbacks": measurement.cutbacks,
-            "unknowns": measurement.unknowns,
+            "iterations": measurement.response.iterations,
+            "cutbacks": measurement.response.cutbacks,
+            "unknowns": measurement.response.unknowns,
         }
         if timings:
             row |= {
@@ -119,7 +119,7 @@ def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
                 "repeats": measurement.repeats,
                 "peak_memory": measurement.peak_memory,
             }
-        rows.append({**row, "version": result.version, "message": measurement.message})
+        rows.append({**row, "version": result.version, "message": measurement.response.message})
     return rows
 
 
@@ -136,28 +136,28 @@ def result_table(results: list[Result], *, timings: bool = True) -> str:
         for row in result_rows(results, timings=timings)
     ]
     stopped = [
-        f"{result.scene}, {result.label}: {result.measurement.status}: {result.measurement.message}"
+        f"{result.scene}, {result.label}: {result.measurement.response.status}: {result.measurement.response.message}"
         for result in results
-        if not result.measurement.completed
+        if not result.measurement.response.completed
     ]
     return "\n".join(
         [tabulated(rows), f"\nversion {', '.join(versions)}", *([""] if stopped else []), *stopped]
     )
 
 
-def _answers(measurement: Measurement) -> dict[str, float]:
+def _answers(response: Response) -> dict[str, float]:
     """Return the last state reached."""
-    if not len(measurement.load_parameter):
+    if not len(response.load_parameter):
         return {}
     tables: dict[str, dict[str, Array]] = {
-        "force": measurement.force,
-        "arc_position": measurement.arc_position,
-        "moment": measurement.moment,
-        "tip_x": {beam: tip[:, 0] for beam, tip in measurement.tip.items()},
-        "tip_y": {beam: tip[:, 1] for beam, tip in measurement.tip.items()},
+        "force": {pair: contact.force for pair, contact in response.contacts.items()},
+        "arc_position": {pair: contact.arc_position for pair, contact in response.contacts.items()},
+        "moment": {beam: support.moment for beam, support in response.supports.items()},
+        "tip_x": {beam: tip[:, 0] for beam, tip in response.tips.items()},
+        "tip_y": {beam: tip[:, 1] for beam, tip in response.tips.items()},
     }
     last = {f"{name}:{of}": values[-1] for name, table in tables.items() for of, values in table.items()}
-    return {"load_parameter": float(measurement.load_parameter[-1])} | {
+    return {"load_parameter": float(response.load_parameter[-1])} | {
         name: float(value) for name, value in last.items() if np.isfinite(value)
     }
 

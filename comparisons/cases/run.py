@@ -169,7 +169,7 @@ class _Sweep:
         self.flying.pop(key, None)
         if self.suspects and self.suspects[0] == key:
             self.suspects.popleft()
-        self.note(key, measurement.status)
+        self.note(key, measurement.response.status)
 
     def note(self, key: str, status: str) -> None:
         self.statuses[key] = status

@@ -10,7 +10,8 @@ from comparisons.files import OutputError, writable_file
 
 APPLICATION = 0x54534D58
 """The id in the header of the file ("TSMX"), by which SQLite files are told apart."""
-VERSION = 1
+VERSION = 2
+"""Of the tables and of what they hold."""
 PATIENCE = 60.0
 """Seconds to wait for other writers."""
 

@@ -189,6 +189,7 @@ def options_text(case: Case) -> str:
 
 def _row(key: str, case: Case, measurement: "Measurement") -> dict[str, object]:
     """Return the columns of a result; a number of seconds that is not there becomes null."""
+    response = measurement.response
     return {
         "key": key,
         "scene": case.scene.name,
@@ -197,12 +198,12 @@ def _row(key: str, case: Case, measurement: "Measurement") -> dict[str, object]:
         "definition": to_toml(case.scene),
         "options": options_text(case),
         "version": version(),
-        "status": measurement.status,
-        "message": measurement.message,
-        "completed": measurement.completed,
-        "iterations": measurement.iterations,
-        "cutbacks": measurement.cutbacks,
-        "unknowns": measurement.unknowns,
+        "status": response.status,
+        "message": response.message,
+        "completed": response.completed,
+        "iterations": response.iterations,
+        "cutbacks": response.cutbacks,
+        "unknowns": response.unknowns,
         "seconds": measurement.seconds,
         "repeats": measurement.repeats,
         "peak_memory": measurement.peak_memory,

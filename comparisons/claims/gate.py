@@ -1,37 +1,17 @@
 """Errors of one model against bounds: what a CI run asks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
-from comparisons.accuracy.quantities import difference
-from comparisons.claims.junit import JUnitCase, junit_text
+from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
+from comparisons.claims.junit import junit_text
+from comparisons.errors import difference
 from comparisons.models import MODELS, certified, references, solve
 from comparisons.models.options import Options
 from comparisons.models.registry import COARSE
 from comparisons.response import Response
 from comparisons.scene import Scene
-
-
-@dataclass(frozen=True, kw_only=True)
-class Bound:
-    """A bound on the error of a quantity, and the error found.
-
-    Attributes
-    ----------
-    quantity : str
-        Key of `comparisons.models.options.QUANTITIES`.
-    bound, error : float
-        Relative, the largest over all load parameters; the error is infinite where a solution stopped.
-    """
-
-    quantity: str
-    bound: float
-    error: float
-
-    @property
-    def held(self) -> bool:
-        """Whether the error lies within the bound."""
-        return self.error <= self.bound
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,32 +22,31 @@ class Gate:
     ----------
     response, reference : Response
         The run and what it is measured against.
-    bounds : tuple of Bound
-        In the order asked for.
+    judgements : tuple of Judgement
+        One for each bound, in the order asked for.
     """
 
     response: Response
     reference: Response
-    bounds: tuple[Bound, ...]
+    judgements: tuple[Judgement, ...]
+
+    @property
+    def bounds(self) -> tuple[Finding, ...]:
+        """The errors and their bounds, by name of the quantity; an error is infinite where a solution stopped."""
+        return tuple(finding for item in self.judgements for finding in item.findings)
 
     @property
     def held(self) -> bool:
         """Whether both solutions are complete and every bound holds."""
-        return self.response.completed and self.reference.completed and all(item.held for item in self.bounds)
+        return all(item.passed for item in self.judgements)
 
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
-        return junit_text(
-            f"crossval gate {self.response.scene}",
-            [
-                JUnitCase(
-                    classname=f"{self.response.scene}.{self.response.model}",
-                    name=f"{item.quantity} <= {item.bound:g}",
-                    failure=None if item.held else f"error {item.error:.3g}, against {self.reference.model}",
-                )
-                for item in self.bounds
-            ],
-        )
+        classname = f"{self.response.scene}.{self.response.model}"
+        cases = [item.junit(classname) for item in self.judgements]
+        against = f", against {self.reference.model}"
+        named = [replace(one, failure=one.failure and one.failure + against) for one in cases]
+        return junit_text(f"crossval gate {self.response.scene}", named)
 
 
 def gate(
@@ -94,19 +73,25 @@ def gate(
     allowance = max(COARSE, *bounds.values())
     reference = certified(_reference(scene, against), scene)
     response = certified(solve(scene, model, options), scene, allowance=allowance)
-    complete = response.completed and reference.completed
-    return Gate(
-        response=response,
-        reference=reference,
-        bounds=tuple(
-            Bound(
-                quantity=quantity,
-                bound=bound,
-                error=difference(response, reference, scene, quantity) if complete else float("inf"),
-            )
-            for quantity, bound in bounds.items()
-        ),
+
+    def measured(quantity: str) -> tuple[float]:
+        for one in (response, reference):
+            if not one.completed:
+                raise StoppedError(f"{one.model}: {one.status}: {one.message}")
+        return (difference(response, reference, scene, quantity),)
+
+    claims = (
+        Claim(
+            name=f"{quantity} <= {bound:g}",
+            statement=f"the error of {model} in {scene.name}",
+            source=f"against {reference.model}",
+            quantities=(Quantity(name=quantity, exact=0.0, scale=1.0),),
+            allowance=Allowance(error=bound, why="asked for"),
+            measure=partial(measured, quantity),
+        )
+        for quantity, bound in bounds.items()
     )
+    return Gate(response=response, reference=reference, judgements=tuple(judge(one) for one in claims))
 
 
 def _reference(scene: Scene, against: str | None) -> Response:

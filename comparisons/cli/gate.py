@@ -8,7 +8,8 @@ from comparisons.cli import values
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import QUANTITIES, Options
+from comparisons.models.options import Options
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -69,11 +70,9 @@ def run(given: argparse.Namespace) -> int:
         write_text(file, found.junit())
     print(f"{scene.name}: {given.model} against {found.reference.model}")
     for item in found.bounds:
-        print(f"  {item.quantity:8s} {item.error:9.3g}  {'<=' if item.held else '> '} {item.bound:g}")
+        print(f"  {item.name:8s} {item.error:9.3g}  {'<=' if item.holds else '> '} {item.allowed:g}")
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
     if status != DONE or found.held:
         return status
-    report(
-        f"crossval: {', '.join(item.quantity for item in found.bounds if not item.held)}: beyond the bound"
-    )
+    report(f"crossval: {', '.join(item.name for item in found.bounds if not item.holds)}: beyond the bound")
     return WRONG

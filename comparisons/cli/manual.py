@@ -41,16 +41,15 @@ def run(given: "argparse.Namespace") -> int:
     file = None if given.junit is None else writable_file(given.junit)
     from comparisons.claims.junit import junit_text
     from comparisons.claims.manual import write_manual
-    from comparisons.claims.manual.judge import failure
     from comparisons.claims.manual.text import junit_cases
 
     manual = write_manual(given.out, (lambda _: None) if given.quiet else report)
     if file is not None:
         write_text(file, junit_text("crossval manual", junit_cases(manual.cases)))
-    runs = [(case, one) for case in manual.cases for one in case.runs]
-    failed = [(case, one) for case, one in runs if not one.passed]
-    print(f"{len(manual.cases)} cases, {len(runs)} answers, {len(failed)} beyond their tolerance")
+    answers = [(case, one) for case in manual.cases for one in case.judgements]
+    failed = [(case, one) for case, one in answers if not one.passed]
+    print(f"{len(manual.cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
     print("files:", *(f"  {path}" for path in (*manual.files, *([file] if file else []))), sep="\n")
     for case, one in failed:
-        report(f"crossval: {case.name}, {one.label}: {failure(case, one)}")
+        report(f"crossval: {case.problem.name}, {one.claim.name}: {one.failure}")
     return WRONG if failed else DONE

@@ -9,7 +9,8 @@ from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import BRANCHES, QUANTITIES, ModelError, Options
+from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import built_in_scenes, load_scene
 
 if TYPE_CHECKING:

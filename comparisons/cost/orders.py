@@ -35,7 +35,7 @@ def _row(trade: Trade, chain: Sequence[Point], quantity: str) -> Row:
     doubt = trade.uncertainty(case.model, "path", quantity)
     sizes = [resolution(point.case) for point in chain]
     errors = [point.own_errors["path"][quantity] for point in chain]
-    costs = [(float(one.measured.unknowns), one.measured.seconds) for one in chain[-LARGEST:]]
+    costs = [(float(one.measured.response.unknowns), one.measured.seconds) for one in chain[-LARGEST:]]
     return {
         "family": f"{family(case)}{_contact(case)}",
         "settings": len(chain),

@@ -32,7 +32,7 @@ def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) 
     trade : Trade
         The sweep.
     quantity, scope, cost : str
-        Of `QUANTITIES`, `SCOPES` and `COSTS`.
+        Of `comparisons.quantities` and `COSTS`.
     paths : Path
         Files, in the formats of their suffixes.
     """
@@ -68,7 +68,7 @@ def _draw(axes: Any, trade: Trade, quantity: str, scope: str, cost: str, *, own:
         for point in (one for one in shown if family(one.case) == name):
             error = (point.own_errors if own else point.errors)[scope][quantity]
             floor = trade.uncertainty(point.case.model if own else ROD.name, scope, quantity)
-            spent = getattr(point.measured, cost)
+            spent = point.spent(cost)
             if not (np.isfinite(error) and spent > 0):
                 continue
             full = point.case.scene.load_parameters == trade.scene.load_parameters

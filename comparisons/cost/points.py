@@ -6,7 +6,8 @@ from math import isfinite, nan
 
 from comparisons.cases import Case, Measurement
 from comparisons.cost.fits import pareto
-from comparisons.cost.references import Errors, Reference
+from comparisons.cost.references import Reference
+from comparisons.errors import Errors
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.scene import Scene
 
@@ -34,6 +35,10 @@ class Point:
     measured: Measurement
     errors: Errors
     own_errors: Errors
+
+    def spent(self, cost: str) -> float:
+        """Return what the case cost, by a name of `COSTS`."""
+        return float(getattr(self.measured if cost == "seconds" else self.measured.response, cost))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,14 +70,14 @@ class Trade:
     @property
     def stopped(self) -> list[Point]:
         """The cases without a completed and checked solution."""
-        return [point for point in self.points if not point.measured.completed]
+        return [point for point in self.points if not point.measured.response.completed]
 
     def of_model(self, model: str, scope: str) -> list[Point]:
         """Return the completed points of a model; for the scope ``path`` those with every load parameter of the scene."""
         return [
             point
             for point in self.points
-            if point.measured.completed
+            if point.measured.response.completed
             and point.case.model == model
             and (scope == "end" or point.case.scene.load_parameters == self.scene.load_parameters)
         ]
@@ -162,6 +167,6 @@ def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> lis
     Errors below the uncertainty of that are equal.
     """
     points, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
-    costs = [float(getattr(point.measured, cost)) for point in points]
+    costs = [point.spent(cost) for point in points]
     errors = [max(point.own_errors[scope][quantity], doubt) for point in points]
     return [OnFront(point=points[k], cost=costs[k], error=errors[k]) for k in pareto(costs, errors)]

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from comparisons.cost.answers import QUANTITIES, SCOPES
 from comparisons.cost.points import COSTS, Trade
 from comparisons.cost.tables import cheapest_lines, order_lines, setting_rows
 from comparisons.output import Row
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.show.pages import Section, definitions, folded, picture, provenance, table, write_page
 
 SETTING = (
@@ -26,9 +26,9 @@ def write_trade_page(
     fitted : sequence of dict
         Orders of convergence and cost exponents of `quantity`.
     quantity : str
-        Of `QUANTITIES`: the one that is shown.
+        Of `comparisons.quantities.KEPT`: the one that is shown.
     """
-    assert quantity in QUANTITIES, "only what was measured can be shown"
+    assert quantity in KEPT, "only what was measured can be shown"
     name = quantity.replace("_", " ")
     sections = [
         Section(
@@ -69,7 +69,7 @@ def _settings(trade: Trade) -> str:
     if trade.limit is not None:
         references["own errors of the solid against"] = trade.limit.sentence
     stopped = {
-        f"{point.case.label} [{point.case.scene.load_parameters}]": f"{point.measured.status}: {point.measured.message}"
+        f"{point.case.label} [{point.case.scene.load_parameters}]": f"{point.measured.response.status}: {point.measured.response.message}"
         for point in trade.stopped
     }
     caption = "Seconds: processor time of one thread from the scene to the checked answer, median of repeats."

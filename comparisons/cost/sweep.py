@@ -10,7 +10,6 @@ from comparisons.cases.results import read_results
 from comparisons.cases.run import Progress, Tally, run
 from comparisons.cases.store import Store
 from comparisons.cases.workers import Workers
-from comparisons.cost.answers import QUANTITIES, SCOPES
 from comparisons.cost.cases import meshed, sweep_cases
 from comparisons.cost.orders import orders
 from comparisons.cost.plots import plot_all
@@ -21,11 +20,12 @@ from comparisons.cost.tables import cheapest_rows, setting_rows
 from comparisons.files import writable_folder
 from comparisons.models import MODELS
 from comparisons.output import Row, write_numbers, write_rows
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import Scene, to_toml
 
 Runner = Callable[[Sequence[Case]], Measured]
 """Measures cases."""
-UNKNOWN = {scope: dict.fromkeys(QUANTITIES, nan) for scope in SCOPES}
+UNKNOWN = {scope: dict.fromkeys(KEPT, nan) for scope in SCOPES}
 SHOWN = "force"
 """The quantity of the diagrams, and of the tables for people; the files have all."""
 
@@ -106,7 +106,7 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
 
 def write_trade(trade: Trade, folder: Path) -> list[Path]:
     """Write the tables and diagrams; return the files."""
-    fitted = {quantity: list(orders(trade, quantity)) for quantity in QUANTITIES}
+    fitted = {quantity: list(orders(trade, quantity)) for quantity in KEPT}
     numbers = {
         "scene": trade.scene.name,
         "scene_file": to_toml(trade.scene),
@@ -144,7 +144,7 @@ def _fronts(trade: Trade) -> list[Row]:
         }
         for model in meshed()
         for scope in SCOPES
-        for quantity in QUANTITIES
+        for quantity in KEPT
         for cost in COSTS
         for one in front(trade, model, scope, quantity, cost)
     ]

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from math import isfinite
 
-from comparisons.cost.answers import QUANTITIES, SCOPES
 from comparisons.cost.cases import family
 from comparisons.cost.points import TARGETS, Cheapest, Point, Trade, cheapest
 from comparisons.models import MODELS, SOLID, TSM
 from comparisons.output import Row, tabulated
+from comparisons.quantities import KEPT, SCOPES
 
 
 def setting_rows(trade: Trade) -> list[Row]:
@@ -16,14 +16,14 @@ def setting_rows(trade: Trade) -> list[Row]:
 
 
 def _setting(point: Point) -> Row:
-    case, measured = point.case, point.measured
+    case, measured, response = point.case, point.measured, point.measured.response
     contact = case.scene.contacts[0] if case.scene.contacts and MODELS[case.model].continuum else None
     mesh = case.options.mesh
     errors = {
         f"{against}_{scope}_{quantity}": table[scope][quantity]
         for against, table in (("error", point.errors), ("own_error", point.own_errors))
         for scope in SCOPES
-        for quantity in QUANTITIES
+        for quantity in KEPT
     }
     return {
         "label": case.label,
@@ -35,12 +35,12 @@ def _setting(point: Point) -> Row:
         "penalty": contact and contact.penalty,
         "penetration": contact and contact.penetration,
         "load_steps": case.scene.load_parameters,
-        "load_parameters_reached": len(measured.load_parameter),
-        "status": measured.status,
-        "message": measured.message,
-        "unknowns": measured.unknowns,
-        "iterations": measured.iterations,
-        "cutbacks": measured.cutbacks,
+        "load_parameters_reached": len(response.load_parameter),
+        "status": response.status,
+        "message": response.message,
+        "unknowns": response.unknowns,
+        "iterations": response.iterations,
+        "cutbacks": response.cutbacks,
         "seconds": measured.seconds,
         "repeats": measured.repeats,
         "peak_memory": measured.peak_memory,
@@ -53,7 +53,7 @@ def all_cheapest(trade: Trade) -> list[Cheapest]:
     return [
         cheapest(trade, scope, quantity, target)
         for scope in SCOPES
-        for quantity in QUANTITIES
+        for quantity in KEPT
         if isfinite(trade.reference.uncertainty[scope][quantity])
         for target in TARGETS
     ]
@@ -147,7 +147,7 @@ def _range(row: Row, name: str) -> str | None:
 def stopped_text(trade: Trade) -> str:
     """Return one line for every setting without a completed and checked solution."""
     lines = [
-        f"  {point.case.label} [{point.case.scene.load_parameters}]: {point.measured.status}: {point.measured.message}"
+        f"  {point.case.label} [{point.case.scene.load_parameters}]: {point.measured.response.status}: {point.measured.response.message}"
         for point in trade.stopped
     ]
     return "\n".join([f"{len(lines)} of {len(trade.points)} settings without a solution:", *lines])

@@ -35,14 +35,3 @@ class Options:
     tolerance: float | None = None
     mesh: tuple[int, int] | None = None
     branch: Branch | None = None
-
-
-QUANTITIES = {
-    "force": "contact forces, of a scene without contact the support forces, over the largest",
-    "arc": "arc positions of the contacts over the length",
-    "moment": "support moments over the largest",
-    "tip": "positions of the beams' ends over the length",
-    "shape": "deflected axes at equal arc lengths, over the length",
-    "stress": "stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
-}
-"""What an accuracy can be asked for."""

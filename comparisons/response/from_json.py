@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import ContactEvent, ContactHistory, Grid, Response, SupportHistory
+from comparisons.response import ContactEvent, ContactHistory, CriticalPoint, Response, SupportHistory
+from comparisons.response.axis import SampledAxes, no_grid
 from comparisons.scene.rules import MISSING, FieldError
 from comparisons.scene.tables import InputError, read_text
 
@@ -55,32 +56,45 @@ def restated(data: Any) -> Response:
         beam: _support(item, f"supports.{beam}.", steps) for beam, item in _tables(data, "supports").items()
     }
     tips = _table(data, "tips")
-
-    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
-        arc, position = axes[beam]
-        return arc, position[k]
-
-    def grid(_: int) -> Grid:
-        raise NotImplementedError("a response read back has no mesh")
-
+    iterations = _given(data, "newton_iterations", (steps,))
     return Response(
         model=_text(data, "model"),
         scene=_text(data, "scene"),
         status=_text(data, "status"),
-        message="read back",
+        message=str(data.get("message", "read back")),
         completed=data["status"] == "COMPLETED",
         continuum=data.get("continuum") is True,
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,
         tips={beam: _numbers(tips, beam, (steps, 2), "tips.") for beam in tips},
-        newton_iterations=np.zeros(steps, dtype=np.int64),
-        cutbacks=0,
-        unknowns=0,
-        wall_seconds=0.0,
-        axis_line=axis_line,
-        grid=grid,
+        newton_iterations=np.zeros(steps, dtype=np.int64) if iterations is None else iterations,
+        cutbacks=data.get("cutbacks", 0),
+        unknowns=data.get("unknowns", 0),
+        wall_seconds=float(_numbers({"wall_seconds": 0.0, **data}, "wall_seconds", ())),
+        axis_line=SampledAxes(
+            arc_length={beam: arc for beam, (arc, _) in axes.items()},
+            position={beam: position for beam, (_, position) in axes.items()},
+        ),
+        grid=no_grid,
         events=_events(data),
+        index=_given(data, "index", (steps,)),
+        critical=tuple(_critical(point) for point in data.get("critical", ())),
+    )
+
+
+def _given(data: dict[str, Any], key: str, shape: tuple[int]) -> NDArray[np.int64] | None:
+    """Return a list of whole numbers; None where a program does not state it."""
+    return None if data.get(key) is None else _numbers(data, key, shape).astype(np.int64)
+
+
+def _critical(data: Any) -> CriticalPoint:
+    point = _table({"critical": data}, "critical")
+    mode = _table(point, "mode")
+    return CriticalPoint(
+        kind=_text(point, "kind"),
+        load_parameter=float(_numbers(point, "load_parameter", ())),
+        mode={beam: _numbers(mode, beam, (None, 2), "critical.mode.") for beam in mode},
     )
 
 

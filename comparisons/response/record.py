@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,9 +183,10 @@ class Response:
     wall_seconds : float
         Time of the solution alone.
     axis_line : callable
-        ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k.
+        ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k; of a response
+        that was stored, `comparisons.response.axis.SampledAxes`.
     grid : callable
-        ``grid(k)``: the model's mesh and fields at load parameter k.
+        ``grid(k)``: the model's mesh and fields at load parameter k; a response that was stored has none.
     integration_error : float
         Estimated error of the integration inside exact elements, in positions over the longest beam's length, angles and forces over ``EI/L^2``.
     deformation : Deformation, optional
@@ -221,3 +222,33 @@ class Response:
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()
     certificate: "Certificate | None" = None
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations of the whole path."""
+        return int(self.newton_iterations.sum())
+
+
+def unanswered(status: str, message: str) -> Response:
+    """Return the response of a model that gave no answer, by a name and a sentence: no load parameter, no beam."""
+
+    def nothing(*_: object) -> NoReturn:
+        raise AssertionError("no load parameter was reached")
+
+    return Response(
+        model="",
+        scene="",
+        status=status,
+        message=message,
+        completed=False,
+        load_parameter=np.empty(0),
+        contacts={},
+        supports={},
+        tips={},
+        newton_iterations=np.empty(0, dtype=np.int64),
+        cutbacks=0,
+        unknowns=0,
+        wall_seconds=np.nan,
+        axis_line=nothing,
+        grid=nothing,
+    )

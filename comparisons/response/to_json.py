@@ -10,17 +10,16 @@ import numpy as np
 
 from comparisons.output import plain
 from comparisons.response import ContactEvent, Response, SupportHistory
+from comparisons.response.axis import sampled_axes
 from comparisons.version import versions
 
 CRITICAL = ("limit-point", "bifurcation")
 """Events that belong to the path and to no contact."""
-AXIS_POINTS = 41
-"""Points of every beam's axis in a JSON file."""
 
 
 def as_json(response: Response, **more: Any) -> str:
     """Return the response, and what else is to be stated, as JSON text; a value that is not a number is null."""
-    return to_text({**as_dict(response), **more})
+    return to_text({**as_dict(response), "versions": versions(), **more})
 
 
 def to_text(data: dict[str, Any]) -> str:
@@ -34,9 +33,12 @@ def as_dict(response: Response) -> dict[str, Any]:
     ``supports.{beam}`` holds moment and force of the beam's support, and those of a second one under ``other_end``: where a clamped
     beam's tip is moved, the first is the clamp and the other the force on the tip. ``events`` is null for a model that
     does not locate them. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every load parameter.
+    `comparisons.response.from_json.restated` reads all of it but the certificate.
     """
+    axes = sampled_axes(response)
     return {
         "status": response.status,
+        "message": response.message,
         "model": response.model,
         "continuum": response.continuum,
         "scene": response.scene,
@@ -53,7 +55,10 @@ def as_dict(response: Response) -> dict[str, Any]:
         },
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
         "tips": response.tips,
-        "axes": {beam: _axis(response, beam) for beam in response.tips},
+        "axes": {
+            beam: {"arc_length": arc, "position": axes.position[beam]}
+            for beam, arc in axes.arc_length.items()
+        },
         "events": None if response.events is None else [asdict(event) for event in response.events],
         "index": response.index,
         "critical": [
@@ -65,21 +70,6 @@ def as_dict(response: Response) -> dict[str, Any]:
         "cutbacks": response.cutbacks,
         "unknowns": response.unknowns,
         "wall_seconds": response.wall_seconds,
-        "versions": versions(),
-    }
-
-
-def _axis(response: Response, beam: str) -> dict[str, Any]:
-    """Arc lengths (m,) and positions (s, m, 2) of a beam's axis, thinned to what another program needs to draw or judge it."""
-    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
-    if not lines:
-        return {"arc_length": [], "position": []}
-    kept = np.unique(np.linspace(0, len(lines[0][0]) - 1, AXIS_POINTS).round().astype(int))
-    return {
-        "arc_length": lines[0][0][kept],
-        "position": np.array([np.interp(lines[0][0][kept], arc, x) for arc, line in lines for x in line.T])
-        .reshape(len(lines), 2, -1)
-        .transpose(0, 2, 1),
     }
 
 
@@ -112,7 +102,7 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
         ("stability", stability(response)),
         *([("certificate", response.certificate.line())] if response.certificate else []),
         ("unknowns", f"{response.unknowns}"),
-        ("Newton iterations", f"{response.newton_iterations.sum()}, cut-backs {response.cutbacks}"),
+        ("Newton iterations", f"{response.iterations}, cut-backs {response.cutbacks}"),
         ("seconds", f"{response.wall_seconds:.3f}"),
         *more,
     ]

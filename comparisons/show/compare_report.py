@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from comparisons.budget import PARTS, Budget, budget_rows
-from comparisons.models.translate import to_rod
 from comparisons.scene import Scene
 from comparisons.show.pages import (
     Section,
@@ -66,14 +65,12 @@ def _errors(rows: Sequence[Row], reference: str) -> Section:
 def _motion(
     scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path, reference: str
 ) -> Section:
-    rod = to_rod(scene)
     responses = {row.label: row.response for row in rows}
-    pair = None if rod.contact is None else rod.contact.pair
     return motion_section(
         "Shapes and histories",
         scene,
         responses,
-        tracks(responses, reference, scene=scene, pair=pair, beam=rod.beam.name),
+        tracks(responses, reference, scene),
         focus=reference,
         vtu={
             label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtu"

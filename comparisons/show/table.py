@@ -1,12 +1,12 @@
 """The table of a comparison: one row per run."""
 
-import csv
-import io
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from comparisons.errors import Errors
+from comparisons.output import csv_text
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.response import Response
 
 
@@ -30,7 +30,8 @@ HEADER = (
     "iterations",
     "seconds",
 )
-SHOWN = ("contact_force", "arc_position", "clamp_moment", "tip")
+SHOWN = ("force", "arc", "moment", "tip")
+"""The quantities of the middle columns."""
 
 
 def table_text(rows: list[Row], reference: str) -> str:
@@ -51,10 +52,10 @@ def table_text(rows: list[Row], reference: str) -> str:
 
 def cells(row: Row) -> tuple[str, ...]:
     """Return a run as text under `HEADER`."""
-    shown = ["-" if row.errors is None else f"{getattr(row.errors, name):.1e}" for name in SHOWN]
+    shown = ["-" if row.errors is None else f"{row.errors['path'][name]:.1e}" for name in SHOWN]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
-    iterations, seconds = str(response.newton_iterations.sum()), f"{response.wall_seconds:.3f}"
+    iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
     return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
 
 
@@ -74,18 +75,15 @@ def table_csv(rows: list[Row]) -> str:
             "status": row.response.status,
             "unknowns": row.response.unknowns,
             **{
-                f"error_{item.name}": None if row.errors is None else getattr(row.errors, item.name)
-                for item in fields(Errors)
+                f"error_{scope}_{name}": row.errors and row.errors[scope][name]
+                for scope in SCOPES
+                for name in KEPT
             },
             "stable": _stable(row.response),
-            "newton_iterations": int(row.response.newton_iterations.sum()),
+            "newton_iterations": row.response.iterations,
             "cutbacks": row.response.cutbacks,
             "wall_seconds": row.response.wall_seconds,
         }
         for row in rows
     ]
-    text = io.StringIO()
-    writer = csv.DictWriter(text, records[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(records)
-    return text.getvalue()
+    return csv_text(records)

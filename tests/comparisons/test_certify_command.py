@@ -107,5 +107,5 @@ def test_a_response_read_back_is_the_response(stored: Path) -> None:
     assert read.contacts[PAIR].vector.tolist() == own.contacts[PAIR].vector.tolist()
     assert read.events == own.events
     arc, line = read.axis_line("cantilever", 49)
-    assert len(arc) == 41
+    assert len(arc) == 101
     assert line[-1].tolist() == own.axis_line("cantilever", 49)[1][-1].tolist()

@@ -14,7 +14,6 @@ from comparisons.cli import main
 from comparisons.compare import PAPER, RUNS, compare
 from comparisons.errors import errors
 from comparisons.models.options import ModelError, Options
-from comparisons.models.translate import to_rod
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
 
@@ -50,8 +49,8 @@ def test_compare_writes_every_file_and_the_same_numbers(
     for label, run in by_label.items():
         assert run["status"] == "COMPLETED"
         if run["errors"] is not None:
-            assert run["errors"]["contact_force"] == float(rows[label]["error_contact_force"])
-    force = {label: run["errors"]["contact_force_end"] for label, run in by_label.items() if run["errors"]}
+            assert run["errors"]["path"]["force"] == float(rows[label]["error_path_force"])
+    force = {label: run["errors"]["end"]["force"] for label, run in by_label.items() if run["errors"]}
     assert [force[run.label] < bar for run, bar in zip(PAPER, (1e-2, 3e-3, 6e-4), strict=True)] == [True] * 3
     assert force["TSM mixed, 10 elements"] < 1e-4
     assert force["TSM mixed, 20 elements"] < 5e-6
@@ -135,8 +134,6 @@ def test_models_on_different_branches_end_with_status_3(
 def test_discretisation_alone_is_no_other_branch(name: str) -> None:
     """The coarsest beams are far from the limit: a twentieth of it."""
     scene = replace(load_scene(name), load_parameters=20)
-    rod = to_rod(scene)
-    pair = None if rod.contact is None else rod.contact.pair
     coarse = models.solve(scene, "tsm", Options(element="timoshenko", elements=10))
-    found = errors(coarse, models.solve(scene, "rod"), pair=pair, beam=rod.beam.name, length=rod.beam.length)
-    assert max(found.contact_force, found.clamp_moment, found.tip) < compared.APART / 20
+    found = errors(coarse, models.solve(scene, "rod"), scene)["path"]
+    assert max(found[name] for name in compared.BRANCH) < compared.APART / 20

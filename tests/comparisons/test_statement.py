@@ -7,12 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.errors import errors
+from comparisons.cases import Case, Measurement, measure
+from comparisons.claims.gate import gate
+from comparisons.errors import difference, errors
 from comparisons.models import solve
 from comparisons.models.options import Options
+from comparisons.quantities import KEPT
 from comparisons.response import Response
 from comparisons.response.to_json import as_json, summary
-from comparisons.scene import PinSpec, load_scene
+from comparisons.scene import PinSpec, Scene, load_scene
+from comparisons.show.pages import tracks
 from comparisons.show.table import Row, table_csv, table_text
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -32,7 +36,7 @@ def beams() -> Response:
 def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
     data = json.loads(as_json(beams))
     assert list(data) == [
-        "status", "model", "scene", "load_parameter", "contacts", "supports", "tips", "axes", "events",
+        "status", "message", "model", "scene", "load_parameter", "contacts", "supports", "tips", "axes", "events",
         "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
     assert list(data["contacts"][PAIR]) == ["force", "vector", "arc_position", "gap", "slip_off"]
@@ -98,27 +102,28 @@ def test_errors_are_relative_to_the_largest_reference(rod: Response) -> None:
         contact, force=contact.force + 0.01 * contact.force.max(), arc_position=contact.arc_position - 0.03
     )
     tips = {BEAM: rod.tips[BEAM] + np.array([0.03, 0.04])}
-    found = errors(replace(rod, contacts={PAIR: off}, tips=tips), rod, pair=PAIR, beam=BEAM, length=2.0)
-    assert found.contact_force == pytest.approx(0.01)
-    assert found.contact_force_end == pytest.approx(0.01)
-    assert found.arc_position == pytest.approx(0.015)
-    assert found.tip == pytest.approx(0.025)
-    assert found.clamp_moment == 0.0
+    twice_as_long = replace(SCENE, beams=(replace(SCENE.beams[0], end=(2.0, 0.0)),))
+    found = errors(replace(rod, contacts={PAIR: off}, tips=tips), rod, twice_as_long)
+    assert found["path"]["force"] == pytest.approx(0.01)
+    assert found["end"]["force"] == pytest.approx(0.01)
+    assert found["path"]["arc"] == pytest.approx(0.015)
+    assert found["path"]["tip"] == pytest.approx(0.025)
+    assert found["path"]["moment"] == 0.0
 
 
 def test_errors_of_a_stopped_run_are_unknown(rod: Response) -> None:
     stopped = replace(rod, load_parameter=rod.load_parameter[:2])
-    assert np.isnan(errors(stopped, rod, pair=PAIR, beam=BEAM, length=1.0).contact_force)
+    assert np.isnan(errors(stopped, rod, SCENE)["path"]["force"])
 
 
 def test_a_contact_lost_by_one_model_alone_is_no_agreement(rod: Response) -> None:
     lost = replace(rod.contacts[PAIR], arc_position=np.full(5, np.nan))
-    found = errors(replace(rod, contacts={PAIR: lost}), rod, pair=PAIR, beam=BEAM, length=1.0)
-    assert np.isnan(found.arc_position)
+    found = errors(replace(rod, contacts={PAIR: lost}), rod, SCENE)
+    assert found["path"]["arc"] == np.inf
 
 
 def test_table_and_csv_hold_the_same_rows(rod: Response, beams: Response) -> None:
-    found = errors(beams, rod, pair=PAIR, beam=BEAM, length=1.0)
+    found = errors(beams, rod, SCENE)
     stopped = replace(beams, completed=False, status="CUTBACK_FLOOR")
     rows = [
         Row(label="beams", response=beams, errors=found),
@@ -126,10 +131,33 @@ def test_table_and_csv_hold_the_same_rows(rod: Response, beams: Response) -> Non
         Row(label="rod", response=rod, errors=None),
     ]
     lines = table_text(rows, "exact rod").splitlines()
-    assert f"{found.contact_force:.1e}" in lines[-3]
+    assert f"{found['path']['force']:.1e}" in lines[-3]
     assert "stopped (CUTBACK_FLOOR)" in lines[-2]
     assert lines[-1].split()[:4] == ["rod", "2", "-", "-"]
     assert len({len(line) for line in lines[3:]}) == 1
     records = list(csv.DictReader(table_csv(rows).splitlines()))
-    assert float(records[0]["error_contact_force"]) == found.contact_force
-    assert records[2]["error_contact_force"] == ""
+    assert float(records[0]["error_path_force"]) == found["path"]["force"]
+    assert records[2]["error_path_force"] == ""
+
+
+@pytest.mark.parametrize("scene", [SCENE, replace(load_scene("ks-tied-tip"), load_parameters=5)])
+def test_one_run_has_one_error_wherever_it_is_stated(scene: Scene) -> None:
+    """The difference of an accuracy and a gate, the errors of a comparison, a page's history and a stored case."""
+    case = Case(scene=scene, model="tsm", options=Options(elements=5))
+    rod, beams = solve(scene, "rod"), solve(scene, "tsm", Options(elements=5))
+    bounds = gate(scene, "tsm", case.options, dict.fromkeys(KEPT, 1.0)).bounds
+    stored = Measurement.from_json(measure(case, repeats=1).to_json()).response
+    exact = Measurement.from_json(measure(Case(scene=scene, model="rod"), repeats=1).to_json()).response
+    compared, kept = errors(beams, rod, scene)["path"], errors(stored, exact, scene)["path"]
+    for item in bounds:
+        name = item.name
+        assert item.error == difference(beams, rod, scene, name)
+        if name == "arc" and not scene.contacts:
+            assert np.isnan([compared[name], kept[name]]).all()
+            continue
+        assert compared[name] == item.error
+        assert kept[name] == pytest.approx(item.error, rel=1e-9, abs=1e-14)
+    shown = {"force": 0, "moment": -1} if not scene.contacts else {"force": 0, "arc": 1, "moment": 2}
+    page = tracks({"rod": rod, "beams": beams}, "rod", scene)
+    for name, track in shown.items():
+        assert page[track].errors["beams"].max() == compared[name]

@@ -3,33 +3,23 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import tsm
-from comparisons.exact.coupled import coupled_rods
-from comparisons.exact.rod import rod_under_pin
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, single
+from comparisons.models.translate import to_structure
+from comparisons.scene import load_scene
 
-EA, GA, EI = 2e7 * 3e-4, 7.142e6 * 3e-4, 2e7 * 2.2e-8
 STEPS = 76
+SCENE = load_scene("double-beam")
 
 
 def double_beam(elements=10, element="mixed", x=0.8):
-    section = tsm.Section(EA=EA, GA=GA, EI=EI)
-    return tsm.Structure(
-        beams=tuple(
-            tsm.Beam(name=name, start=(0, y), end=(1, y), section=section, elements=elements, element=element)
-            for name, y in (("upper", 0.0), ("lower", -0.2))
-        ),
-        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
-        pins=(tsm.Pin(name="pin", path=((x, 0.0), (x, -0.76))),),
-        contacts=(
-            tsm.ContactPair(node="pin", beam="upper", side="left"),
-            tsm.ContactPair(node="pin", beam="lower", side="left"),
-            tsm.ContactPair(node="upper.end", beam="lower", side="left"),
-        ),
-    )
+    pin = replace(SCENE.pins[0], start=(x, 0.0))
+    return to_structure(replace(SCENE, pins=(pin,)), elements=elements, element=element)
 
 
 @pytest.fixture(scope="module")
@@ -48,24 +38,22 @@ def depth(event):
 def test_events_in_order(result):
     events = [(e.kind, e.pair) for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]
     assert events == [
-        (tsm.EventKind.TOUCH, "upper.end->lower"),
-        (tsm.EventKind.SLIP_OFF, "pin->upper"),
-        (tsm.EventKind.TOUCH, "pin->lower"),
-        (tsm.EventKind.RELEASE, "upper.end->lower"),
-        (tsm.EventKind.SLIP_OFF, "pin->lower"),
+        (tsm.EventKind.TOUCH, TIP),
+        (tsm.EventKind.SLIP_OFF, UPPER),
+        (tsm.EventKind.TOUCH, LOWER),
+        (tsm.EventKind.RELEASE, TIP),
+        (tsm.EventKind.SLIP_OFF, LOWER),
     ]
 
 
 def test_coupled_stage_matches_the_coupled_rods(result):
     depths = 0.76 * result.load_parameter
     stage = (depths > 0.15) & (depths < 0.535)
-    exact = coupled_rods(depths[stage], EA=EA, GA=GA, EI=EI, length=1.0, spacing=0.2, pin_x=0.8)
-    assert result.contacts["pin->upper"].force[stage] == pytest.approx(np.hypot(*exact.pin_force.T), rel=1e-4)
-    assert result.contacts["upper.end->lower"].force[stage] == pytest.approx(
-        np.hypot(*exact.tip_force.T), rel=1e-4
-    )
-    touch = found(result, tsm.EventKind.TOUCH, "upper.end->lower")
-    slip = found(result, tsm.EventKind.SLIP_OFF, "pin->upper")
+    exact = coupled(SCENE, depths[stage])
+    assert result.contacts[UPPER].force[stage] == pytest.approx(np.hypot(*exact.pin_force.T), rel=1e-4)
+    assert result.contacts[TIP].force[stage] == pytest.approx(np.hypot(*exact.tip_force.T), rel=1e-4)
+    touch = found(result, tsm.EventKind.TOUCH, TIP)
+    slip = found(result, tsm.EventKind.SLIP_OFF, UPPER)
     assert depth(touch) == pytest.approx(exact.touch_depth, abs=1e-6)
     assert depth(slip) == pytest.approx(exact.end_depth, abs=1e-6)
 
@@ -73,15 +61,12 @@ def test_coupled_stage_matches_the_coupled_rods(result):
 def test_single_stages_match_the_exact_rod(result):
     depths = 0.76 * result.load_parameter
     before, after = depths < 0.149, (depths > 0.54) & (depths < 0.73)
-    for stage, pair, offset in ((before, "pin->upper", 0.0), (after, "pin->lower", 0.2)):
-        path = [(0.8, 0.0), *((0.8, d - offset) for d in depths[stage])]
-        exact = rod_under_pin(path, EA=EA, GA=GA, EI=EI, length=1.0)
+    for stage, pair, offset in ((before, UPPER, 0.0), (after, LOWER, 0.2)):
+        exact = single(SCENE, depths[stage] - offset)
         assert result.contacts[pair].force[stage] == pytest.approx(exact.magnitude[1:], rel=1e-4)
         assert result.contacts[pair].arc_position[stage] == pytest.approx(exact.arc_position[1:], abs=1e-4)
-    leave = found(result, tsm.EventKind.SLIP_OFF, "pin->lower")
-    path = [(0.8, 0.0), (0.8, 0.6)]
-    exact = rod_under_pin(path, EA=EA, GA=GA, EI=EI, length=1.0)
-    assert depth(leave) - 0.2 == pytest.approx(0.6 * exact.slip_off, abs=1e-5)
+    leave = found(result, tsm.EventKind.SLIP_OFF, LOWER)
+    assert depth(leave) - 0.2 == pytest.approx(0.6 * single(SCENE, [0.6]).slip_off, abs=1e-5)
 
 
 def test_free_beams_are_straight_again(result):
@@ -92,9 +77,9 @@ def test_free_beams_are_straight_again(result):
 
 def test_work_of_the_pin_is_the_strain_energy_up_to_each_jump(result):
     """Gauss quadrature of the pin's power between touch and jumps; at a jump the energy falls by what the event reports."""
-    touch = found(result, tsm.EventKind.TOUCH, "upper.end->lower").load_parameter
-    first = found(result, tsm.EventKind.SLIP_OFF, "pin->upper")
-    second = found(result, tsm.EventKind.SLIP_OFF, "pin->lower")
+    touch = found(result, tsm.EventKind.TOUCH, TIP).load_parameter
+    first = found(result, tsm.EventKind.SLIP_OFF, UPPER)
+    second = found(result, tsm.EventKind.SLIP_OFF, LOWER)
     assert first.released > 0
     corners = [0.0, touch, first.load_parameter, second.load_parameter]
     gauss, weight = np.polynomial.legendre.leggauss(24)
@@ -128,7 +113,7 @@ def test_what_stops_the_papers_element():
 @pytest.mark.parametrize(("elements", "bound"), [(3, 1e-5), (10, 2e-7), (40, 1e-8)])
 def test_refinement_against_the_coupled_rods(elements, bound):
     t = np.array([0.31, 0.45]) / 0.76
-    exact = coupled_rods(0.76 * t, EA=EA, GA=GA, EI=EI, length=1.0, spacing=0.2, pin_x=0.8)
+    exact = coupled(SCENE, 0.76 * t)
     contacts = tsm.solve(double_beam(elements), t).contacts
-    assert contacts["upper.end->lower"].force == pytest.approx(np.hypot(*exact.tip_force.T), rel=bound)
-    assert contacts["pin->upper"].force == pytest.approx(np.hypot(*exact.pin_force.T), rel=bound)
+    assert contacts[TIP].force == pytest.approx(np.hypot(*exact.tip_force.T), rel=bound)
+    assert contacts[UPPER].force == pytest.approx(np.hypot(*exact.pin_force.T), rel=bound)

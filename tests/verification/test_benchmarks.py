@@ -6,18 +6,11 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.manual.frames import lee_limit, toggle_limits
+from comparisons.claims.problems.frames import LEE_UNIT, lee_limit, lee_scene, toggle_limits, toggle_scene
 from comparisons.exact.elastica import three_point_bending_limit
+from tests.verification.structures import cantilever, divided, limit_points, moved, raised, swapped
 
 STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)
-
-
-def cantilever(elements, *, section=STIFF, load=None, support=None):
-    return tsm.Structure(
-        beams=(tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=section, elements=elements),),
-        supports=(tsm.Support(beam="b", end="start"), *([support] if support else [])),
-        loads=(load,) if load else (),
-    )
 
 
 def fitted_order(errors, ratio=2.0):
@@ -31,7 +24,15 @@ def test_roll_up(turns, capsys):
     for elements in (10 * turns, 20 * turns, 40 * turns):
         moment = 2 * np.pi * turns
         t = np.arange(1, 21) / 20
-        result = tsm.solve(cantilever(elements, load=tsm.Load(beam="b", end="end", moment=moment)), t)
+        result = tsm.solve(
+            cantilever(
+                section=STIFF,
+                elements=elements,
+                element="mixed",
+                load=tsm.Load(beam="b", end="end", moment=moment),
+            ),
+            t,
+        )
         angle = moment * t
         exact = np.stack([np.sin(angle) / angle, (1 - np.cos(angle)) / angle], axis=1)
         errors.append(np.abs(result.tips["b"] - exact).max())
@@ -49,7 +50,12 @@ def test_tip_load(load, deflection):
     errors = []
     for elements in (5, 10, 20):
         result = tsm.solve(
-            cantilever(elements, load=tsm.Load(beam="b", end="end", force=(0.0, float(load)))),
+            cantilever(
+                section=STIFF,
+                elements=elements,
+                element="mixed",
+                load=tsm.Load(beam="b", end="end", force=(0.0, float(load))),
+            ),
             np.arange(1, 6) / 5,
         )
         errors.append(abs(result.tips["b"][-1, 1] / deflection - 1))
@@ -57,33 +63,9 @@ def test_tip_load(load, deflection):
     assert errors[0] > 12 * errors[1]
 
 
-def lees_frame(elements):
-    """Column and beam of 120 cm, E = 720 kN/cm^2, A = 6, I = 2, hinged; load 24 cm from the corner (Lee et al. 1968)."""
-    section = tsm.Section(EA=4320.0, GA=4.32e9, EI=1440.0)
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(name="column", start=(0, 0), end=(0, 120), section=section, elements=elements),
-            tsm.Beam(
-                name="near", start=(0, 120), end=(24, 120), section=section, elements=max(1, elements // 4)
-            ),
-            tsm.Beam(name="far", start=(24, 120), end=(120, 120), section=section, elements=elements),
-        ),
-        supports=(
-            tsm.Support(beam="column", end="start", rotation=None),
-            tsm.Support(beam="far", end="end", rotation=None),
-        ),
-        loads=(tsm.Load(beam="near", end="end", force=(0.0, -0.1)),),
-    )
-
-
-def limits(structure, arc_length, steps):
-    result = tsm.trace(structure, arc_length=arc_length, steps=steps)
-    return [e.load_parameter for e in result.events if e.kind is tsm.EventKind.LIMIT_POINT], result
-
-
 def test_lees_frame():
     """Limit load P L^2/EI = 18.557 (Lee, Manuel & Rossow 1968; Simo & Vu-Quoc 1986 give 18.532 kN/10); snaps through and back."""
-    found = [limits(lees_frame(n), 0.3, 120)[0][0] * 0.1 * 120**2 / 1440 for n in (4, 8, 16)]
+    found = [limit_points(divided(lee_scene(), n), 0.3, 120)[0] * 0.1 * LEE_UNIT for n in (4, 8, 16)]
     assert found[-1] == pytest.approx(lee_limit(), rel=1e-6)
     assert found[-1] == pytest.approx(18.5567, abs=1e-4)
     assert found[-1] == pytest.approx(18.557, rel=1e-3)  # the literature's
@@ -92,23 +74,9 @@ def test_lees_frame():
     assert 3.3 < order < 4.7
 
 
-def toggle(elements):
-    """Williams' toggle (1964): half span 12.94328 in, rise .386 in, EA 1.885e6 lb, EI 9274 lb in^2, clamped."""
-    section = tsm.Section(EA=1.885e6, GA=1.885e10, EI=9274.0)
-    apex = (12.94328, 0.386)
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(name="left", start=(0.0, 0.0), end=apex, section=section, elements=elements),
-            tsm.Beam(name="right", start=apex, end=(25.88656, 0.0), section=section, elements=elements),
-        ),
-        supports=(tsm.Support(beam="left", end="start"), tsm.Support(beam="right", end="end")),
-        loads=(tsm.Load(beam="left", end="end", force=(0.0, -1.0)),),
-    )
-
-
 def test_williams_toggle():
     """Both limit points, 33.87 near v = .235 and 31.28 near v = .39 (Wood & Zienkiewicz 1977, by finite elements)."""
-    found = [limits(toggle(n), 0.01, 60)[0] for n in (8, 16)]
+    found = [limit_points(divided(toggle_scene(), n), 0.01, 60) for n in (8, 16)]
     assert found[-1] == pytest.approx(toggle_limits(), rel=1e-5)
     assert found[-1] == pytest.approx([33.870, 31.278], abs=1e-3)
     assert found[-1] == pytest.approx([33.87, 31.28], rel=1e-3)  # the literature's
@@ -117,7 +85,7 @@ def test_williams_toggle():
 
 def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
     """Pushing the apex down and reading the reaction gives the same two limits."""
-    structure = toggle(16)
+    structure = divided(toggle_scene(), 16)
     pushed = tsm.Structure(
         beams=structure.beams,
         supports=(*structure.supports, tsm.Support(beam="left", end="end", ux=None, uy=-0.6, rotation=None)),
@@ -125,17 +93,12 @@ def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
     result = tsm.solve(pushed, np.arange(1, 601) / 600)
     force = 2 * result.supports["right"].force[:, 1]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(force)))) + 1
-    assert force[turns] == pytest.approx(limits(structure, 0.01, 60)[0], rel=1e-4)
+    assert force[turns] == pytest.approx(limit_points(structure, 0.01, 60), rel=1e-4)
 
 
 def test_three_point_bending_has_its_limit():
     """Frictionless three-point bending, half span a: greatest P a^2/EI = 1.66795 at d/a = .476378 (elastica in closed form)."""
-    half = tsm.Structure(
-        beams=(tsm.Beam(name="b", start=(0.0, 0.0), end=(3.0, 0.0), section=STIFF, elements=30),),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=((1.0, 0.0), (1.0, 0.7))),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side="right"),),
-    )
+    half = cantilever(raised(1.0, 0.7), section=STIFF, length=3.0, elements=30, element="mixed")
     t = np.arange(1, 701) / 700
     result = tsm.solve(half, t)
     upward = -result.supports["b"].force[:, 1]
@@ -149,23 +112,6 @@ def test_three_point_bending_has_its_limit():
 
 def test_a_frame_does_not_care_where_it_stands():
     """Lee's frame turned by 1 rad, moved, and its beams given from the other end: the same limit load to 1e-10."""
-    plain, _ = limits(lees_frame(6), 0.3, 40)
-    turn = np.array([[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]])
-
-    def place(point):
-        return tuple((turn @ np.array(point, dtype=float) + [5.0, -7.0]).tolist())
-
-    frame = lees_frame(6)
-    beams = tuple(
-        tsm.Beam(name=b.name, start=place(b.end), end=place(b.start), section=b.section, elements=b.elements)
-        for b in frame.beams
-    )
-    moved = tsm.Structure(
-        beams=beams,
-        supports=(
-            tsm.Support(beam="column", end="end", rotation=None),
-            tsm.Support(beam="far", end="start", rotation=None),
-        ),
-        loads=(tsm.Load(beam="near", end="start", force=tuple((turn @ [0.0, -0.1]).tolist())),),
-    )
-    assert limits(moved, 0.3, 40)[0] == pytest.approx(plain, rel=1e-10)
+    frame = divided(lee_scene(), 6)
+    other = swapped(moved(frame, 1.0, [5.0, -7.0]))
+    assert limit_points(other, 0.3, 40) == pytest.approx(limit_points(frame, 0.3, 40), rel=1e-10)

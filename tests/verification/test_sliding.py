@@ -2,54 +2,46 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import tsm
-from comparisons.exact.rod import rod_under_pin
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
+from tests.verification.structures import (
+    KS,
+    KS_PATH,
+    PINS,
+    SECTIONS,
+    cantilever,
+    essentials,
+    forces,
+    mirrored,
+    moved,
+    oracle,
+    places,
+    raised,
+    slip_offs,
+    square,
+    steps,
+    swapped,
+)
 from tsm.elements import mixed_contact
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Properties
 
-PINS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 SLIP_OFF = (1.7814439389, 1.6861593947, 1.4716026278, 1.2107350431, 1.0524732309, 0.8625478871)
-EA, GA, EI, LENGTH = 2.1e11 * 0.005, 7.5e10 * 0.005, 2.1e11 * 0.001, 4.5
-SECTIONS = {
-    "4.1": (tsm.Section(EA=EA, GA=GA, EI=EI), LENGTH),
-    "4.2": (
-        tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6),
-        1.0,
-    ),
-    "4.3": (tsm.Section(EA=2e7 * 3e-4, GA=7.142e6 * 3e-4, EI=2e7 * 2.2e-8), 1.0),
-}
+SECTION, LENGTH = SECTIONS["4.1"]
 
 
-def cantilever(path, *, section="4.1", elements=18, element="mixed"):
+def mixed(path, *, section="4.1", elements=18):
+    """Cantilever of `mixed` elements with a section of [P] under one pin."""
     stiffness, length = SECTIONS[section]
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(
-                name="b",
-                start=(0.0, 0.0),
-                end=(length, 0.0),
-                section=stiffness,
-                elements=elements,
-                element=element,
-            ),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=tuple(path)),),
-        contacts=(tsm.ContactPair(node="p", beam="b"),),
-    )
+    return cantilever(tuple(path), section=stiffness, length=length, elements=elements, element="mixed")
 
 
 def slip_off(x, elements):
-    result = tsm.solve(cantilever(((x, 0.0), (x, 2.0)), elements=elements), np.arange(1, 21) / 20)
-    return 2.0 * next(e.load_parameter for e in result.events if e.kind is tsm.EventKind.SLIP_OFF)
+    return 2.0 * slip_offs(tsm.solve(mixed(raised(x, 2.0), elements=elements), steps(20)))[0]
 
 
 @pytest.mark.parametrize(("x", "exact"), list(zip(PINS, SLIP_OFF, strict=True)))
@@ -61,19 +53,12 @@ def test_slip_off_displacements(x, exact):
 
 def test_floor_is_the_fourth_power_of_the_shear_strain():
     """Up to gamma = F/GA = 3 %, many elements differ from the rod by 5 gamma^4, where the bow alone leaves gamma^2."""
-    depths = np.arange(1, 21) / 20 * 1.6
-    exact = rod_under_pin([(4.05, 0.0), *((4.05, d) for d in depths)], EA=EA, GA=GA, EI=EI, length=LENGTH)
-    gamma = exact.magnitude[1:] / GA
+    structure = mixed(raised(4.05, 1.6), elements=72)
+    exact = oracle(structure, steps(20)).magnitude[1:]
+    gamma = exact / SECTION.GA
     assert gamma.max() == pytest.approx(0.03, rel=0.02)
-    result = tsm.solve(cantilever(((4.05, 0.0), (4.05, 1.6)), elements=72), depths / 1.6)
-    error = np.abs(result.contacts["p->b"].force / exact.magnitude[1:] - 1)
+    error = np.abs(tsm.solve(structure, steps(20)).contacts["p0->b"].force / exact - 1)
     assert (error <= 5 * gamma**4 + 1e-9).all()
-
-
-def offsets():
-    """l_i/l beside a node: on it, one ulp to both sides, 1e-16 to 1e-1, the middle."""
-    powers = 10.0 ** np.arange(-16, 0)
-    return np.concatenate([[0.0, 0.5], powers, -powers])
 
 
 @pytest.mark.slow
@@ -82,13 +67,10 @@ def test_no_critical_area(section):
     """Places around every node, ten depths each: the same tolerance everywhere, no cut-back."""
     length = SECTIONS[section][1]
     elements, count = 11, 0
-    for node in range(1, elements):
-        x0 = length * node / elements
-        for x in (*(x0 + offsets() * length / elements), np.nextafter(x0, 0), np.nextafter(x0, 9)):
-            path = ((float(x), 0.0), (float(x), 0.02 * length))
-            taken = list(
-                tsm.march(cantilever(path, section=section, elements=elements), np.arange(1, 11) / 10)
-            )
+    for around in places(elements, length):
+        for x in around:
+            structure = mixed(raised(float(x), 0.02 * length), section=section, elements=elements)
+            taken = list(tsm.march(structure, steps(10)))
             assert [step.requested for step in taken] == [True] * 10
             assert sum(step.cutbacks for step in taken) == 0
             assert max(step.equilibrium.residuals[-1] for step in taken) <= 1e-9
@@ -102,8 +84,8 @@ def test_success_map(x):
     """20 step counts from 10 to 500: all complete, and no answer depends on the count."""
     reference = None
     for count in np.unique(np.round(np.geomspace(1, 50, 20)).astype(int) * 10):
-        result = tsm.solve(cantilever(((x, 0.0), (x, 0.8))), np.arange(1, count + 1) / count)
-        tenths = result.contacts["p->b"].force[count // 10 - 1 :: count // 10]
+        result = tsm.solve(mixed(raised(x, 0.8)), steps(count))
+        tenths = result.contacts["p0->b"].force[count // 10 - 1 :: count // 10]
         reference = tenths if reference is None else reference
         assert tenths == pytest.approx(reference, rel=1e-8)
 
@@ -115,42 +97,13 @@ def test_a_thousand_cycles_leave_nothing_behind():
     path = [(4.1, -0.05)]
     for _ in range(cycles):
         path += [(4.1, 0.05), (4.1, -0.05)]
-    result = tsm.solve(cantilever(tuple(path)), np.arange(1, 2 * cycles + 1) / (2 * cycles))
-    force = result.contacts["p->b"].force
+    result = tsm.solve(mixed(path), steps(2 * cycles))
+    force = result.contacts["p0->b"].force
     assert np.abs(force[0::2] / force[0] - 1).max() <= 1e-10
     assert (force[1::2] == 0).all()
     assert np.abs(result.tips["b"][1::2] - [LENGTH, 0.0]).max() <= 1e-10 * LENGTH
-    kinds = [e.kind for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]
+    kinds = [kind for kind, _ in essentials(result)]
     assert kinds == [tsm.EventKind.TOUCH, tsm.EventKind.RELEASE] * cycles
-
-
-def moved(structure, turn, shift):
-    """Structure turned about the origin, then shifted; prescribed displacements and loads turn with it."""
-
-    def place(point):
-        return tuple((turn @ np.array(point) + shift).tolist())
-
-    def turned(vector):
-        return tuple((turn @ np.array(vector)).tolist())
-
-    supports = []
-    for support in structure.supports:
-        ux, uy = turned((support.ux, support.uy))
-        supports.append(replace(support, ux=ux, uy=uy))
-    return replace(
-        structure,
-        beams=tuple(replace(b, start=place(b.start), end=place(b.end)) for b in structure.beams),
-        supports=tuple(supports),
-        pins=tuple(replace(pin, path=tuple(place(point) for point in pin.path)) for pin in structure.pins),
-        loads=tuple(replace(load, force=turned(load.force)) for load in structure.loads),
-    )
-
-
-def forces(structure, t):
-    """Contact forces and support moments, which no rigid motion changes."""
-    result = tsm.solve(structure, t)
-    contacts = [contact.force for contact in result.contacts.values()]
-    return np.array([*contacts, *(support.moment for support in result.supports.values())])
 
 
 SCENES = {
@@ -169,35 +122,22 @@ def test_objectivity(name):
     """1,000 random rigid motions of a scene change no force and no moment by more than 1e-10 of the largest."""
     rng = np.random.default_rng(7)
     structure, t = to_structure(load_scene(name), elements=10), np.array(SCENES[name])
-    plain = forces(structure, t)
+    plain = forces(tsm.solve(structure, t))
     length = structure.beams[0].length
     worst = 0.0
     for _ in range(1000):
-        angle = rng.uniform(-np.pi, np.pi)
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        found = forces(moved(structure, turn, rng.normal(size=2) * length), t)
+        other = moved(structure, rng.uniform(-np.pi, np.pi), rng.normal(size=2) * length)
+        found = forces(tsm.solve(other, t))
         worst = max(worst, float(np.abs(found - plain).max() / np.abs(plain).max()))
     assert worst <= 1e-10
 
 
 def test_end_swap_and_mirror():
     """The beam named from its other end, or everything mirrored: the same force, the other side."""
-    path = ((0.9, 0.0), (0.6, 0.4))
-    structure = cantilever(path, section="4.2")
-    force = tsm.solve(structure, np.array([0.5, 1.0])).contacts["p->b"].force
-    swapped = replace(
-        structure,
-        beams=(replace(structure.beams[0], start=(1.0, 0.0), end=(0.0, 0.0)),),
-        supports=(tsm.Support(beam="b", end="end"),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side="left"),),
-    )
-    mirrored = replace(
-        structure,
-        pins=(tsm.Pin(name="p", path=tuple((x, -y) for x, y in path)),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side="left"),),
-    )
-    for other in (swapped, mirrored):
-        found = tsm.solve(other, np.array([0.5, 1.0])).contacts["p->b"]
+    structure = mixed(((0.9, 0.0), (0.6, 0.4)), section="4.2")
+    force = tsm.solve(structure, steps(2)).contacts["p0->b"].force
+    for other in (swapped(structure), mirrored(structure)):
+        found = tsm.solve(other, steps(2)).contacts["p0->b"]
         assert found.force == pytest.approx(force, rel=1e-10)
 
 
@@ -238,14 +178,14 @@ def test_either_neighbour_as_owner(shear):
 
 def test_shear_turns_the_force_at_a_node_by_less_than_the_kink():
     """In equilibrium with the contact on a node, the other neighbour's normal differs by less than the kink lam/GA."""
-    structure = cantilever(((4.05, 0.0), (4.05, 1.6)))
-    result = tsm.solve(structure, np.arange(1, 9) / 8)
+    structure = mixed(raised(4.05, 1.6))
+    result = tsm.solve(structure, steps(8))
     event = next(e for e in result.events if e.kind is tsm.EventKind.PASS_THROUGH and e.arc_position > 4.2)
     low, high = event.load_parameter - 0.02, event.load_parameter + 0.02
     for _ in range(60):
         t = (low + high) / 2
         at = tsm.solve(structure, np.array([0.5 * t, t]))
-        low, high = (t, high) if at.contacts["p->b"].arc_position[-1] < event.arc_position else (low, t)
+        low, high = (t, high) if at.contacts["p0->b"].arc_position[-1] < event.arc_position else (low, t)
     model, state = at.model, at.equilibria[-1].state
     touch = state.touches[0]
     assert touch is not None
@@ -262,7 +202,7 @@ def test_shear_turns_the_force_at_a_node_by_less_than_the_kink():
         assert np.abs(gradient[8:10]).max() <= 1e-8
         across.append(abs(gradient[10]) / np.hypot(*force))
     assert across[0] <= 1e-9
-    assert across[1] <= np.hypot(*force) / GA
+    assert across[1] <= np.hypot(*force) / SECTION.GA
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
@@ -277,13 +217,10 @@ def test_shear_turns_the_force_at_a_node_by_less_than_the_kink():
 )
 def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
     """Slender beams and random pins, whose whole way in one step once ended on equilibria with a hundred times the energy."""
-    section = tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
-    structure = cantilever(path, elements=10)
-    beam = replace(structure.beams[0], end=(1.0, 0.0), section=section)
-    structure = replace(structure, beams=(beam,))
-    few, many = (tsm.solve(structure, np.arange(1, n + 1) / n) for n in (count, 50))
+    structure = cantilever(path, section=square(height), elements=10, element="mixed")
+    few, many = (tsm.solve(structure, steps(n)) for n in (count, 50))
     assert few.strain_energy[-1] == pytest.approx(many.strain_energy[-1], rel=1e-6)
-    assert few.contacts["p->b"].force[-1] == pytest.approx(many.contacts["p->b"].force[-1], rel=1e-6)
+    assert few.contacts["p0->b"].force[-1] == pytest.approx(many.contacts["p0->b"].force[-1], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -296,12 +233,10 @@ def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
 )
 def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path):
     """At the slip-off no dead load in place of the contact has an equilibrium nearby; exact elements jump to the same energy."""
-    section = tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
-    base = cantilever(path, elements=10)
-    beam = replace(base.beams[0], end=(1.0, 0.0), section=section)
+    given = {"section": square(height)}
     ours, exact = (
-        tsm.solve(replace(base, beams=(one,)), np.arange(1, 51) / 50)
-        for one in (beam, replace(beam, elements=1, element="exact"))
+        tsm.solve(structure, steps(50))
+        for structure in (cantilever(path, elements=10, element="mixed", **given), cantilever(path, **given))
     )
     slips = [next(e for e in r.events if e.kind is tsm.EventKind.SLIP_OFF) for r in (ours, exact)]
     assert slips[0].load_parameter == pytest.approx(slips[1].load_parameter, abs=1e-5)
@@ -311,14 +246,11 @@ def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path):
 
 def error_on_ks(elements, *, shear=1.0, stretch=1.0):
     """Error of the force against the rod, and the largest shear strain."""
-    section, _ = SECTIONS["4.2"]
-    given = {"EA": stretch * section.EA, "GA": shear * section.GA, "EI": section.EI}
-    path = [(1 - t, 2 / np.pi * t) for t in np.linspace(0, 1, 6)]
-    exact = np.hypot(*rod_under_pin(np.array(path), length=1.0, **given).force[1:].T)
-    base = cantilever((path[0], path[-1]), section="4.2", elements=elements)
-    structure = replace(base, beams=(replace(base.beams[0], section=tsm.Section(**given)),))
-    force = tsm.solve(structure, np.arange(1, 6) / 5).contacts["p->b"].force
-    return np.abs(force - exact).max() / exact.max(), exact.max() / given["GA"]
+    section = tsm.Section(EA=stretch * KS.EA, GA=shear * KS.GA, EI=KS.EI)
+    structure = cantilever(KS_PATH, section=section, elements=elements, element="mixed")
+    exact = oracle(structure, steps(5)).magnitude[1:]
+    force = tsm.solve(structure, steps(5)).contacts["p0->b"].force
+    return np.abs(force - exact).max() / exact.max(), exact.max() / section.GA
 
 
 @pytest.mark.parametrize("shear", [1 / 30, 0.1])

@@ -1,39 +1,30 @@
 """The error that a model may have, fixed before anything is run: what "right" means in a cell."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement
+from comparisons.claims.claim import Allowance
 from comparisons.models import MODELS
 from comparisons.models.theory import Bending
+from comparisons.response import Response
 from comparisons.scene import BeamSpec
 
 LARGEST = 0.2
 """An answer further off is wrong, whatever the theory of its model says: it should have stopped."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Allowance:
-    """Largest relative error allowed, and its largest part in words."""
-
-    error: float
-    why: str
-
-
-def bending(beam: BeamSpec, exact: Measurement) -> Bending:
+def bending(beam: BeamSpec, exact: Response) -> Bending:
     """Return how much the answer `exact` bends `beam`, clamped along +x."""
     if not len(exact.load_parameter):
         return Bending()
-    force = -exact.support_force[beam.name]
-    moment = np.abs(exact.moment[beam.name])
+    force = -exact.supports[beam.name].force
+    moment = np.abs(exact.supports[beam.name].moment)
     loaded = np.hypot(*force.T) > 0.0
     # beyond a right angle the moment is largest where the axis points along the force, and there m^2 = 2 F EI
     turn = np.abs(np.arctan2(-force[loaded, 0], force[loaded, 1]))
     inner = np.where(turn > np.pi / 2, np.sqrt(2 * np.hypot(*force[loaded].T) * beam.EI), 0.0)
     largest_moment = max(float(moment.max(initial=0.0)), float(inner.max(initial=0.0)))
-    arcs = [values[np.isfinite(values)].min(initial=beam.length) for values in exact.arc_position.values()]
+    arcs = [np.fmin.reduce(contact.arc_position, initial=beam.length) for contact in exact.contacts.values()]
     return Bending(
         force=float(np.hypot(*force.T).max(initial=0.0)) * beam.length**2 / beam.EI,
         curvature=largest_moment * beam.length / beam.EI,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.cases.case import Case
-from comparisons.claims.extremes.allowance import Allowance
+from comparisons.claims.claim import Allowance
 from comparisons.claims.extremes.cell import Cell
 from comparisons.claims.extremes.checks import Against, Circle
 from comparisons.claims.extremes.rows import (

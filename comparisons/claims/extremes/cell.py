@@ -1,25 +1,13 @@
 """One cell of the matrix, and its verdict."""
 
 from dataclasses import dataclass
-from enum import StrEnum
-
-import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.run import COMPLETED
 from comparisons.cases.store import UNSETTLED
-from comparisons.claims.extremes.checks import Check, Finding, Results
+from comparisons.claims.claim import Finding, Verdict, decided
+from comparisons.claims.extremes.checks import Check, Results
 from comparisons.models.verify import CHECK_FAILED
-
-
-class Verdict(StrEnum):
-    """What becomes of a cell."""
-
-    RIGHT = "right"
-    STOPPED = "stopped"
-    WITHDRAWN = "withdrawn"
-    """An answer that its own checks refuse: neither right nor a stop in time."""
-    WRONG = "wrong"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +78,7 @@ class Judgement:
     @property
     def decisive(self) -> Finding | None:
         """The finding that comes nearest to what is allowed, or exceeds it most."""
-        return max(self.findings, key=_share, default=None)
+        return max(self.findings, key=lambda finding: finding.share, default=None)
 
     @property
     def sentence(self) -> str:
@@ -99,27 +87,21 @@ class Judgement:
         if self.decisive is None:
             return f"{place}: {self.message}"
         found = self.decisive
-        return f"{place}, error {found.error:.2g} against {found.against}, allowed {found.allowed:.2g} ({found.why})"
-
-
-def _share(finding: Finding) -> float:
-    """Return the error as a part of what is allowed, infinite if it is no number."""
-    share = finding.error / finding.allowed
-    return share if np.isfinite(share) else np.inf
+        return f"{place}, error {found.error:.2g} against {found.name}, allowed {found.allowed:.2g} ({found.why})"
 
 
 def judged(cell: Cell, results: Results) -> Judgement:
     """Return the verdict on `cell` by the `results` of its `cases`."""
-    own = results[cell.case]
+    own = results[cell.case].response
     reached = bool(len(own.load_parameter))
     found = [check.finding(cell.case, own, results) for check in cell.checks] if reached else []
     findings = tuple(finding for finding in found if finding is not None)
     if own.status == CHECK_FAILED:
         verdict = Verdict.WITHDRAWN
-    elif own.status in UNSETTLED or not all(finding.holds for finding in findings):
+    elif own.status in UNSETTLED:
         verdict = Verdict.WRONG
     else:
-        verdict = Verdict.RIGHT if own.status == COMPLETED else Verdict.STOPPED
+        verdict = decided(findings, completed=own.status == COMPLETED)
     return Judgement(
         cell=cell,
         verdict=verdict,
@@ -129,5 +111,5 @@ def judged(cell: Cell, results: Results) -> Judgement:
         findings=findings,
         iterations=own.iterations,
         cutbacks=own.cutbacks,
-        seconds=own.seconds,
+        seconds=results[cell.case].seconds,
     )

@@ -5,15 +5,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from comparisons.accuracy.quantities import difference
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance, bending
+from comparisons.claims.claim import Allowance, Finding
+from comparisons.claims.extremes.allowance import LARGEST, allowance, bending
 from comparisons.claims.extremes.units import in_units_of
+from comparisons.errors import difference
 from comparisons.exact.end_loads import tip_under_moment
 from comparisons.models import MODELS, TSM
 from comparisons.models.theory import FLOOR, chord_term, element_lengths, ordinal
-from comparisons.response import Array
+from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec
 from tsm.elements import ClosedForm
 
@@ -25,31 +26,6 @@ NEXT_TERM = 1.05
 
 Results = Mapping[Case, Measurement]
 """What was measured."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """An error, what is allowed, and why that much.
-
-    Attributes
-    ----------
-    against : str
-        What the answer is compared with.
-    error, allowed : float
-        Relative; infinite where one of the two has no answer.
-    why : str
-        Where the allowed error comes from.
-    """
-
-    against: str
-    error: float
-    allowed: float
-    why: str
-
-    @property
-    def holds(self) -> bool:
-        """Whether the error is within what is allowed; nan is not."""
-        return self.error <= self.allowed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,19 +51,19 @@ class Against:
         """The cases that must have been measured."""
         return (self.case,)
 
-    def finding(self, case: Case, own: Measurement, results: Results) -> Finding | None:
-        """Return the error of `own`, measured on `case`; infinite where it went further than its reference.
+    def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
+        """Return the error of `own`, to `case`; infinite where it went further than its reference.
 
         A model of another rod, the elastica, may go further; None if the reference has nothing to compare it with, or is too soft to be.
         """
-        other, beam = results[self.case], self.case.scene.beams[0]
+        other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed = self.allowed or allowance(case, bending(beam, other))
         another = not MODELS[case.model].rod
         if another and (allowed.error > LARGEST or not len(other.load_parameter)):
             return None
         if not another and len(own.load_parameter) > len(other.load_parameter):
             return Finding(
-                against=self.name,
+                name=self.name,
                 error=np.inf,
                 allowed=allowed.error,
                 why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
@@ -95,7 +71,7 @@ class Against:
         ours = in_units_of(beam, case.scene.beams[0], own)
         theirs = in_units_of(beam, beam, other)
         error = max(difference(ours, theirs, self.case.scene, quantity) for quantity in COMPARED)
-        return Finding(against=self.name, error=error, allowed=allowed.error, why=allowed.why)
+        return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,15 +93,15 @@ class Energy:
     rigid: bool = False
     needs: tuple[Case, ...] = field(default=(), init=False)
 
-    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+    def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest violation over ``2 EI sin b``."""
         beam, pin = case.scene.beams[0], case.scene.pins[0]
-        force = -own.support_force[beam.name]
+        force = -own.supports[beam.name].force
         closed = np.hypot(*force.T) > 0.0
         place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
         error = _violation(beam, force[closed], place[closed], rigid=self.rigid)
         what = "2 EI sin tc of the elastica" if self.rigid else "its energy integral"
-        return Finding(against=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
+        return Finding(name=what, error=error, allowed=INVARIANT, why="an identity, to round-off")
 
 
 def _violation(beam: BeamSpec, force: Array, place: Array, *, rigid: bool) -> float:
@@ -150,14 +126,14 @@ class Circle:
 
     needs: tuple[Case, ...] = field(default=(), init=False)
 
-    def finding(self, case: Case, own: Measurement, _: Results) -> Finding:
+    def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest error of the tip's position over the length."""
         beam, load = case.scene.beams[0], case.scene.loads[0]
         exact = [
             tip_under_moment(load.moment * float(t), EI=beam.EI, length=beam.length)
             for t in own.load_parameter
         ]
-        error = float(np.hypot(*(own.tip[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
+        error = float(np.hypot(*(own.tips[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
         longest = element_lengths(case.scene, case.options)[0]
         turn = load.moment * longest * beam.length / beam.EI * own.load_parameter
         kind = TSM.element(case.options)
@@ -166,7 +142,7 @@ class Circle:
             term, why = chord_term(turn, kind.order), f"{ordinal(kind.order)} order of the element"
         distance = np.hypot(*np.array(exact).reshape(-1, 2).T) / beam.length
         allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
-        return Finding(against="circle", error=error, allowed=allowed, why=why)
+        return Finding(name="circle", error=error, allowed=allowed, why=why)
 
 
 Check = Against | Energy | Circle

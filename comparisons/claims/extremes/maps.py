@@ -7,7 +7,8 @@ from html import escape
 from itertools import pairwise
 from typing import Protocol
 
-from comparisons.claims.extremes.cell import Judgement, Verdict
+from comparisons.claims.claim import Verdict
+from comparisons.claims.extremes.cell import Judgement
 from comparisons.show.pages import Section
 
 MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
@@ -109,7 +110,7 @@ def _cell(item: Judgement | None) -> str:
 
 def _details(item: Judgement) -> str:
     found = [
-        f"against {finding.against}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
+        f"against {finding.name}: error {_number(finding.error)}, allowed {_number(finding.allowed)} ({finding.why})"
         for finding in item.findings
     ]
     ended = f"{item.status}: {item.message}"

@@ -11,8 +11,9 @@ from comparisons.cases.run import Progress
 from comparisons.cases.run import run as run_cases
 from comparisons.cases.store import Store
 from comparisons.cases.workers import Workers
+from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
+from comparisons.claims.extremes.cell import Cell, Judgement, judged
 from comparisons.claims.extremes.checks import Results
 from comparisons.claims.extremes.maps import counted, sections
 from comparisons.files import write_text
@@ -115,7 +116,7 @@ def row(item: Judgement) -> Row:
         "reached": item.reached,
         "error": decisive.error if decisive else None,
         "allowed": decisive.allowed if decisive else None,
-        "against": decisive.against if decisive else None,
+        "against": decisive.name if decisive else None,
         "why": decisive.why if decisive else None,
         "iterations": item.iterations,
         "cutbacks": item.cutbacks,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from comparisons.claims.claim import Quantity, StoppedError
 from comparisons.claims.manual.models import (
     ANSWER,
     ROD,
@@ -17,7 +18,7 @@ from comparisons.claims.manual.models import (
     trial,
     undeformed,
 )
-from comparisons.claims.manual.record import Answer, Curve, Picture, Problem, Quantity, StoppedError, Trial
+from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import PAIR, half_way, ks
 from comparisons.models.translate import to_solid
 from comparisons.response import Array
@@ -43,7 +44,7 @@ def _force_error(scene: Scene, model: Model, exact: Array) -> float:
 
 
 def _orders(model: Model, tolerance: float, scene: Scene, exact: Array) -> Trial:
-    def measure() -> Answer:
+    def measure() -> Measured:
         errors = np.array(
             [
                 _force_error(scene, replace(model, options=replace(model.options, elements=n)), exact)
@@ -51,7 +52,7 @@ def _orders(model: Model, tolerance: float, scene: Scene, exact: Array) -> Trial
             ]
         )
         curve = Curve(style=model.name, points=np.stack([np.array(ELEMENTS), errors], axis=1))
-        return Answer(values=(-_slope(ELEMENTS, errors),), curves=(curve,))
+        return Measured(values=(-_slope(ELEMENTS, errors),), curves=(curve,))
 
     return trial(model, tolerance, "the order is that of many elements, the fit begins with five", measure)
 
@@ -98,14 +99,14 @@ def thin_strips() -> Problem:
     """The solid becomes the rod as the square of the height."""
     model = solid(50, 2)
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         found = []
         for height in HEIGHTS:
             scene = half_way(ks(height=height, material="biot-linear"), penetration=1e-10)
             found.append(_force_error(scene, model, answered(scene, ROD).contacts[PAIR].force))
         errors = np.array(found)
         curve = Curve(style=model.name, points=np.stack([np.array(HEIGHTS), errors], axis=1))
-        return Answer(values=(_slope(HEIGHTS, errors),), curves=(curve,))
+        return Measured(values=(_slope(HEIGHTS, errors),), curves=(curve,))
 
     return Problem(
         name="thin-strips",
@@ -138,13 +139,13 @@ def penalty() -> Problem:
     """The penetration falls as the inverse of the penalty."""
     model = solid(25, 2)
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         depths = []
         for value in PENALTIES:
             scene = half_way(ks(load_parameters=10), penalty=value)
             depths.append(-answered(scene, model).contacts[PAIR].gap[-1])
         curve = Curve(style=model.name, points=np.stack([np.array(PENALTIES), np.array(depths)], axis=1))
-        return Answer(values=(_slope(PENALTIES, np.array(depths)),), curves=(curve,))
+        return Measured(values=(_slope(PENALTIES, np.array(depths)),), curves=(curve,))
 
     return Problem(
         name="penalty-slope",
@@ -177,7 +178,7 @@ def locking() -> Problem:
     rod = answered(rod_scene, ROD)
     model = solid(50, 2)
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         import fem_reference
 
         problem = to_solid(scene, mesh=model.options.mesh)
@@ -187,7 +188,7 @@ def locking() -> Problem:
             raise StoppedError(f"{result.status.name}: {result.message}")
         contact, name = result.contacts[PAIR], beam.name
         line = Curve(style=model.name, points=fem_reference.axis_line(result, name, -1))
-        return Answer(values=(float(contact.force[-1]), float(contact.arc_position[-1])), curves=(line,))
+        return Measured(values=(float(contact.force[-1]), float(contact.arc_position[-1])), curves=(line,))
 
     exact = rod.contacts[PAIR]
     return Problem(

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from comparisons.claims.claim import Quantity
 from comparisons.claims.manual.models import (
     ANSWER,
     EXACT,
@@ -21,9 +22,9 @@ from comparisons.claims.manual.models import (
     trial,
     undeformed,
 )
-from comparisons.claims.manual.peaks import summit
-from comparisons.claims.manual.record import Answer, Curve, Picture, Problem, Quantity, Trial
+from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import ELASTICA_TEXT, PAIR, cantilever, ks, under_pin
+from comparisons.claims.problems.peaks import summit
 from comparisons.exact.elastica import (
     contact_force_limit,
     elastica_under_pin,
@@ -117,14 +118,14 @@ def _limit(model: Model, tolerance: float, reason: str, force: str) -> Trial:
     """Return the trial that raises a pin at x = 1 and reads the greatest force, and where it occurs."""
     scene = under_pin(LONG, (1.0, 0.0), (1.0, HIGHEST), load_parameters=64)
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         response = answered(scene, model)
         height = HIGHEST * response.load_parameter
         vector = response.contacts[PAIR].vector
         assert vector is not None, "it states the force's direction"
         load = 2.0 * vector[:, 1] if force == "vertical" else response.contacts[PAIR].force
         curve = Curve(style=model.name, points=np.stack([height, load], axis=1))
-        return Answer(values=summit(height, load), curves=(curve,))
+        return Measured(values=summit(height, load), curves=(curve,))
 
     return trial(model, tolerance, reason, measure)
 

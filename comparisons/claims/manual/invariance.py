@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from comparisons.claims.claim import Quantity, StoppedError
 from comparisons.claims.manual.models import (
     EXACT,
     Model,
@@ -14,7 +15,7 @@ from comparisons.claims.manual.models import (
     trial,
     undeformed,
 )
-from comparisons.claims.manual.record import Answer, Curve, Picture, Problem, Quantity, StoppedError, Trial
+from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.models import SOLID
 from comparisons.models.translate import to_solid, to_structure
@@ -53,17 +54,17 @@ def energy_balance() -> Problem:
     )
 
 
-def _work_over_energy(scene: Scene, model: Model, panels: int = 20) -> Callable[[], Answer]:
+def _work_over_energy(scene: Scene, model: Model, panels: int = 20) -> Callable[[], Measured]:
     """Return the measurement of work over energy; the solvers are called at the points of the quadrature."""
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         gauss, weights = np.polynomial.legendre.leggauss(4)
         t = np.append(((np.arange(panels)[:, None] + (1.0 + gauss) / 2.0) / panels).ravel(), 1.0)
         run = _solid if model.key == SOLID.name else _beam
         force, energy, line = run(scene, model, t)
         start, end = np.array(scene.pins[0].points)
         work = float(np.tile(weights / 2.0 / panels, panels) @ (force[:-1] @ (end - start)))
-        return Answer(values=(work / energy,), curves=(Curve(style=model.name, points=line),))
+        return Measured(values=(work / energy,), curves=(Curve(style=model.name, points=line),))
 
     return measure
 
@@ -108,13 +109,13 @@ def _unchanged(scene: Scene, other: Scene, model: Model) -> Trial:
     """Return the trial that solves two scenes whose forces must be the same."""
     tolerance, reason = SAME[model.name]
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         first, second = (answered(one, model) for one in (scene, other))
         pair, beam = scene.contacts[0].pair, scene.beams[0].name
         forces = [response.contacts[pair].force for response in (first, second)]
         moments = [np.abs(response.supports[beam].moment) for response in (first, second)]
         values = tuple(float(np.abs(b - a).max() / np.abs(a).max()) for a, b in (forces, moments))
-        return Answer(values=values, curves=(deflected(other, second, model.name),))
+        return Measured(values=values, curves=(deflected(other, second, model.name),))
 
     return trial(model, tolerance, reason, measure)
 

@@ -1,13 +1,12 @@
-"""A problem put to its models, and their answers judged."""
+"""A problem put to its models: a claim for each of them."""
 
-from time import perf_counter
+from collections.abc import Sequence
 
-import numpy as np
+from comparisons.claims.claim import Claim, judge
+from comparisons.claims.manual.record import Case, Curve, Problem, Trial
 
-from comparisons.claims.manual.record import Answer, Case, Curve, Problem, Run, StoppedError, Trial
 
-
-def judge(problem: Problem, picture: str) -> tuple[Case, tuple[Curve, ...]]:
+def answered(problem: Problem, picture: str) -> tuple[Case, tuple[Curve, ...]]:
     """Put a problem to all its models.
 
     Parameters
@@ -20,54 +19,28 @@ def judge(problem: Problem, picture: str) -> tuple[Case, tuple[Curve, ...]]:
     Returns
     -------
     case : Case
-        With a run for every trial, in order.
+        With a judgement for every trial, in order.
     curves : tuple of Curve
         What the models add to the picture.
     """
-    runs: list[Run] = []
     curves: list[Curve] = []
-    for trial in problem.trials:
-        run, answer = _run(problem, trial)
-        runs.append(run)
-        curves += answer.curves
-    case = Case(
-        name=problem.name,
-        title=problem.title,
+    judgements = tuple(judge(_claim(problem, trial, curves)) for trial in problem.trials)
+    return Case(problem=problem, judgements=judgements, picture=picture), tuple(curves)
+
+
+def _claim(problem: Problem, trial: Trial, curves: list[Curve]) -> Claim:
+    """Return the claim that a model answers a problem; measuring it appends to the curves."""
+
+    def measure() -> Sequence[float]:
+        measured = trial.measure()
+        curves.extend(measured.curves)
+        return measured.values
+
+    return Claim(
+        name=trial.label,
         statement=problem.statement,
         source=problem.source,
         quantities=problem.quantities,
-        runs=tuple(runs),
-        picture=picture,
+        allowance=trial.allowance,
+        measure=measure,
     )
-    return case, tuple(curves)
-
-
-def _run(problem: Problem, trial: Trial) -> tuple[Run, Answer]:
-    stopped, began = "", perf_counter()
-    try:
-        answer = trial.measure()
-    except StoppedError as error:
-        stopped, answer = str(error), Answer(values=(np.nan,) * len(problem.quantities))
-    seconds = perf_counter() - began
-    errors = tuple(q.error(value) for q, value in zip(problem.quantities, answer.values, strict=True))
-    run = Run(
-        model=trial.model,
-        setting=trial.setting,
-        tolerance=trial.tolerance,
-        reason=trial.reason,
-        values=answer.values,
-        errors=errors,
-        seconds=seconds,
-        stopped=stopped,
-    )
-    return run, answer
-
-
-def failure(case: Case, run: Run) -> str | None:
-    """Return why a run failed, with its numbers; None if it passed."""
-    if run.passed:
-        return None
-    if run.stopped:
-        return run.stopped
-    quantity, k = case.quantities[run.worst], run.worst
-    return f"{quantity.name}: {run.values[k]:.10g}, exact {quantity.exact:.10g}, error {run.errors[k]:.2g} > {run.tolerance:.2g}"

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
+from comparisons.claims.claim import Quantity
 from comparisons.claims.manual.models import (
     ANSWER,
     EXACT,
@@ -22,7 +23,7 @@ from comparisons.claims.manual.models import (
     trial,
     undeformed,
 )
-from comparisons.claims.manual.record import Answer, Curve, Picture, Problem, Quantity, Trial
+from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import ELASTICA_TEXT, UNIT, cantilever
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.response import Response
@@ -133,11 +134,11 @@ def _critical(model: Model, estimate: float, tolerance: float, reason: str, **se
         assert at_head is not None, "the head is held"
         return float(at_head.force[-1, 0])
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         loads = estimate * np.linspace(0.0, 1.2, 13)[1:]
         forces = np.array([sideways(float(load)) for load in loads])
         found = float(brentq(sideways, 0.8 * estimate, 1.2 * estimate, xtol=1e-12, rtol=1e-12))
-        return Answer(
+        return Measured(
             values=(found,), curves=(pieces(model.name, [np.stack([loads, forces / ASIDE], axis=1)]),)
         )
 

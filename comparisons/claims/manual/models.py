@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from comparisons import models as registry
-from comparisons.claims.manual.record import Answer, Curve, StoppedError, Trial
+from comparisons.claims.claim import Allowance, StoppedError
+from comparisons.claims.manual.record import Curve, Measured, Trial
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
@@ -115,17 +116,18 @@ def on_scene(
         Load parameters whose deflected axes are drawn.
     """
 
-    def measure() -> Answer:
+    def measure() -> Measured:
         response = answered(scene, model)
         values = tuple(float(value) for value in read(response))
-        return Answer(values=values, curves=(deflected(scene, response, model.name, shown),))
+        return Measured(values=values, curves=(deflected(scene, response, model.name, shown),))
 
     return trial(model, tolerance, reason, measure)
 
 
-def trial(model: Model, tolerance: float, reason: str, measure: Callable[[], Answer]) -> Trial:
+def trial(model: Model, tolerance: float, reason: str, measure: Callable[[], Measured]) -> Trial:
     """Return the trial of a model that is measured in a way of its own."""
-    return Trial(model=model.name, setting=model.setting, tolerance=tolerance, reason=reason, measure=measure)
+    allowance = Allowance(error=tolerance, why=reason)
+    return Trial(model=model.name, setting=model.setting, allowance=allowance, measure=measure)
 
 
 def step(response: Response, load_parameter: float) -> int:

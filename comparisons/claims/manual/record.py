@@ -1,38 +1,11 @@
-"""The records of the verification manual: what is asked, what a model answers, how that is judged."""
+"""The records of the verification manual: problems, the models that are put to them, and their pictures."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from comparisons.claims.claim import Allowance, Judgement, Quantity
 from comparisons.response import Array
-
-
-class StoppedError(RuntimeError):
-    """A solution that stopped before it had an answer: its status and sentence."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """What is compared.
-
-    Attributes
-    ----------
-    name : str
-        With its unit, or without one where it is dimensionless.
-    exact : float
-        The exact value.
-    scale : float, optional
-        What an error is divided by, the magnitude of the exact value if not given.
-    """
-
-    name: str
-    exact: float
-    scale: float | None = None
-
-    def error(self, value: float) -> float:
-        """Return ``|value - exact| / scale``."""
-        return abs(value - self.exact) / (abs(self.exact) if self.scale is None else self.scale)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,8 +47,8 @@ class Picture:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Answer:
-    """What a model answers: a value for every quantity of the problem, and its curves."""
+class Measured:
+    """A value for every quantity of a problem, and the curves that a model adds to the picture."""
 
     values: tuple[float, ...]
     curves: tuple[Curve, ...] = ()
@@ -91,19 +64,21 @@ class Trial:
         Key of `comparisons.claims.manual.pictures.STYLES`.
     setting : str
         Its resolution.
-    tolerance : float
-        Largest error allowed to any quantity.
-    reason : str
-        Where the tolerance comes from.
+    allowance : Allowance
+        Of every quantity.
     measure : callable
         Solves; raises `StoppedError` where there is no answer.
     """
 
     model: str
     setting: str
-    tolerance: float
-    reason: str
-    measure: Callable[[], Answer]
+    allowance: Allowance
+    measure: Callable[[], Measured]
+
+    @property
+    def label(self) -> str:
+        """Model and setting."""
+        return f"{self.model}, {self.setting}" if self.setting else self.model
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,80 +111,32 @@ class Problem:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run:
-    """What became of a trial.
-
-    Attributes
-    ----------
-    model, setting, tolerance, reason
-        Of the `Trial`.
-    values, errors : tuple of float
-        One for every quantity; nan where the solution stopped.
-    seconds : float
-        Wall time, everything included.
-    stopped : str
-        Why there is no answer, empty if there is one.
-    """
-
-    model: str
-    setting: str
-    tolerance: float
-    reason: str
-    values: tuple[float, ...]
-    errors: tuple[float, ...]
-    seconds: float
-    stopped: str = ""
-
-    @property
-    def label(self) -> str:
-        """Model and setting."""
-        return f"{self.model}, {self.setting}" if self.setting else self.model
-
-    @property
-    def passed(self) -> bool:
-        """Whether every error is within the tolerance; what is not a number is not."""
-        return not self.stopped and all(error <= self.tolerance for error in self.errors)
-
-    @property
-    def worst(self) -> int:
-        """Number of the quantity with the largest error, of the first that is not a number if one is not."""
-        return max(
-            range(len(self.errors)),
-            key=lambda k: math.inf if math.isnan(self.errors[k]) else self.errors[k],
-        )
-
-
-@dataclass(frozen=True, kw_only=True)
 class Case:
     """A problem and what all models answered.
 
     Attributes
     ----------
-    name, title, statement, source, quantities
-        Of the `Problem`.
-    runs : tuple of Run
+    problem : Problem
+        The problem.
+    judgements : tuple of Judgement
         One for every model.
     picture : str
         Name of the picture's file.
     """
 
-    name: str
-    title: str
-    statement: str
-    source: str
-    quantities: tuple[Quantity, ...]
-    runs: tuple[Run, ...]
+    problem: Problem
+    judgements: tuple[Judgement, ...]
     picture: str
 
     @property
     def passed(self) -> bool:
         """Whether every model passed."""
-        return all(run.passed for run in self.runs)
+        return all(item.passed for item in self.judgements)
 
     @property
     def seconds(self) -> float:
         """Wall time of all models."""
-        return sum(run.seconds for run in self.runs)
+        return sum(item.seconds for item in self.judgements)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from comparisons.claims.claim import Quantity
 from comparisons.claims.manual.models import (
     ANSWER,
     ELASTICA,
@@ -20,9 +21,9 @@ from comparisons.claims.manual.models import (
     step,
     undeformed,
 )
-from comparisons.claims.manual.record import Picture, Problem, Quantity
+from comparisons.claims.manual.record import Picture, Problem
 from comparisons.claims.manual.scenes import PAIR, cantilever, ks, under_pin
-from comparisons.exact.coupled import coupled_rods
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths
 from comparisons.exact.rod import rod_under_pin
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
@@ -248,27 +249,19 @@ def slip_off_41() -> Problem:
 def double_beam() -> Problem:
     """Two cantilevers, a pin that is handed over from one to the other."""
     scene = load_scene("double-beam")
-    beam = scene.beams[0]
-    section = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
-    pair = coupled_rods([0.31], pin_x=0.8, spacing=0.2, **section)
-    single = rod_under_pin([(0.8, 0.0), (0.8, 0.56)], **section)
+    both = coupled(scene, [0.31])
 
     def read(response: Response) -> Sequence[float]:
         assert response.events is not None, "the beams locate events"
         happened = {(event.kind, event.pair): 0.76 * event.load_parameter for event in response.events}
-        forces = [
-            response.contacts[name].force[step(response, 31 / 76)]
-            for name in ("pin->upper", "upper.end->lower")
-        ]
-        events = (("touch", "upper.end->lower"), ("slip-off", "pin->upper"), ("slip-off", "pin->lower"))
+        forces = [response.contacts[name].force[step(response, 31 / 76)] for name in (UPPER, TIP)]
+        events = (("touch", TIP), ("slip-off", UPPER), ("slip-off", LOWER))
         return [*forces, *(happened.get(event, np.nan) for event in events)]
 
     exact = (
-        float(np.hypot(*pair.pin_force[0])),
-        float(np.hypot(*pair.tip_force[0])),
-        pair.touch_depth,
-        pair.end_depth,
-        0.2 + 0.56 * single.slip_off,
+        float(np.hypot(*both.pin_force[0])),
+        float(np.hypot(*both.tip_force[0])),
+        *event_depths(scene, both).values(),
     )
     names = (
         "force of the pin at .31 m [N]",

@@ -1,12 +1,11 @@
 """The manual as Markdown, as nested numbers and as JUnit checks."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import Any
 
+from comparisons.claims.claim import Judgement
 from comparisons.claims.junit import JUnitCase
-from comparisons.claims.manual.judge import failure
-from comparisons.claims.manual.record import Case, Run
+from comparisons.claims.manual.record import Case
 from comparisons.version import versions
 
 HEAD = """# Verification manual
@@ -21,12 +20,12 @@ RULE = "|---|---|---|---|---|---|---|---|"
 
 def markdown(cases: Sequence[Case]) -> str:
     """Return the manual as Markdown: a table of all answers, then a section for each case."""
-    runs = [run for case in cases for run in case.runs]
+    judgements = [item for case in cases for item in case.judgements]
     head = HEAD.format(
         cases=len(cases),
-        passed=sum(run.passed for run in runs),
-        runs=len(runs),
-        seconds=sum(run.seconds for run in runs),
+        passed=sum(item.passed for item in judgements),
+        runs=len(judgements),
+        seconds=sum(item.seconds for item in judgements),
         versions=", ".join(f"{name} {number}" for name, number in versions().items()),
     )
     return head + "\n".join([*_overview(cases), *(line for case in cases for line in _section(case)), ""])
@@ -36,17 +35,18 @@ def _overview(cases: Sequence[Case]) -> Iterator[str]:
     yield "| case | model | quantity of the largest error | exact | ours | error | tolerance | verdict |"
     yield RULE
     for case in cases:
-        for run in case.runs:
-            k = run.worst
+        for item in case.judgements:
+            k = item.worst
+            quantity = case.problem.quantities[k]
             cells = [
-                f"[{case.title}](#{case.name})",
-                run.label,
-                case.quantities[k].name,
-                f"{case.quantities[k].exact:.9g}",
-                run.stopped or f"{run.values[k]:.9g}",
-                f"{run.errors[k]:.1e}",
-                f"{run.tolerance:.2g}",
-                _verdict(run),
+                f"[{case.problem.title}](#{case.problem.name})",
+                item.claim.name,
+                quantity.name,
+                f"{quantity.exact:.9g}",
+                item.stopped or f"{item.values[k]:.9g}",
+                f"{item.findings[k].error:.1e}",
+                f"{item.claim.allowance.error:.2g}",
+                _verdict(item),
             ]
             yield _row(cells)
     yield ""
@@ -56,58 +56,67 @@ def _row(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def _verdict(run: Run) -> str:
-    return "passed" if run.passed else "**FAILED**"
+def _verdict(item: Judgement) -> str:
+    return "passed" if item.passed else "**FAILED**"
 
 
 def _section(case: Case) -> Iterator[str]:
-    yield f'<a id="{case.name}"></a>'
+    problem, items = case.problem, case.judgements
+    yield f'<a id="{problem.name}"></a>'
     yield ""
-    yield f"## {case.title}"
+    yield f"## {problem.title}"
     yield ""
-    yield case.statement
+    yield problem.statement
     yield ""
-    yield f"Exact value: {case.source}."
+    yield f"Exact value: {problem.source}."
     yield ""
-    yield f"![{case.title}]({case.picture})"
+    yield f"![{problem.title}]({case.picture})"
     yield ""
-    yield _row(["quantity", "exact", *(run.label for run in case.runs)])
-    yield "|" + "---|" * (2 + len(case.runs))
-    for k, quantity in enumerate(case.quantities):
-        ours = (f"{run.values[k]:.9g} ({run.errors[k]:.1e})" for run in case.runs)
+    yield _row(["quantity", "exact", *(item.claim.name for item in items)])
+    yield "|" + "---|" * (2 + len(items))
+    for k, quantity in enumerate(problem.quantities):
+        ours = (f"{item.values[k]:.9g} ({item.findings[k].error:.1e})" for item in items)
         yield _row([quantity.name, f"{quantity.exact:.12g}", *ours])
-    yield _row(["tolerance", "", *(f"{run.tolerance:.2g}" for run in case.runs)])
-    yield _row(["verdict", "", *(_verdict(run) for run in case.runs)])
-    yield _row(["seconds", "", *(f"{run.seconds:.2f}" for run in case.runs)])
+    yield _row(["tolerance", "", *(f"{item.claim.allowance.error:.2g}" for item in items)])
+    yield _row(["verdict", "", *(_verdict(item) for item in items)])
+    yield _row(["seconds", "", *(f"{item.seconds:.2f}" for item in items)])
     yield ""
-    for run in case.runs:
-        yield f"- {run.label}: {run.reason}." + (f" Stopped: {run.stopped}." if run.stopped else "")
+    for item in items:
+        stopped = f" Stopped: {item.stopped}." if item.stopped else ""
+        yield f"- {item.claim.name}: {item.claim.allowance.why}.{stopped}"
     yield ""
 
 
 def numbers(cases: Sequence[Case]) -> dict[str, Any]:
     """Return everything but the pictures as nested numbers."""
+    return {"passed": all(case.passed for case in cases), "cases": [_case(case) for case in cases]}
+
+
+def _case(case: Case) -> dict[str, Any]:
+    problem = case.problem
     return {
-        "passed": all(case.passed for case in cases),
-        "cases": [
+        **{name: getattr(problem, name) for name in ("name", "title", "statement", "source", "quantities")},
+        "runs": [
             {
-                **asdict(case),
-                "passed": case.passed,
-                "seconds": case.seconds,
-                "runs": [{**asdict(run), "passed": run.passed} for run in case.runs],
+                "model": trial.model,
+                "setting": trial.setting,
+                "tolerance": trial.allowance.error,
+                "reason": trial.allowance.why,
+                "values": item.values,
+                "errors": [finding.error for finding in item.findings],
+                "seconds": item.seconds,
+                "stopped": item.stopped,
+                "passed": item.passed,
             }
-            for case in cases
+            for trial, item in zip(problem.trials, case.judgements, strict=True)
         ],
+        "picture": case.picture,
+        "passed": case.passed,
+        "seconds": case.seconds,
     }
 
 
 def junit_cases(cases: Sequence[Case]) -> Iterator[JUnitCase]:
     """Yield a check for every case and model."""
     for case in cases:
-        for run in case.runs:
-            yield JUnitCase(
-                classname=f"manual.{case.name}",
-                name=run.label,
-                seconds=run.seconds,
-                failure=failure(case, run),
-            )
+        yield from (item.junit(f"manual.{case.problem.name}") for item in case.judgements)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from comparisons.claims.manual.judge import failure, judge
+from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.pictures import draw
 from comparisons.claims.manual.problems import PROBLEMS
 from comparisons.claims.manual.record import Manual, Problem
@@ -22,7 +22,7 @@ def write_manual(
     folder : Path
         Made if it is not there.
     report : callable
-        Told a line for each case.
+        Takes a line for each case.
     problems : sequence of callable, optional
         What is solved, all problems if not given.
 
@@ -40,14 +40,14 @@ def write_manual(
     for state in PROBLEMS if problems is None else problems:
         problem = state()
         picture = folder / f"{problem.name}.svg"
-        case, curves = judge(problem, picture.name)
-        draw(case.title, problem.picture, curves, picture)
+        case, curves = answered(problem, picture.name)
+        draw(problem.title, problem.picture, curves, picture)
         cases.append(case)
         pictures.append(picture)
-        report(f"{case.name}: {'passed' if case.passed else 'FAILED'}, {case.seconds:.1f} s")
-        for run in case.runs:
-            if not run.passed:
-                report(f"  {run.label}: {failure(case, run)}")
+        report(f"{problem.name}: {'passed' if case.passed else 'FAILED'}, {case.seconds:.1f} s")
+        for item in case.judgements:
+            if item.failure:
+                report(f"  {item.claim.name}: {item.failure}")
     page = folder / "index.md"
     write_text(page, markdown(cases))
     values = write_numbers(folder / "manual.json", numbers(cases))

@@ -3,9 +3,10 @@
 import numpy as np
 
 from comparisons.claims.paper.cantilever_shapes import ELEMENTS, Lifts
-from comparisons.claims.paper.double_beam import LOWER, TIP, UPPER, Attempt, DoubleBeam
+from comparisons.claims.paper.double_beam import Attempt, DoubleBeam
 from comparisons.claims.paper.ks_shapes import Run8, Shapes
 from comparisons.claims.paper.verdict import Judgement, Verdict, claim, holds, over_readings, percent
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from tsm.elements import TIMOSHENKO
 
@@ -78,7 +79,7 @@ def alike(found: Shapes) -> Judgement:
         + ", ".join(
             f"{run.options.elements}: {percent(value)}" for run, value in zip(PAPER, apart, strict=True)
         )
-        + f" of the length; the solid itself is {percent(_solid(found).shape_error)} from the exact rod",
+        + f" of the length; the solid itself is {percent(_solid(found).error('shape'))} from the exact rod",
         "The printed scene had to be completed: the printed G contradicts E and nu, and whether the node slides or is tied to the tip "
         "is not said. Here it slides, and G follows from E and nu.",
     )
@@ -91,7 +92,7 @@ def few_elements(found: Shapes) -> Judgement:
         all(run.shape_difference < ALIKE for run in runs),
         "; ".join(
             f"{run.label}: shape {percent(run.shape_difference)} from the solid, and from the exact rod contact force "
-            f"{percent(run.errors.contact_force)}, clamp moment {percent(run.errors.clamp_moment)}"
+            f"{percent(run.error('force'))}, clamp moment {percent(run.error('moment'))}"
             for run in runs
         ),
         "True of the shapes that the paper shows. Forces it does not show: they are an order of magnitude less accurate, because the "
@@ -102,12 +103,12 @@ def few_elements(found: Shapes) -> Judgement:
 def simple_enough(found: Shapes) -> Judgement:
     """Judge whether the simple element gives shape, force and moment within what is alike, with each division."""
     runs, solid = _paper(found), _solid(found)
-    errors = [(run.shape_error, run.errors.contact_force, run.errors.clamp_moment) for run in runs]
+    errors = [(run.error("shape"), run.error("force"), run.error("moment")) for run in runs]
     ten = runs[0]
     return over_readings(
         [bool(value < ALIKE) for values in errors for value in values],
-        f"{ten.unknowns} unknowns for a shape within {percent(ten.shape_error)} of the length, the solid has {solid.unknowns}, "
-        f"{percent(solid.shape_error)}; errors of shape, contact force and clamp moment: "
+        f"{ten.unknowns} unknowns for a shape within {percent(ten.error('shape'))} of the length, the solid has {solid.unknowns}, "
+        f"{percent(solid.error('shape'))}; errors of shape, contact force and clamp moment: "
         + "; ".join(
             f"{run.options.elements} elements {', '.join(percent(value) for value in values)}"
             for run, values in zip(PAPER, errors, strict=True)
@@ -119,13 +120,13 @@ def simple_enough(found: Shapes) -> Judgement:
 def less_division(found: Shapes) -> Judgement:
     """Judge whether TSM with few elements is adequate beside the solid."""
     run, solid = _paper(found)[1], _solid(found)
-    errors = max(run.errors.contact_force, run.errors.arc_position, run.shape_error)
+    errors = max(run.error("force"), run.error("arc"), run.error("shape"))
     return holds(
         errors < ALIKE,
-        f"{run.label}: largest of the errors in force, place and shape {percent(errors)}; solid {percent(max(solid.errors.contact_force, solid.shape_error))} "
+        f"{run.label}: largest of the errors in force, place and shape {percent(errors)}; solid {percent(max(solid.error('force'), solid.error('shape')))} "
         f"(its material law, not its mesh)",
         "One percent of the exact rod is asked for; with 10 elements the contact force is "
-        f"{percent(_paper(found)[0].errors.contact_force)} off.",
+        f"{percent(_paper(found)[0].error('force'))} off.",
     )
 
 

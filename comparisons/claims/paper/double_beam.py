@@ -4,10 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from comparisons.exact.coupled import CoupledPath, coupled_rods
-from comparisons.exact.rod import rod_under_pin
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths, single, spacing
 from comparisons.models import TSM, solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
@@ -17,7 +16,6 @@ from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, TIM
 Report = Callable[[str], None]
 
 SCENE = "double-beam"
-UPPER, TIP, LOWER = "pin->upper", "upper.end->lower", "pin->lower"
 PAIRS = (UPPER, TIP, LOWER)
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
@@ -207,7 +205,7 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
         end=end,
         checks=_checks(depth, histories, exact_events),
         stages=_stages(depth, exact_events),
-        iterations=int(own.newton_iterations.sum()),
+        iterations=own.iterations,
         seconds=own.wall_seconds,
         attempts=attempts,
         stopped=tuple(f"mixed: {one.status}: {one.message}" for one in (own, response) if not one.completed),
@@ -216,45 +214,23 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
     )
 
 
-def _rod(scene: Scene) -> dict[str, float]:
-    upper = scene.beam("upper")
-    return {"EA": upper.EA, "GA": upper.GA, "EI": upper.EI, "length": upper.length}
-
-
-def _spacing(scene: Scene) -> float:
-    return scene.beam("upper").start[1] - scene.beam("lower").start[1]
-
-
-def _coupled(scene: Scene, x: float, depth: ArrayLike) -> CoupledPath:
-    """The exact rods under a pin at x, where both contacts are closed."""
-    return coupled_rods(depth, pin_x=x - scene.beam("upper").start[0], spacing=_spacing(scene), **_rod(scene))
-
-
 def _exact(scene: Scene, depth: Array) -> tuple[dict[str, tuple[Array, Array]], dict[str, float], str]:
     """Force and arc position by pair, the depths of the events, and what ends the coupled stage."""
-    x, spacing, rod = scene.pins[0].points[0][0], _spacing(scene), _rod(scene)
-    coupled = _coupled(scene, x, depth)
-    before, after = depth < coupled.touch_depth, depth > coupled.end_depth
+    stage = coupled(scene, depth)
+    before, after = depth < stage.touch_depth, depth > stage.end_depth
     both = ~before & ~after
     exact = {pair: (np.full(len(depth), np.nan), np.full(len(depth), np.nan)) for pair in PAIRS}
     for pair, force, arc in (
-        (UPPER, coupled.pin_force, coupled.pin_arc),
-        (TIP, coupled.tip_force, coupled.tip_arc),
+        (UPPER, stage.pin_force, stage.pin_arc),
+        (TIP, stage.tip_force, stage.tip_arc),
     ):
         exact[pair][0][both], exact[pair][1][both] = np.hypot(*force.T)[both], arc[both]
-    for pair, part, origin in ((UPPER, before, 0.0), (LOWER, after, spacing)):
-        path = rod_under_pin([[x, 0.0], *([x, d - origin] for d in depth[part])], **rod)
+    for pair, part, origin in ((UPPER, before, 0.0), (LOWER, after, spacing(scene))):
+        path = single(scene, depth[part] - origin)
         closed = np.isfinite(path.arc_position[1:])
         exact[pair][0][part] = np.where(closed, path.magnitude[1:], np.nan)
         exact[pair][1][part] = path.arc_position[1:]
-    far = depth[-1] - spacing
-    last = rod_under_pin([[x, 0.0], [x, far]], **rod)
-    events = {
-        "touch": coupled.touch_depth,
-        "hand-over": coupled.end_depth,
-        "slip-off": spacing + last.slip_off * far,
-    }
-    return exact, events, coupled.end
+    return exact, event_depths(scene, stage), stage.end
 
 
 def _checks(depth: Array, histories: dict[str, History], events: dict[str, float]) -> tuple[Check, ...]:
@@ -297,7 +273,7 @@ def _attempt(scene: Scene, element: str, place: float) -> Attempt:
     travel = abs(pin.points[1][1])
     events = response.events or ()
     reached = float(response.load_parameter[-1]) if len(response.load_parameter) else 0.0
-    over = _coupled(scene, place, [travel]).end_depth / travel
+    over = coupled(scene, [travel], place).end_depth / travel
     return Attempt(
         element=element,
         place=place,

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.claims.paper.double_beam import LOWER, PAIRS, TIP, UPPER, DoubleBeam, Stage
+from comparisons.claims.paper.double_beam import PAIRS, DoubleBeam, Stage
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.response import Array
 from comparisons.show import palette
 from comparisons.show.plot import figure, save

@@ -84,8 +84,7 @@ def _readings(found: Shapes) -> Iterator[Section]:
     for name, (scene, responses) in found.drawn.items():
         followed = {label: one for label, one in responses.items() if found.run(name, label).follows}
         if ROD.label in followed:
-            pair = scene.contacts[0].pair if scene.contacts else None
-            histories = tracks(followed, ROD.label, scene=scene, pair=pair, beam=scene.beams[0].name)
+            histories = tracks(followed, ROD.label, scene)
             yield motion_section(
                 f"{name}: {READINGS.get(name, name)}", scene, followed, histories, focus=ROD.label
             )

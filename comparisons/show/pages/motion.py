@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.errors import error_histories, histories
+from comparisons.errors import error_histories, size
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
@@ -45,10 +45,8 @@ class Track:
     error_title: str = ""
 
 
-def tracks(
-    responses: Mapping[str, Response], reference: str, *, scene: Scene, pair: str | None, beam: str
-) -> list[Track]:
-    """Return contact force, arc position and clamp moment of one beam, with the errors of `comparisons.errors`.
+def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
+    """Return force, arc position and clamp moment of a scene of one beam, with the errors of `comparisons.errors`.
 
     Parameters
     ----------
@@ -56,25 +54,22 @@ def tracks(
         By label.
     reference : str
         The label whose values the errors are against.
-    pair, beam : str
-        Contact pair, None without contact, and beam.
+    scene : Scene
+        With one contact at most; without one the force on the tip is shown.
     """
     force, length = _units(scene)
-    exact, size = responses[reference], scene.beam(beam).length
     errors = {
-        label: error_histories(response, exact, pair=pair, beam=beam, length=size)
+        label: error_histories(response, responses[reference], scene, quantities=("force", "arc", "moment"))[
+            1
+        ]
         for label, response in responses.items()
         if label != reference
     }
-    values = {label: histories(response, pair=pair, beam=beam) for label, response in responses.items()}
+    values = {label: _values(response, scene) for label, response in responses.items()}
     named = {
-        "contact_force": (
-            "force on the tip" if pair is None else "contact force",
-            force,
-            "its largest value",
-        ),
-        "arc_position": ("arc position", length, "the length"),
-        "clamp_moment": ("clamp moment", f"{force} {length}", "its largest value"),
+        "force": ("contact force" if scene.contacts else "force on the tip", force, "its largest value"),
+        "arc": ("arc position", length, "the length"),
+        "moment": ("clamp moment", f"{force} {length}", "its largest value"),
     }
     return [
         Track(
@@ -85,8 +80,17 @@ def tracks(
             error_title=f"error against the {reference}, over {scale}",
         )
         for name, (title, unit, scale) in named.items()
-        if np.isfinite(values[reference][name]).any()
+        if name in values[reference]
     ]
+
+
+def _values(response: Response, scene: Scene) -> dict[str, Array]:
+    support = response.supports[scene.beams[0].name]
+    if scene.contacts:
+        contact = response.contacts[scene.contacts[0].pair]
+        return {"force": contact.force, "arc": contact.arc_position, "moment": support.moment}
+    assert support.other_end is not None, "a beam without contact is moved by its other end"
+    return {"force": size(support.other_end.force), "moment": support.moment}
 
 
 def motion_section(

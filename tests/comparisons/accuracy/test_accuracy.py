@@ -8,10 +8,11 @@ import pytest
 
 from comparisons.accuracy import solve_to
 from comparisons.accuracy.pilot import pilot
-from comparisons.accuracy.quantities import difference
 from comparisons.accuracy.require import without_idle
+from comparisons.errors import difference
 from comparisons.models import solve
-from comparisons.models.options import QUANTITIES, ModelError, Options
+from comparisons.models.options import ModelError, Options
+from comparisons.quantities import QUANTITIES
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5)

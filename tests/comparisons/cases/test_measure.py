@@ -13,6 +13,7 @@ from comparisons.cases import Case, Measurement, measure, memory
 from comparisons.cases.memory import with_peak_memory
 from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
+from comparisons.response.axis import SampledAxes
 from comparisons.scene import load_scene
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -64,49 +65,72 @@ def test_labels() -> None:
     "one", [case(elements=4), case("solid", mesh=(10, 1)), case("rod")], ids=lambda one: one.model
 )
 def test_measurement_is_the_response(one: Case) -> None:
-    found, response = measure(one, repeats=2), solve(one.scene, one.model, one.options)
-    assert (found.status, found.completed, found.repeats) == ("COMPLETED", True, 2)
-    assert found.verdict == "CERTIFIED"
-    assert 0.0 < found.seconds < 60.0
+    measured, response = measure(one, repeats=2), solve(one.scene, one.model, one.options)
+    found = measured.response
+    assert (found.status, found.completed, measured.repeats) == ("COMPLETED", True, 2)
+    assert measured.verdict == "CERTIFIED"
+    assert 0.0 < measured.seconds < 60.0
     assert found.iterations == response.newton_iterations.sum()
     assert np.array_equal(found.load_parameter, response.load_parameter)
-    assert np.array_equal(found.force[PAIR], response.contacts[PAIR].force)
-    assert np.array_equal(found.tip["cantilever"], response.tips["cantilever"])
-    assert found.shape_at == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0], abs=1e-15)
-    line = found.shape["cantilever"]
+    assert np.array_equal(found.contacts[PAIR].force, response.contacts[PAIR].force)
+    assert np.array_equal(found.tips["cantilever"], response.tips["cantilever"])
+    line = np.array([found.axis_line("cantilever", k)[1] for k in range(5)])
     assert line.shape == (5, 101, 2)
-    assert line[:, -1] == pytest.approx(found.tip["cantilever"], abs=1e-3)
+    assert line[:, -1] == pytest.approx(found.tips["cantilever"], abs=1e-3)
     assert line[:, 0] == pytest.approx(np.zeros((5, 2)), abs=1e-3)
-    again = Measurement.from_json(found.to_json())
-    assert same(found, again)
-    assert same(found, pickle.loads(pickle.dumps(found)))  # noqa: S301 made here
-    assert {item.name: type(getattr(found, item.name)) for item in fields(found)} == {
-        item.name: type(getattr(again, item.name)) for item in fields(again)
-    }
+    again = Measurement.from_json(measured.to_json())
+    assert same(measured, again)
+    assert same(measured, pickle.loads(pickle.dumps(measured)))  # noqa: S301 made here
+    for kept, read in ((measured, again), (measured.response, again.response)):
+        assert {item.name: type(getattr(kept, item.name)) for item in fields(kept)} == {
+            item.name: type(getattr(read, item.name)) for item in fields(read)
+        }
+    with pytest.raises(NotImplementedError, match="has no mesh"):
+        again.response.grid(0)
+
+
+def test_what_is_not_timed_keeps_no_axes() -> None:
+    found = measure(case(elements=4), repeats=0)
+    assert found.verdict == ""
+    assert np.array_equal(
+        found.response.tips["cantilever"], solve(KS, "tsm", Options(elements=4)).tips["cantilever"]
+    )
+    assert len(found.to_json()) < len(measure(case(elements=4), repeats=1).to_json()) / 5
+    assert same(found, Measurement.from_json(found.to_json()))
 
 
 def test_a_refused_case_is_measured_as_refused() -> None:
     found = measure(case("tsm", mesh=(2, 1)))
-    assert (found.status, found.completed) == ("REFUSED", False)
-    assert "not an option" in found.message
+    assert (found.response.status, found.response.completed) == ("REFUSED", False)
+    assert "not an option" in found.response.message
     assert same(found, Measurement.from_json(found.to_json()))
 
 
 def test_a_stopped_case_keeps_what_it_reached() -> None:
     soft = replace(KS, contacts=(replace(KS.contacts[0], penalty=1e-3),))
     found = measure(Case(scene=soft, model="solid", options=Options(mesh=(10, 1))), repeats=1)
-    assert not found.completed
-    assert found.status != "COMPLETED"
-    assert len(found.load_parameter) < 5
+    assert not found.response.completed
+    assert found.response.status != "COMPLETED"
+    assert len(found.response.load_parameter) < 5
     assert same(found, Measurement.from_json(found.to_json()))
 
 
 def test_an_empty_history_keeps_its_shape() -> None:
     found = measure(case(elements=4), repeats=1)
-    tables = ("support_force", "tip", "shape")
-    empty = replace(found, **{name: {"a": getattr(found, name)["cantilever"][:0]} for name in tables})
-    again = Measurement.from_json(empty.to_json())
-    assert all(getattr(again, name)["a"].shape == getattr(empty, name)["a"].shape for name in tables)
+    response, beam = found.response, "cantilever"
+    support = response.supports[beam]
+    empty = replace(
+        response,
+        load_parameter=np.empty(0),
+        contacts={},
+        supports={beam: replace(support, force=support.force[:0], moment=support.moment[:0])},
+        tips={beam: response.tips[beam][:0]},
+        axis_line=SampledAxes(arc_length={}, position={}),
+        newton_iterations=response.newton_iterations[:0],
+        index=None,
+    )
+    again = Measurement.from_json(replace(found, response=empty).to_json()).response
+    assert again.tips[beam].shape == again.supports[beam].force.shape == (0, 2)
 
 
 def test_peak_memory_is_of_the_action_alone() -> None:

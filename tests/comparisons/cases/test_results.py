@@ -64,8 +64,8 @@ def test_rows_are_sorted_by_what_varies(file: Path, measured: list[Measurement])
         ("tsm", 10, None, 0.03),
     ]
     last = rows[-1]
-    assert last["force:pin->cantilever"] == measured[0].force["pin->cantilever"][-1]
-    assert last["tip_y:cantilever"] == measured[0].tip["cantilever"][-1, 1]
+    assert last["force:pin->cantilever"] == measured[0].response.contacts["pin->cantilever"].force[-1]
+    assert last["tip_y:cantilever"] == measured[0].response.tips["cantilever"][-1, 1]
     assert (last["seconds"], last["peak_memory"]) == (measured[0].seconds, measured[0].peak_memory)
     assert (rows[2]["status"], rows[2]["verdict"]) == ("REFUSED", "")
     assert last["verdict"] == "CERTIFIED"

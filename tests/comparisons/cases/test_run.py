@@ -71,7 +71,7 @@ def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(
     path = tmp_path / "a.sqlite"
     monkeypatch.setattr(run_module, "solve", faults.killed)
     assert done(path, CASES, local(2)).statuses == {"COMPLETED": 5, "WORKER_LOST": 1}
-    lost = next(result for result in read_results(path) if not result.measurement.completed)
+    lost = next(result for result in read_results(path) if not result.measurement.response.completed)
     assert lost.settings["elements"] == faults.FATAL
     # it says nothing about the case, which the next run tries again
     monkeypatch.undo()
@@ -90,8 +90,8 @@ def test_a_case_that_raises_does_not_stop_the_others(tmp_path: Path, monkeypatch
     path = tmp_path / "a.sqlite"
     monkeypatch.setattr(run_module, "solve", faults.raising)
     assert done(path, CASES).statuses == {"COMPLETED": 5, "ERROR": 1}
-    wrong = next(result for result in read_results(path) if not result.measurement.completed)
-    assert wrong.measurement.message == "ZeroDivisionError: a bug in two lines"
+    wrong = next(result for result in read_results(path) if not result.measurement.response.completed)
+    assert wrong.measurement.response.message == "ZeroDivisionError: a bug in two lines"
 
 
 def test_a_worker_of_another_version_is_found_out() -> None:

@@ -113,7 +113,9 @@ def test_a_settled_result_stands_and_a_lost_one_does_not(tmp_path: Path, measure
         store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
         store.record("a", CASE, measured)
         assert store.statuses() == {"a": "COMPLETED"}
-        store.record("a", CASE, replace(measured, status="STEP_TOO_SMALL"))
+        store.record(
+            "a", CASE, replace(measured, response=replace(measured.response, status="STEP_TOO_SMALL"))
+        )
         store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
         assert store.statuses() == {"a": "COMPLETED"}
     assert intact(tmp_path / "a.sqlite") == 1
@@ -143,9 +145,9 @@ def other_database(path: Path) -> None:
     connection.close()
 
 
-def newer(path: Path) -> None:
+def of_schema(path: Path, number: int) -> None:
     with Store(path) as store:
-        store._connection.execute("PRAGMA user_version = 99")
+        store._connection.execute(f"PRAGMA user_version = {number}")
 
 
 @pytest.mark.parametrize(
@@ -153,10 +155,17 @@ def newer(path: Path) -> None:
     [
         (lambda path: path.write_text("key,status\n" * 100), "file is not a database"),
         (other_database, "is no results file of crossval, but another SQLite database"),
-        (newer, "has schema 99"),
+        (
+            lambda path: of_schema(path, 99),
+            "has schema 99, this version of crossval reads 2: choose another file",
+        ),
+        (
+            lambda path: of_schema(path, 1),
+            "has schema 1, this version of crossval reads 2: choose another file",
+        ),
         (Path.mkdir, "is not a regular file|there is no such file"),
     ],
-    ids=["text", "another database", "newer", "folder"],
+    ids=["text", "another database", "newer", "older", "folder"],
 )
 def test_other_files_are_refused_and_left_alone(
     make: Callable[[Path], object], reason: str, tmp_path: Path
@@ -230,7 +239,7 @@ def of_version(path: Path, version: str, *, key: str | None = None) -> None:
 def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, measured: Measurement) -> None:
     path = tmp_path / "a.sqlite"
     with Store(path) as store:
-        store.record(CASE.key, CASE, replace(measured, iterations=12345))
+        store.record(CASE.key, CASE, replace(measured, response=replace(measured.response, cutbacks=12345)))
     of_version(path, "0.1.0", key=key)
     with Store(path) as store:
         assert store.statuses() == {}
@@ -238,8 +247,8 @@ def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, me
         assert store.claim([CASE.key], limit=1).mine == [CASE.key]
         store.record(CASE.key, CASE, measured)
         assert store.statuses() == {CASE.key: "COMPLETED"}
-    found = {result.version: result.measurement.iterations for result in read_results(path)}
-    assert found[version()] == int(measured.iterations)
+    found = {result.version: result.measurement.response.cutbacks for result in read_results(path)}
+    assert found[version()] == measured.response.cutbacks
     assert ("0.1.0" in found) is (key is not None)
 
 

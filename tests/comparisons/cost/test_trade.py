@@ -12,7 +12,6 @@ import pytest
 
 from comparisons.cases import Case, Measurement, measure
 from comparisons.cli import main
-from comparisons.cost.answers import QUANTITIES, SCOPES
 from comparisons.cost.cases import family, limit_cases, load_steps, refined, resolution, sweep_cases
 from comparisons.cost.orders import orders
 from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
@@ -21,6 +20,7 @@ from comparisons.cost.sweep import measure_trade, write_trade
 from comparisons.cost.tables import cheapest_text, setting_rows, stopped_text
 from comparisons.models import MODELS
 from comparisons.models.options import Options
+from comparisons.quantities import KEPT, SCOPES
 from comparisons.scene import load_scene, to_toml
 from comparisons.scene.conditions import LoadSpec
 from comparisons.show.pages import text
@@ -36,10 +36,14 @@ def measured(case: Case) -> Measurement:
 
 def few(cases: Sequence[Case]) -> dict[Case, Measurement]:
     """Measure beams and coarse solids; the others stop by name."""
-    stopped = replace(measured(cases[0]), status="LEFT_OUT", completed=False)
+    stopped = changed(measured(cases[0]), status="LEFT_OUT", completed=False)
     return {
         case: stopped if case.model == "solid" and resolution(case) > 10 else measured(case) for case in cases
     }
+
+
+def changed(measurement: Measurement, **response: object) -> Measurement:
+    return replace(measurement, response=replace(measurement.response, **response))  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +98,7 @@ def test_without_a_rod_exact_elements_are_the_reference_and_then_an_extrapolatio
     exact = best_reference(scene, found)
     assert "not independent" in exact.sentence
     without = {
-        case: replace(one, completed=case.options.element == "mixed" and one.completed)
+        case: changed(one, completed=case.options.element == "mixed" and one.response.completed)
         for case, one in found.items()
     }
     by_mixed = best_reference(scene, without)
@@ -102,11 +106,11 @@ def test_without_a_rod_exact_elements_are_the_reference_and_then_an_extrapolatio
     apart = by_mixed.errors(found[cases[0]])["path"]["force"]
     assert 0.0 < apart <= 3.0 * by_mixed.uncertainty["path"]["force"]
     with pytest.raises(NoReferenceError, match="double-beam"):
-        best_reference(scene, {case: replace(one, completed=False) for case, one in found.items()})
+        best_reference(scene, {case: changed(one, completed=False) for case, one in found.items()})
 
 
 def test_what_stopped_is_listed_and_not_ranked(trade: Trade) -> None:
-    assert "LEFT_OUT" in {point.measured.status for point in trade.stopped}
+    assert "LEFT_OUT" in {point.measured.response.status for point in trade.stopped}
     assert len(setting_rows(trade)) == len(trade.points)
     assert stopped_text(trade).count("\n") == len(trade.stopped)
     assert not set(trade.stopped) & {point for model in MODELS for point in trade.of_model(model, "end")}
@@ -120,10 +124,10 @@ def synthetic(trade: Trade) -> Trade:
     beam = Case(scene=KS, model="tsm")
 
     def point(case: Case, seconds: float, error: float, own: float) -> Point:
-        tables = [{scope: dict.fromkeys(QUANTITIES, value) for scope in SCOPES} for value in (error, own)]
+        tables = [{scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (error, own)]
         return Point(
             case=case,
-            measured=replace(rod.measured, seconds=seconds, unknowns=round(100 * seconds)),
+            measured=replace(changed(rod.measured, unknowns=round(100 * seconds)), seconds=seconds),
             errors=tables[0],
             own_errors=tables[1],
         )
@@ -137,7 +141,7 @@ def synthetic(trade: Trade) -> Trade:
         point(solid, 90.0, 3e-2, 1e-5),
         point(replace(solid, scene=replace(KS, load_parameters=1)), 5.0, 1e-5, 1e-5),
     ]
-    known = {scope: dict.fromkeys(QUANTITIES, 1e-4) for scope in SCOPES}
+    known = {scope: dict.fromkeys(KEPT, 1e-4) for scope in SCOPES}
     return replace(trade, points=points, limit=replace(trade.reference, uncertainty=known))
 
 
@@ -183,9 +187,12 @@ def test_files_hold_every_setting(trade: Trade, tmp_path: Path) -> None:
     html = (tmp_path / "report.html").read_text()
     check_alone(html, tmp_path)
     assert html.count("data:image/svg+xml") == len(list(tmp_path.glob("*.svg")))
-    assert all(text(f"{one.measured.status}: {one.measured.message}") in html for one in trade.stopped)
+    assert all(
+        text(f"{one.measured.response.status}: {one.measured.response.message}") in html
+        for one in trade.stopped
+    )
     numbers = json.loads((tmp_path / "trade.json").read_text())
-    assert len(numbers["cheapest"]) == len(SCOPES) * len(QUANTITIES) * len(TARGETS)
+    assert len(numbers["cheapest"]) == len(SCOPES) * len(KEPT) * len(TARGETS)
     assert {row["model"] for row in numbers["pareto"]} == {"tsm"}
 
 

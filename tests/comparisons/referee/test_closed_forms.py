@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
 from comparisons.exact.chain import Chain, load_path
-from comparisons.exact.coupled import coupled_rods
 from comparisons.exact.elastica import elastica_under_pin
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.rod import rod_under_pin
@@ -129,18 +129,17 @@ def test_tied_tip_to_1e_11() -> None:
 @pytest.mark.slow
 def test_coupled_rods_to_1e_11() -> None:
     scene = replace(load_scene("double-beam"), load_parameters=10)
-    beams, beam = solve(scene, "tsm"), scene.beams[0]
+    beams = solve(scene, "tsm")
     depth = 0.76 * beams.load_parameter
-    rod = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": 1.0}
     both = np.flatnonzero((depth > 0.16) & (depth < 0.53))
-    truth = coupled_rods(depth[both], pin_x=0.8, spacing=0.2, **rod)
+    truth = coupled(scene, depth[both])
     assert len(both) > 3
     for row, k in enumerate(both):
         exact = found(scene, answer_state(beams, scene, int(k)))
         # positive there from x to y, depth downwards
         for pair, force, arc in (
-            ("pin->upper", truth.pin_force[row], truth.pin_arc[row]),
-            ("upper.end->lower", truth.tip_force[row], truth.tip_arc[row]),
+            (UPPER, truth.pin_force[row], truth.pin_arc[row]),
+            (TIP, truth.tip_force[row], truth.tip_arc[row]),
         ):
             here = exact.contacts[pair]
             np.testing.assert_allclose(here.force, force * [1.0, -1.0], rtol=0.0, atol=1e-11)

@@ -10,8 +10,9 @@ import pytest
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure
 from comparisons.cases.store import ERROR, WORKER_LOST
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance
-from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
+from comparisons.claims.claim import Allowance, Verdict
+from comparisons.claims.extremes.allowance import LARGEST, allowance
+from comparisons.claims.extremes.cell import Cell, Judgement, judged
 from comparisons.claims.extremes.checks import Against, Circle, Energy
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod
 from comparisons.claims.extremes.scenes import cantilever, cycles, half_circle, rolled_up, sheared
@@ -39,22 +40,22 @@ def judge(own: Measurement, cell: Cell = CELL) -> Judgement:
 
 def off(measurement: Measurement, part: float) -> Measurement:
     """Return a measurement whose contact forces are off by `part` of themselves."""
-    return replace(
-        measurement, force={pair: (1 + part) * values for pair, values in measurement.force.items()}
-    )
+    response = measurement.response
+    contacts = {pair: replace(one, force=(1 + part) * one.force) for pair, one in response.contacts.items()}
+    return replace(measurement, response=replace(response, contacts=contacts))
 
 
 def stopped(measurement: Measurement, status: str = "CUTBACK_FLOOR") -> Measurement:
     """Return what is left of a measurement that stopped half-way."""
-    tables = ("force", "arc_position", "support_force", "other_end_force", "moment", "tip")
-    halves = {name: {key: table[:5] for key, table in getattr(measurement, name).items()} for name in tables}
-    return replace(
-        measurement,
-        status=status,
-        completed=False,
-        load_parameter=measurement.load_parameter[:5],
-        **halves,  # type: ignore[arg-type]
-    )
+    response = measurement.response
+    half = replace(response, status=status, completed=False, load_parameter=response.load_parameter[:5])
+    return replace(measurement, response=half)
+
+
+def empty(measurement: Measurement, status: str) -> Measurement:
+    """Return a measurement that stopped before the first load parameter."""
+    nothing = replace(measurement.response, status=status, load_parameter=np.zeros(0))
+    return replace(measurement, response=nothing)
 
 
 def test_an_answer_within_its_theory_is_right() -> None:
@@ -89,7 +90,7 @@ def test_a_check_that_refuses_a_right_answer_is_needless() -> None:
     assert judge(stopped(own, CHECK_FAILED)).needless
     assert not judge(stopped(off(own, 1e-3), CHECK_FAILED)).needless
     assert not judge(own).needless
-    nothing = replace(own, status=CHECK_FAILED, load_parameter=np.zeros(0))
+    nothing = empty(own, CHECK_FAILED)
     assert not judge(nothing).needless
 
 
@@ -101,7 +102,7 @@ def test_whatever_goes_on_where_its_reference_stopped_is_wrong() -> None:
 
 
 def test_a_stop_at_the_start_claims_nothing() -> None:
-    nothing = replace(measured(CASE), status="SINGULAR_TANGENT", load_parameter=np.zeros(0))
+    nothing = empty(measured(CASE), "SINGULAR_TANGENT")
     found = judge(nothing)
     assert (found.verdict, found.findings, found.reached) == (Verdict.STOPPED, (), 0.0)
 
@@ -120,18 +121,18 @@ def test_energy_of_exact_answers(scene: object, model: str) -> None:
     """Of a beam as stiff as the elastica, of one soft in shear, and of one that is touched and left."""
     case = Case(scene=scene, model=model)  # type: ignore[arg-type]
     check = Energy(rigid=model == "elastica")
-    own = measured(case)
+    own = measured(case).response
     found = check.finding(case, own, {})
     assert found.error <= found.allowed == 1e-12
-    changed = {beam: values * (1 + 1e-9) for beam, values in own.support_force.items()}
-    assert check.finding(case, replace(own, support_force=changed), {}).error > 1e-10
+    changed = {beam: replace(one, force=one.force * (1 + 1e-9)) for beam, one in own.supports.items()}
+    assert check.finding(case, replace(own, supports=changed), {}).error > 1e-10
 
 
 @pytest.mark.parametrize(("element", "elements"), [("mixed", 20), ("timoshenko", 40)])
 def test_roll_up_is_a_circle(element: str, elements: int) -> None:
     """The first neglected term is the error, to a tenth: nothing much larger would pass."""
     case = beam_case(rolled_up(cantilever(), 1), ELEMENTS[element], elements)
-    found = Circle().finding(case, measured(case), {})
+    found = Circle().finding(case, measured(case).response, {})
     assert 0.9 * found.allowed < found.error < found.allowed < 1e-3
 
 
@@ -180,6 +181,6 @@ def test_the_inner_moment_counts_where_the_beam_turns_by_more_than_a_right_angle
     last = half_circle(cantilever(slenderness=1e5), steps=1)
     check = Against(case=exact_rod(last))
     coarse = Case(scene=last, model="tsm", options=Options(element="timoshenko", elements=20))
-    found = check.finding(coarse, measured(coarse), {check.case: measured(check.case)})
+    found = check.finding(coarse, measured(coarse).response, {check.case: measured(check.case)})
     assert found is not None
     assert found.allowed == pytest.approx(4 * (np.sqrt(2 * 8.18212814018414) / 20) ** 2 / 24, rel=1e-3)

@@ -11,11 +11,12 @@ from pathlib import Path
 import pytest
 
 from comparisons.cases.measure import measure
+from comparisons.claims.claim import Finding, Verdict
 from comparisons.claims.extremes import run as runner
 from comparisons.claims.extremes.allowance import Allowance
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, Judgement, Verdict, judged
-from comparisons.claims.extremes.checks import Against, Finding
+from comparisons.claims.extremes.cell import Cell, Judgement, judged
+from comparisons.claims.extremes.checks import Against
 from comparisons.claims.extremes.rows import KINDS, against_rod, beam_case, exact_rod
 from comparisons.claims.extremes.scenes import cantilever, half_circle
 from comparisons.cli import main
@@ -81,7 +82,7 @@ def test_element_lengths_differ_by_the_ratio() -> None:
 
 def judgement(verdict: Verdict, error: float, column: str, status: str = "COMPLETED") -> Judgement:
     case = beam_case(half_circle(cantilever()), ELEMENTS["mixed"], 10)
-    finding = Finding(against="exact rod", error=error, allowed=1e-3, why="h < 1 & h > 0")
+    finding = Finding(name="exact rod", error=error, allowed=1e-3, why="h < 1 & h > 0")
     return Judgement(
         cell=Cell(axis="elements", row="mixed", column=column, case=case, checks=(against_rod(case),)),
         verdict=verdict,

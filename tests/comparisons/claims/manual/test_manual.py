@@ -10,16 +10,17 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from comparisons.claims.claim import Allowance, Quantity, StoppedError, Verdict
 from comparisons.claims.junit import JUnitCase, junit_text
-from comparisons.claims.manual import Case, Problem, Quantity, Trial, write_manual
+from comparisons.claims.manual import Case, Problem, Trial, write_manual
 from comparisons.claims.manual import write as manual_write
 from comparisons.claims.manual.elastica import identity, slip_off
 from comparisons.claims.manual.frames import toggle
-from comparisons.claims.manual.judge import failure, judge
+from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.loads import dead_load, roll_up
 from comparisons.claims.manual.pictures import STYLES
 from comparisons.claims.manual.problems import PROBLEMS
-from comparisons.claims.manual.record import Answer, Curve, Picture, StoppedError
+from comparisons.claims.manual.record import Curve, Measured, Picture
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.claims.manual.text import junit_cases, markdown
 from comparisons.cli import main
@@ -31,12 +32,13 @@ def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.0
     """A problem with the exact values 2 and 0, and models that answer so."""
 
     def trial(answer: "tuple[float, ...] | StoppedError") -> Trial:
-        def measure() -> Answer:
+        def measure() -> Measured:
             if isinstance(answer, StoppedError):
                 raise answer
-            return Answer(values=answer, curves=(Curve(style="rod", points=np.eye(2)),))
+            return Measured(values=answer, curves=(Curve(style="rod", points=np.eye(2)),))
 
-        return Trial(model="rod", setting="", tolerance=tolerance, reason="made up", measure=measure)
+        allowance = Allowance(error=tolerance, why="made up")
+        return Trial(model="rod", setting="", allowance=allowance, measure=measure)
 
     return Problem(
         name="made-up",
@@ -50,7 +52,7 @@ def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.0
 
 
 def judged(*answers: "tuple[float, ...] | StoppedError") -> Case:
-    return judge(problem(*answers), "made-up.svg")[0]
+    return answered(problem(*answers), "made-up.svg")[0]
 
 
 @pytest.mark.parametrize(
@@ -66,19 +68,22 @@ def judged(*answers: "tuple[float, ...] | StoppedError") -> Case:
 )
 def test_errors_are_relative_and_what_is_no_number_fails(values, errors, passed):
     case = judged(values)
-    assert case.runs[0].errors == pytest.approx(errors, rel=1e-12, nan_ok=True)
-    assert case.passed is case.runs[0].passed is passed
-    assert (failure(case, case.runs[0]) is None) is passed
+    (item,) = case.judgements
+    assert [one.error for one in item.findings] == pytest.approx(errors, rel=1e-12, nan_ok=True)
+    assert case.passed is item.passed is passed
+    assert item.verdict is (Verdict.RIGHT if passed else Verdict.WRONG)
+    assert (item.failure is None) is passed
 
 
 def test_a_failure_names_the_worst_quantity_with_its_numbers():
     case = judged((2.1, 1.0), (math.nan, 1.0), StoppedError("CUTBACK_FLOOR: too small"))
-    first, second, third = (failure(case, run) for run in case.runs)
+    first, second, third = (item.failure for item in case.judgements)
     assert first == "|b|: 1, exact 0, error 0.25 > 0.01"
     assert second is not None
     assert second.startswith("a: nan, exact 2")
     assert third == "CUTBACK_FLOOR: too small"
-    assert all(map(math.isnan, case.runs[2].values))
+    assert all(map(math.isnan, case.judgements[2].values))
+    assert case.judgements[2].verdict is Verdict.STOPPED
 
 
 def test_a_model_must_answer_every_quantity():
@@ -134,7 +139,7 @@ def test_a_manual_of_two_cases(tmp_path: Path):
     lines: list[str] = []
     manual = write_manual(tmp_path / "new", lines.append, QUICK)
     assert manual.passed
-    assert [case.name for case in manual.cases] == ["dead-load", "elastica-identity"]
+    assert [case.problem.name for case in manual.cases] == ["dead-load", "elastica-identity"]
     assert len(lines) == 2
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(
         path.name for path in manual.files
@@ -227,9 +232,9 @@ def test_a_limit_that_is_not_reached_is_named(monkeypatch):
 
     short = frames.Path
     monkeypatch.setattr(frames, "Path", lambda **given: short(**{**given, "steps": 4}))
-    case, _ = judge(toggle(), "t.svg")
+    case, _ = answered(toggle(), "t.svg")
     assert not case.passed
-    assert all("0 limit points of 2" in run.stopped for run in case.runs)
+    assert all("0 limit points of 2" in item.stopped for item in case.judgements)
 
 
 def test_problems_state_what_they_must():
@@ -241,18 +246,19 @@ def test_problems_state_what_they_must():
         assert all(quantity.exact or quantity.scale for quantity in one.quantities)
         for trial in one.trials:
             assert trial.model in STYLES
-            assert 0.0 < trial.tolerance <= 0.3
-            assert trial.reason
+            assert 0.0 < trial.allowance.error <= 0.3
+            assert trial.allowance.why
 
 
 @pytest.mark.slow
 def test_the_whole_manual_passes(tmp_path: Path):
     manual = write_manual(tmp_path, lambda _: None)
-    wrong = [failure(case, run) for case in manual.cases for run in case.runs if not run.passed]
+    items = [item for case in manual.cases for item in case.judgements]
+    wrong = [item.failure for item in items if not item.passed]
     assert wrong == []
-    assert len(manual.cases) == len(PROBLEMS) == len({case.name for case in manual.cases}) == 28
-    assert all(run.reason and run.tolerance <= 0.3 for case in manual.cases for run in case.runs)
-    assert {run.model for case in manual.cases for run in case.runs} >= {
+    assert len(manual.cases) == len(PROBLEMS) == len({case.problem.name for case in manual.cases}) == 28
+    assert all(item.claim.allowance.why and item.claim.allowance.error <= 0.3 for item in items)
+    assert {trial.model for case in manual.cases for trial in case.problem.trials} >= {
         "tsm exact",
         "tsm mixed",
         "tsm timoshenko",

@@ -20,12 +20,13 @@ from comparisons.claims.paper.critical_area import (
     Floor,
     Measured,
 )
-from comparisons.claims.paper.double_beam import LOWER, TIP, UPPER, Attempt, Check, Happened, History
+from comparisons.claims.paper.double_beam import Attempt, Check, Happened, History
 from comparisons.claims.paper.ks_shapes import Run8
 from comparisons.claims.paper.turned_frame import NAME as TURNED
 from comparisons.claims.paper.verdict import Verdict, in_size, over_readings
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
-from comparisons.errors import Errors
+from comparisons.quantities import KEPT
 
 REPRODUCED, IN_DIRECTION, NOT, OPEN = (
     Verdict.REPRODUCED,
@@ -134,10 +135,10 @@ def shapes(
     """A study of the paper's element with 10, 20 and 50 elements, and the solid; `force` is the error of the force over the shape's."""
 
     def run(label: str, value: float, status: str, unknowns: int, seconds: float) -> Run8:
-        zero = dict.fromkeys(Errors.__dataclass_fields__, force * value)
+        path = dict.fromkeys(KEPT, force * value) | {"shape": value}
         return Run8(
             reading=examples.KS, label=label, status=status, unknowns=unknowns, iterations=1, seconds=seconds,
-            errors=Errors(**zero), shape_error=value, shape_difference=value,
+            errors={"path": path}, shape_difference=value,
         )  # fmt: skip
 
     runs = [

@@ -194,7 +194,7 @@ def test_a_run_that_stopped_leaves_no_error(browser: Browser, tmp_path: Path) ->
         "TSM exact": replace(beams, load_parameter=beams.load_parameter[:0]),
         "exact rod": rod,
     }
-    made = tracks(responses, "exact rod", scene=scene, pair="pin->cantilever", beam="cantilever")
+    made = tracks(responses, "exact rod", scene)
     section = motion_section("Stopped", scene, responses, made, focus="TSM mixed")
     (tmp_path / "report.html").write_text(page("t", "", [section]))
     script = """

@@ -32,7 +32,7 @@ def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Pat
         assert arc["values"][label] == run["contacts"]["pin->cantilever"]["arc_position"]
         assert moment["values"][label] == run["supports"]["cantilever"]["moment"]
         if run["errors"]:
-            stated = [run["errors"][name] for name in ("contact_force", "arc_position", "clamp_moment")]
+            stated = [run["errors"]["path"][name] for name in ("force", "arc", "moment")]
             assert [max(track["errors"][label]) for track in data["tracks"]] == stated
     for drawn in data["runs"]:
         tips = [lines[0][-1] for lines in drawn["lines"]]
@@ -95,13 +95,12 @@ def test_a_run_that_stopped_is_shown_as_far_as_it_came() -> None:
     rod, beams = solve(KS, "rod"), solve(KS, "tsm")
     cut = replace(beams, load_parameter=beams.load_parameter[:2])
     responses = {"TSM mixed": cut, "exact rod": rod}
-    made = tracks(responses, "exact rod", scene=KS, pair="pin->cantilever", beam="cantilever")
+    made = tracks(responses, "exact rod", KS)
     data = motion_section("t", KS, responses, made, focus="exact rod").data
     assert [len(run["lines"]) for run in data["runs"]] == [2, 4]
-    whole = error_histories(beams, rod, pair="pin->cantilever", beam="cantilever", length=1.0)
-    assert np.array_equal(made[0].errors["TSM mixed"], whole["contact_force"][:2])
-    stated = errors(beams, rod, pair="pin->cantilever", beam="cantilever", length=1.0)
-    assert stated.contact_force == whole["contact_force"].max()
+    _, whole = error_histories(beams, rod, KS)
+    assert np.array_equal(made[0].errors["TSM mixed"], whole["force"][:2])
+    assert errors(beams, rod, KS)["path"]["force"] == whole["force"].max()
 
 
 def test_nothing_reached_is_said() -> None:

@@ -1,0 +1,200 @@
+"""A claim: values that a case measures, their reference values and the error that is allowed; and the one judge of claims."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from time import perf_counter
+
+from comparisons.claims.junit import JUnitCase
+
+
+class StoppedError(RuntimeError):
+    """A solution that stopped before it had an answer: its status and sentence."""
+
+
+class Verdict(StrEnum):
+    """What becomes of a claim."""
+
+    RIGHT = "right"
+    STOPPED = "stopped"
+    WITHDRAWN = "withdrawn"
+    """An answer that its own checks refuse: neither right nor a stop in time."""
+    WRONG = "wrong"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """What is compared.
+
+    Attributes
+    ----------
+    name : str
+        With its unit, or without one where it is dimensionless.
+    exact : float
+        The reference value.
+    scale : float, optional
+        What an error is divided by, the magnitude of the reference value if not given.
+    """
+
+    name: str
+    exact: float
+    scale: float | None = None
+
+    def error(self, value: float) -> float:
+        """Return ``|value - exact| / scale``."""
+        return abs(value - self.exact) / (abs(self.exact) if self.scale is None else self.scale)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Allowance:
+    """The largest error allowed, and its reason: the largest part of it in words."""
+
+    error: float
+    why: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """An error, what is allowed, and why that much.
+
+    Attributes
+    ----------
+    name : str
+        The quantity, or the answer that is compared with.
+    error, allowed : float
+        Relative; the error is infinite where one of the two has no answer.
+    why : str
+        Where the allowed error comes from.
+    """
+
+    name: str
+    error: float
+    allowed: float
+    why: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether the error is within what is allowed; nan is not."""
+        return self.error <= self.allowed
+
+    @property
+    def share(self) -> float:
+        """The error as a part of what is allowed, infinite if it is no number."""
+        share = self.error / self.allowed
+        return share if math.isfinite(share) else math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """A statement about the answer to a case.
+
+    Attributes
+    ----------
+    name : str
+        What answers: a model with its resolution, or a bound.
+    statement, source : str
+        The case with its sizes and units; where the reference values come from.
+    quantities : tuple of Quantity
+        What is compared, with the reference values.
+    allowance : Allowance
+        Of every quantity.
+    measure : callable
+        Returns a value for every quantity; raises `StoppedError` where there is no answer.
+    """
+
+    name: str
+    statement: str
+    source: str
+    quantities: tuple[Quantity, ...]
+    allowance: Allowance
+    measure: Callable[[], Sequence[float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """A claim, what was measured, and the verdict.
+
+    Attributes
+    ----------
+    claim : Claim
+        The claim.
+    verdict : Verdict
+        Right, wrong or stopped.
+    values : tuple of float
+        One for every quantity, nan where the solution stopped.
+    findings : tuple of Finding
+        The error of every quantity.
+    seconds : float
+        Wall time, everything included.
+    stopped : str
+        Why there is no answer, empty if there is one.
+    """
+
+    claim: Claim
+    verdict: Verdict
+    values: tuple[float, ...]
+    findings: tuple[Finding, ...]
+    seconds: float
+    stopped: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether every error is within what is allowed."""
+        return self.verdict is Verdict.RIGHT
+
+    @property
+    def worst(self) -> int:
+        """Number of the quantity with the largest error, of the first that is not a number if one is not."""
+        return max(range(len(self.findings)), key=lambda k: self.findings[k].share)
+
+    @property
+    def failure(self) -> str | None:
+        """Why the claim fails, with its numbers; None if it is right."""
+        if self.passed or self.stopped:
+            return self.stopped or None
+        k = self.worst
+        exact, found = self.claim.quantities[k].exact, self.findings[k]
+        return f"{found.name}: {self.values[k]:.10g}, exact {exact:.10g}, error {found.error:.2g} > {found.allowed:.2g}"
+
+    def junit(self, classname: str) -> JUnitCase:
+        """Return the judgement as a JUnit test case."""
+        return JUnitCase(
+            classname=classname, name=self.claim.name, seconds=self.seconds, failure=self.failure
+        )
+
+
+def judge(claim: Claim) -> Judgement:
+    """Measure what a claim is about and judge it.
+
+    Raises
+    ------
+    ValueError
+        If not every quantity has a value.
+    """
+    began, stopped = perf_counter(), ""
+    try:
+        values = tuple(claim.measure())
+    except StoppedError as error:
+        stopped, values = str(error), (math.nan,) * len(claim.quantities)
+    seconds = perf_counter() - began
+    findings = tuple(
+        Finding(
+            name=quantity.name,
+            error=math.inf if stopped else quantity.error(value),
+            allowed=claim.allowance.error,
+            why=claim.allowance.why,
+        )
+        for quantity, value in zip(claim.quantities, values, strict=True)
+    )
+    verdict = Verdict.STOPPED if stopped else decided(findings)
+    return Judgement(
+        claim=claim, verdict=verdict, values=values, findings=findings, seconds=seconds, stopped=stopped
+    )
+
+
+def decided(findings: Sequence[Finding], *, completed: bool = True) -> Verdict:
+    """Return the verdict on what was found: one error beyond what is allowed is wrong, also if the solution stopped later."""
+    if not all(finding.holds for finding in findings):
+        return Verdict.WRONG
+    return Verdict.RIGHT if completed else Verdict.STOPPED

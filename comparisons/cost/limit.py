@@ -1,0 +1,71 @@
+"""The limit of a series of responses, by extrapolation, and the state at which it carries its last force."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from comparisons.errors import forces, size
+from comparisons.response import Array, Response, SupportHistory
+from comparisons.response.axis import SampledAxes, sampled_axes
+
+Tables = dict[str, Array]
+
+
+def extrapolated(responses: Sequence[Response]) -> Response:
+    """Return the limit of the last three responses, coarse to fine with a constant ratio of refinement, at the same load parameters.
+
+    The order is observed from the responses, in the largest norm of every quantity over the load parameters: with the differences
+    ``d1, d2`` of neighbours, ``q = q3 + d2 / (|d1|/|d2| - 1)`` (Richardson, Aitken). Where the differences do not fall by a tenth
+    at least, nothing is added. The last difference ``|d2|`` tells how well the limit is known: what a constant order would leave is less,
+    but a local singularity, as under a load on one node, lowers the order once the rest has converged.
+    """
+
+    def limit(read: Callable[[Response], Tables]) -> Tables:
+        coarse, middle, fine = (read(one) for one in responses[-3:])
+        last = {name: fine[name] - middle[name] for name in fine}
+        factor = _remainder([middle[name] - coarse[name] for name in fine], list(last.values()))
+        return {name: values + factor * last[name] for name, values in fine.items()}
+
+    best = responses[-1]
+    force, moment = limit(forces), limit(lambda one: {beam: s.moment for beam, s in one.supports.items()})
+    arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
+    return replace(
+        best,
+        contacts={
+            pair: replace(contact, force=force[pair], arc_position=arc[pair])
+            for pair, contact in best.contacts.items()
+        },
+        supports={
+            beam: _supported(replace(support, moment=moment[beam]), beam, force)
+            for beam, support in best.supports.items()
+        },
+        tips=limit(lambda one: one.tips),
+        axis_line=SampledAxes(
+            arc_length=sampled_axes(best).arc_length, position=limit(lambda one: sampled_axes(one).position)
+        ),
+    )
+
+
+def _remainder(before: Sequence[Array], last: Sequence[Array]) -> float:
+    """Sum of a geometric series after its second term, over that term."""
+    d1, d2 = (
+        max((float(np.nanmax(np.abs(part), initial=0.0)) for part in parts), default=0.0)
+        for parts in (before, last)
+    )
+    return d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
+
+
+def _supported(support: SupportHistory, beam: str, force: Tables) -> SupportHistory:
+    """Return the support with the forces of the limit, which of a scene with contacts are those of the contacts alone."""
+    other = support.other_end
+    if other is not None:
+        other = replace(other, force=force.get(f"{beam}.other_end", other.force))
+    return replace(support, force=force.get(beam, support.force), other_end=other)
+
+
+def end_state(reference: Response) -> float:
+    """Return the last load parameter at which the reference carries a force."""
+    carries = np.any([size(values) > 0.0 for values in forces(reference).values()], axis=0)
+    loaded = reference.load_parameter[carries]
+    return float(loaded[-1] if len(loaded) else reference.load_parameter[-1])

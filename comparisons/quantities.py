@@ -1,0 +1,16 @@
+"""What is compared between two responses to one scene; `comparisons.errors` measures it."""
+
+QUANTITIES = {
+    "force": "contact forces, of a scene without contact the support forces, over the largest",
+    "arc": "arc positions of the contacts over the length",
+    "moment": "support moments over the largest",
+    "tip": "positions of the beams' ends over the length",
+    "shape": "deflected axes at equal arc lengths, the largest distance over the length",
+    "shape_mean": "deflected axes at equal arc lengths, the mean distance over the length",
+    "stress": "stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
+}
+"""An accuracy can be asked for each, and each can be bounded."""
+KEPT = tuple(name for name in QUANTITIES if name != "stress")
+"""The quantities that every model states and that a stored response keeps."""
+SCOPES = ("end", "path")
+"""An error at one load parameter, and the largest over all load parameters that both responses have."""

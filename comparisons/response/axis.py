@@ -1,0 +1,80 @@
+"""Deformed axes at the points where two responses are compared and where one is stored."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import NoReturn
+
+import numpy as np
+
+from comparisons.response.record import Array, Response
+
+STATIONS = np.linspace(0.0, 1.0, 101)
+"""Arc lengths over the length."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SampledAxes:
+    """Deformed axes as arrays, in the place of `Response.axis_line`.
+
+    Attributes
+    ----------
+    arc_length : dict of ndarray, shape (m,)
+        Arc lengths along the undeformed axes, by beam.
+    position : dict of ndarray, shape (s, m, 2)
+        Deformed positions at the s load parameters, by beam.
+    """
+
+    arc_length: dict[str, Array]
+    position: dict[str, Array]
+
+    def __call__(self, beam: str, k: int) -> tuple[Array, Array]:
+        """Return arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k."""
+        return self.arc_length[beam], self.position[beam][k]
+
+
+def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Array:
+    """Return the deformed axes of a beam at n load parameters, shape (n, 101, 2), by cubic splines through the model's points."""
+    from scipy.interpolate import CubicSpline
+
+    lines = [response.axis_line(beam, k) for k in steps]
+    if not lines:
+        return np.empty((0, len(STATIONS), 2))
+    first = lines[0][0]
+    if all(np.array_equal(arc, first) for arc, _ in lines):
+        points = np.stack([line for _, line in lines], axis=1)
+        found = np.moveaxis(CubicSpline(first, points)(_stations(first)), 1, 0)
+    else:
+        found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
+    # a spline meets its points but for round-off; both ends are the model's own
+    found[:, 0], found[:, -1] = [line[0] for _, line in lines], [line[-1] for _, line in lines]
+    return np.asarray(found)
+
+
+def _stations(arc: Array) -> Array:
+    return np.asarray(arc[0] + STATIONS * (arc[-1] - arc[0]))
+
+
+def sampled_axes(response: Response) -> SampledAxes:
+    """Return the deformed axes of all beams at `STATIONS`; those of a response that is sampled already as they are."""
+    if isinstance(response.axis_line, SampledAxes):
+        return response.axis_line
+    steps = range(len(response.load_parameter))
+    arcs = {beam: response.axis_line(beam, 0)[0] for beam in response.tips} if steps else {}
+    return SampledAxes(
+        arc_length={beam: _stations(arc) for beam, arc in arcs.items()},
+        position={beam: axes_at_stations(response, beam, steps) for beam in arcs},
+    )
+
+
+def storable(response: Response, *, axes: bool = True) -> Response:
+    """Return a response of arrays alone, which can be stored and sent: with its axes at `STATIONS`, or without axes.
+
+    Meshes, the deformation of elements and the certificate are left out: they belong to the solution at hand.
+    """
+    kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
+    return replace(response, axis_line=kept, grid=no_grid, deformation=None, certificate=None)
+
+
+def no_grid(_: int) -> NoReturn:
+    """Refuse to return a mesh: the `grid` of a stored response."""
+    raise NotImplementedError("a stored response has no mesh")
