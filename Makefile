@@ -21,9 +21,9 @@ test-all: lint
 coverage: setup
 	$(PYTEST) -m "not slow" --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
 
-# a random sample of faults put into these modules one at a time: whether their fast tests tell
+# a random sample of mutants of the modules in pyproject.toml; a mutant may collect without end, so memory has a limit
 mutation: setup
-	$(THREADS) PYTHONPATH=. $(BIN)/python tests/mutation/sample.py --out out/mutation.tsv
+	ulimit -v 6000000; $(THREADS) $(BIN)/python -m tests.mutation.sample
 
 docs: setup
 	rm -rf out/docs
@@ -64,4 +64,4 @@ $(STAMP): pyproject.toml .constraints.txt
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .nox out docs/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .nox out mutants docs/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache
