@@ -112,8 +112,8 @@ def test_compare_measures_the_force_on_the_tip_and_leaves_out_who_cannot(
     runs = {
         run["label"]: run["errors"] for run in json.loads((tmp_path / "summary.json").read_text())["runs"]
     }
-    assert runs["TSM mixed, 20 elements"]["contact_force"] < 5e-6
-    assert runs["TSM mixed, 20 elements"]["arc_position"] is None
+    assert runs["TSM mixed, 20 elements"]["path"]["force"] < 5e-6
+    assert runs["TSM mixed, 20 elements"]["path"]["arc"] is None
     assert not list(tmp_path.rglob("*pin-*.vtu"))
 
 

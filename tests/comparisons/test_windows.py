@@ -73,7 +73,7 @@ def test_a_study_without_unix(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(STUDY)
     crossval(tmp_path, "study", "s.toml", "--results", "s.sqlite", "--workers", "1")
     results = read_results(tmp_path / "s.sqlite")
-    assert [result.measurement.status for result in results] == ["COMPLETED"] * 2
+    assert [result.measurement.response.status for result in results] == ["COMPLETED"] * 2
 
 
 UNIX = r"os\.(fork|forkpty|kill|killpg|getuid|geteuid|getpgid|setsid|wait\w*|chown|fchown|nice|sched_\w+|uname|statvfs|mkfifo|O_(NONBLOCK|DIRECTORY|NOFOLLOW|CLOEXEC))\b|signal\.(SIGKILL|SIGHUP|SIGUSR\d|SIGALRM|alarm|setitimer|pause)\b"

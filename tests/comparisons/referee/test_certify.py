@@ -192,7 +192,7 @@ def test_forged_answers_are_refused(case: str) -> None:
 
 def as_asked(wrong: Scene, asked: Scene) -> Certificate:
     """Certificate of the answer to another scene as if it were one to the scene that was asked."""
-    response = MODELS["tsm"](wrong, Options(), unwatched)
+    response = MODELS["tsm"].solve(wrong, Options(), unwatched)
     assert response.completed, response.message
     return certify(response, asked)
 
@@ -307,7 +307,7 @@ def test_a_clamp_that_turns_is_followed() -> None:
         SupportSpec(beam="a", end="end", kind="clamped", displacement=(0.028, -0.01), rotation=0.111),
     )
     scene = Scene(name="strut", load_parameters=3, beams=(beam,), supports=held)
-    response = MODELS["tsm"](scene, Options(elements=20), unwatched)
+    response = MODELS["tsm"].solve(scene, Options(elements=20), unwatched)
     assert response.completed, response.message
     found = certify(response, scene, at=range(3))
     assert found.certified, found.line()
@@ -359,7 +359,7 @@ def test_strong_shear() -> None:
         beams=(beam,),
         loads=(LoadSpec(beam="b", end="end", force=(0.0, -4.0)),),
     )
-    response = MODELS["tsm"](scene, Options(element="exact"), unwatched)
+    response = MODELS["tsm"].solve(scene, Options(element="exact"), unwatched)
     found = certify(response, scene, at=[-1])
     assert found.certified
     assert found.judged[0].exact.ends["b.end"][1] == pytest.approx(-1.046, abs=5e-4)
