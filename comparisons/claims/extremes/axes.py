@@ -11,12 +11,11 @@ from comparisons.claims.claim import Allowance
 from comparisons.claims.extremes.cell import Cell
 from comparisons.claims.extremes.checks import Against, Circle
 from comparisons.claims.extremes.rows import (
-    KINDS,
-    MESHED,
     beam_case,
     beams,
     exact_answers,
     exact_rod,
+    kinds,
     solids,
     with_check,
 )
@@ -31,7 +30,7 @@ from comparisons.claims.extremes.scenes import (
 )
 from comparisons.models import SOLID
 from comparisons.scene import Scene, load_scene
-from tsm.elements import CLOSED_FORM, MIXED, TIMOSHENKO
+from tsm.elements import MIXED, TIMOSHENKO, ClosedForm
 
 MESH = (50, 2)
 COARSE = (25, 2)
@@ -87,7 +86,7 @@ def _slenderness(axis: str, quick: bool) -> list[Cell]:
     cells = []
     for slenderness in (2, 50, 1e3, 1e5, 1e6) if quick else (2, 5, 10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6):
         column, scene = f"{slenderness:g}", half_circle(cantilever(slenderness=slenderness))
-        fourth = {kind.name for kind in CLOSED_FORM.values() if kind.order >= 4}
+        fourth = {kind.name for kind in kinds() if isinstance(kind, ClosedForm) and kind.order >= 4}
         promised = (Against(case=exact_rod(scene), allowed=TARGET),) if 50 <= slenderness <= 1e5 else ()
         cells += [
             with_check(cell, *promised) if cell.row in fourth else cell
@@ -119,9 +118,9 @@ def _elements(axis: str, quick: bool) -> list[Cell]:
     cells = [*exact_answers(axis, "1", scene)]
     for count in (1, 2, 5, 50) if quick else (1, 2, 3, 5, 10, 20, 50, 200, 1000, 5000):
         column = f"{count}"
-        cells += beams(axis, column, scene, count, only=MESHED)
+        cells += beams(axis, column, scene, count, only=kinds(meshed=True))
         if count <= 1000:
-            for kind in (kind for kind in KINDS if not kind.meshed):
+            for kind in kinds(meshed=False):
                 case = beam_case(scene, kind, None)
                 case = replace(case, options=replace(case.options, elements=count))
                 checks = (Against(case=exact_rod(scene)),)
@@ -138,7 +137,7 @@ def _ratio(axis: str, quick: bool) -> list[Cell]:
         at_clamp = np.cumsum(growth / growth.sum())[:-1]
         for where, nodes in (("clamp", at_clamp), ("tip", 1 - at_clamp[::-1])):
             scene = half_circle(cantilever(nodes=tuple(nodes.tolist())))
-            cells += beams(axis, f"1e{power}, fine at {where}", scene, None, only=MESHED)
+            cells += beams(axis, f"1e{power}, fine at {where}", scene, None, only=kinds(meshed=True))
     return cells
 
 
@@ -241,7 +240,7 @@ def _depth(axis: str, _: bool) -> list[Cell]:
             cells += solids(axis, column, scene, MESH)
     for turns in (1, 2):
         scene = rolled_up(cantilever(), turns)
-        for kind in KINDS:
+        for kind in kinds():
             case = beam_case(scene, kind, 40 * turns)
             cells.append(
                 Cell(axis=axis, row=kind.name, column=f"roll-up, {turns}", case=case, checks=(Circle(),))
@@ -255,14 +254,14 @@ CUT_BACK = 100
 
 def _time(axis: str, quick: bool) -> list[Cell]:
     cells = []
-    unknown = [kind for kind in KINDS if kind.contact_unknowns]
+    unknown = [kind for kind in kinds() if kind.contact_unknowns]
     for count in (1, 20) if quick else (1, 20, 100, 1000, 10_000):
         column, scene = f"{count}", cycles(cantilever(), count)
         cells += beams(axis, column, scene, 15, only=unknown)
         cells += exact_answers(axis, column, scene)
         if count <= CUT_BACK:
             cells += [
-                *beams(axis, column, scene, 15, only=[kind for kind in KINDS if kind not in unknown]),
+                *beams(axis, column, scene, 15, only=[kind for kind in kinds() if kind not in unknown]),
                 *solids(axis, column, scene, COARSE),
             ]
     return cells

@@ -12,9 +12,11 @@ from comparisons.models.options import Options
 from comparisons.scene import Scene
 from tsm.elements import ELEMENTS, ElementType
 
-KINDS = tuple(sorted((kind for kind in ELEMENTS.values() if not kind.variant), key=lambda kind: kind.meshed))
-"""The types of TSM elements of the matrix, those without a mesh first."""
-MESHED = tuple(kind for kind in KINDS if kind.meshed)
+
+def kinds(*, meshed: bool | None = None) -> list[ElementType]:
+    """Return the types of TSM elements of the matrix, those without a mesh first; with `meshed` only those with one, or without."""
+    found = sorted((kind for kind in ELEMENTS.values() if not kind.variant), key=lambda kind: kind.meshed)
+    return [kind for kind in found if meshed in (None, kind.meshed)]
 
 
 def exact_rod(scene: Scene) -> Case:
@@ -40,12 +42,15 @@ def against_rod(case: Case) -> Against:
 
 
 def beams(
-    axis: str, column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] = KINDS
+    axis: str, column: str, scene: Scene, elements: int | None, *, only: Iterable[ElementType] | None = None
 ) -> list[Cell]:
     """Return the cells of TSM, and of other models of beams with a mesh as they are, against the rod."""
     others = (model for model in MODELS.values() if model.meshed and not model.continuum and model is not TSM)
     return [
-        *(_beam(axis, column, beam_case(scene, kind, elements)) for kind in only),
+        *(
+            _beam(axis, column, beam_case(scene, kind, elements))
+            for kind in (kinds() if only is None else only)
+        ),
         *(_against(axis, model.name, column, Case(scene=scene, model=model.name)) for model in others),
     ]
 

@@ -1,0 +1,60 @@
+"""An element that is registered is right wherever elements are asked for: accuracy, extremes, figures, comparisons of cost."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tsm
+from comparisons.accuracy import solve_to
+from comparisons.cases import Case, measure
+from comparisons.claims.claim import Verdict
+from comparisons.claims.extremes.allowance import LARGEST
+from comparisons.claims.extremes.axes import matrix
+from comparisons.claims.extremes.cell import Cell, judged
+from comparisons.claims.extremes.rows import against_rod, beam_case
+from comparisons.claims.extremes.scenes import cantilever, half_circle
+from comparisons.models import TSM, solve
+from comparisons.models.options import Options
+from comparisons.scene import load_scene
+from comparisons.show.palette import style
+from tsm.elements import MIXED
+
+KIND = replace(MIXED, name="new", sheared=False, colour="#AA3377", marker="x")
+KS = replace(load_scene("ks-cantilever"), load_parameters=8)
+
+
+@pytest.fixture(autouse=True)
+def registered(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(tsm.ELEMENTS, KIND.name, KIND)
+
+
+def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise() -> None:
+    rigid = replace(
+        KS, beams=(replace(KS.beams[0], shear_modulus=1e9 * KS.beams[0].youngs_modulus, poissons_ratio=None),)
+    )
+    answer = solve_to(rigid, 1e-5, element=KIND.name)
+    exact = solve(rigid, "rod").contacts["pin->cantilever"].force
+    force = answer.response.contacts["pin->cantilever"].force
+    assert answer.reached
+    assert np.abs(force - exact).max() <= 1e-5 * exact.max()
+
+
+def test_extremes_have_it_with_the_allowance_of_its_order() -> None:
+    cells = [cell for cell in matrix(quick=True) if cell.row == KIND.name]
+    assert {cell.axis for cell in cells} == {
+        cell.axis for cell in matrix(quick=True) if cell.row == MIXED.name
+    }
+    case = beam_case(half_circle(cantilever()), KIND, 10)
+    cell = Cell(axis="", row=KIND.name, column="", case=case, checks=(against_rod(case),))
+    judgement = judged(cell, {one: measure(one, repeats=0) for one in cell.cases})
+    assert judgement.verdict is Verdict.RIGHT, judgement.sentence
+    assert judgement.decisive is not None
+    assert judgement.decisive.allowed < 1e-3 < LARGEST
+
+
+def test_figures_and_labels_have_it() -> None:
+    options = Options(element=KIND.name, elements=10)
+    assert TSM.run_label(options) == "TSM new, 10 elements"
+    assert Case(scene=KS, model=TSM.name, options=options).label == "tsm new 10"
+    assert (style(TSM.run_label(options)).colour, style("TSM new").marker) == ("#AA3377", "x")
