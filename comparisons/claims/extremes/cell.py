@@ -12,14 +12,14 @@ from comparisons.models.verify import CHECK_FAILED
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """A case at one place of the matrix and what it is compared with.
+    """A case at one position of the matrix, with its checks.
 
     Attributes
     ----------
     axis, row, column : str
-        Its place: what varies, the model, the value.
+        Position of the cell: the varied quantity, the model, the value.
     case : Case
-        What is solved.
+        The case that is solved.
     checks : tuple of Check
         All of them must hold.
     """
@@ -45,16 +45,16 @@ class Judgement:
     cell : Cell
         The cell.
     verdict : Verdict
-        Wrong is an error above what is allowed, at any load parameter that was reached, and a case without a status of its own;
-        an answer that fails its own checks is withdrawn, and counts neither as right nor as stopped.
+        Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the answer fails the
+        checks of a response; it counts neither as right nor as stopped.
     status, message : str
         How the solution ended.
     reached : float
         The last load parameter reached, zero if none was.
     findings : tuple of Finding
-        Of every check, over what was reached; empty if nothing was.
+        Findings of all checks over the load parameters that were reached; empty if none was.
     iterations, cutbacks : int
-        What it took.
+        Newton iterations and cut-backs.
     seconds : float
         Processor time, nan if nothing ran.
     """
@@ -71,13 +71,13 @@ class Judgement:
 
     @property
     def needless(self) -> bool:
-        """Whether an answer is withdrawn of which everything that was reached is within what is allowed."""
+        """Whether the answer is withdrawn although all its errors are within their allowances."""
         held = bool(self.findings) and all(finding.holds for finding in self.findings)
         return self.verdict is Verdict.WITHDRAWN and held
 
     @property
     def decisive(self) -> Finding | None:
-        """The finding that comes nearest to what is allowed, or exceeds it most."""
+        """The finding with the largest error over its allowance."""
         return max(self.findings, key=lambda finding: finding.share, default=None)
 
     @property

@@ -17,9 +17,9 @@ from tsm import elements as kinds
 FOURTH = "fourth order: half as many elements leave 16 times as much"
 SECOND = "second order: half as many elements leave 4 times as much"
 BREAK = np.full((1, 2), np.nan)
-"""Parts a curve into pieces."""
+"""Row of nan that separates two pieces of a curve."""
 ANSWER = "exact answer"
-"""Style of curves that no model of the case made."""
+"""Style of curves of the exact answer, which no model computed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ class Model:
     Attributes
     ----------
     name, setting : str
-        Of the `Trial`.
+        Model and setting of the `Trial`.
     key : str
         Key of `comparisons.models.MODELS`.
     options : Options
@@ -109,7 +109,7 @@ def on_scene(
     Parameters
     ----------
     scene, model, tolerance, reason
-        What, with what, and how well.
+        Scene, model, allowed error and its reason.
     read : callable
         From the response to the values.
     shown : sequence of float
@@ -125,7 +125,7 @@ def on_scene(
 
 
 def trial(model: Model, tolerance: float, reason: str, measure: Callable[[], Measured]) -> Trial:
-    """Return the trial of a model that is measured in a way of its own."""
+    """Return the trial of a model with the given measurement."""
     allowance = Allowance(error=tolerance, why=reason)
     return Trial(model=model.name, setting=model.setting, allowance=allowance, measure=measure)
 
