@@ -33,7 +33,7 @@ myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 60
+nb_execution_timeout = 600  # seconds of the clock, which a busy machine stretches
 
 html_theme = "furo"
 html_title = "tsm-crossval"
