@@ -116,12 +116,6 @@ class Equilibrium:
         number = next(k for k, station in enumerate(layout.stations) if end in station.ends)
         return np.append(self.ends[end], layout.rotation(self.solution.z, number))
 
-    def material_force(self, beam: str, arc: Array) -> Array:
-        """Return ``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` of a beam at arc lengths (m,)."""
-        there, spec = self.shape(beam, arc), self.solution.layout.scene.beam(beam)
-        stretched = there.N + there.N**2 / (2.0 * spec.EA) + there.Q**2 / (2.0 * spec.GA)
-        return np.asarray(there.moment**2 / (2.0 * spec.EI) + stretched)
-
 
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     """Return the exact equilibrium of `scene` near an answer.

@@ -221,14 +221,6 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     return reduced, entries
 
 
-def axial_force(a: Coefficients, x: Array) -> Array:
-    """Axial force along the chord, shape (n,); arguments as for `response`."""
-    e, mm, hh = _deformation(a, x)
-    polynomial = a.constant + a.of_mm * mm + a.of_hh * hh
-    force: Array = (e + polynomial[0]) / polynomial[1]
-    return force
-
-
 def energy(a: Coefficients, x: Array) -> Array:
     """Strain energy of beam elements, shape (n,); arguments as for `response`."""
     e, mm, hh = _deformation(a, x)
