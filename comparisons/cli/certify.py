@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
+from comparisons.cli.options import add_options, chosen
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
 from comparisons.files import writable_file, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -34,9 +35,7 @@ def add_to(commands: "Commands") -> None:
     )
     parser.add_argument("--scene", metavar="SCENE", help="of a response, where it is not a built-in one")
     parser.add_argument("--model", choices=MODELS, help="of a scene: the model that answers (tsm)")
-    parser.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
-    parser.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
-    parser.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
+    add_options(parser, "elements", "element", "mesh")
     parser.add_argument(
         "--all", action="store_true", help="judge every load parameter and follow the path between them"
     )
@@ -70,8 +69,7 @@ def run(given: "argparse.Namespace") -> int:
         from comparisons.models import solve
 
         scene = load_scene(given.answer)
-        options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
-        response = solve(scene, given.model or TSM.name, options)
+        response = solve(scene, given.model or TSM.name, chosen(given))
     every = range(len(response.load_parameter)) if given.all else None
     found = certify(response, scene, at=every, allowance=given.allowance)
     text = to_text({"scene": scene.name, "model": response.model, **found.as_dict()})

@@ -4,11 +4,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli import values
+from comparisons.cli.options import add_options, chosen
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import Options
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
 
@@ -38,9 +37,7 @@ def add_to(commands: "Commands") -> None:
     )
     gate.add_argument("--model", choices=MODELS, default=TSM.name, help="the model that is measured (tsm)")
     gate.add_argument("--against", choices=MODELS, help="the model that it is measured against")
-    gate.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
-    gate.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
-    gate.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
+    add_options(gate, "elements", "element", "mesh")
     gate.add_argument("--junit", metavar="FILE", help="write the bounds as JUnit XML")
     gate.set_defaults(run=run)
 
@@ -64,8 +61,7 @@ def run(given: argparse.Namespace) -> int:
     file = None if given.junit is None else writable_file(Path(given.junit))
     from comparisons.claims.gate import gate
 
-    options = Options(elements=given.elements, element=given.element, mesh=given.mesh)
-    found = gate(scene, given.model, options, dict(given.max_error), given.against)
+    found = gate(scene, given.model, chosen(given), dict(given.max_error), given.against)
     if file is not None:
         write_text(file, found.junit())
     print(f"{scene.name}: {given.model} against {found.reference.model}")

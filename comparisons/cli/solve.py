@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
+from comparisons.cli.options import add_options, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
 from comparisons.models import MODELS, TSM
-from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import built_in_scenes, load_scene
 
@@ -36,23 +37,10 @@ def add_to(commands: "Commands") -> None:
         help="choose model and resolution for this relative error, in place of elements and meshes",
     )
     solve.add_argument(
-        "--quantity", choices=QUANTITIES, help="what the accuracy is that of: " + ", ".join(QUANTITIES)
+        "--quantity", choices=QUANTITIES, help="the quantity whose error is meant: " + ", ".join(QUANTITIES)
     )
     solve.add_argument("--explain", action="store_true", help="with --accuracy: say what was decided and why")
-    solve.add_argument("--elements", type=values.count, metavar="N", help="tsm: elements of every beam")
-    solve.add_argument("--element", metavar="NAME", help="tsm: type of the elements")
-    solve.add_argument(
-        "--tolerance",
-        type=values.part,
-        metavar="X",
-        help="tsm: error allowed to the integration inside exact elements (1e-9)",
-    )
-    solve.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="solid: elements along and across")
-    solve.add_argument(
-        "--branch",
-        choices=BRANCHES,
-        help="at a critical point: stop (the default), turn to the stable branch, or go on along the primary one, unstable",
-    )
+    add_options(solve, "elements", "element", "tolerance", "mesh", "branch")
     solve.add_argument(
         "--certify",
         choices=("last", "all", "none"),
@@ -86,7 +74,7 @@ def run(given: "argparse.Namespace") -> int:
     answer = _answer(scene, given)
     if answer is None:
         with watching(given.model, quiet=given.quiet) as watch:
-            response = solve(scene, given.model, _options(given), watch)
+            response = solve(scene, given.model, chosen(given), watch)
         more = {}
     else:
         scene = answer.found.scene
@@ -109,16 +97,6 @@ def run(given: "argparse.Namespace") -> int:
         f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.found.estimate:.2g}, asked {answer.accuracy:g}"
     )
     return STOPPED
-
-
-def _options(given: "argparse.Namespace") -> Options:
-    return Options(
-        elements=given.elements,
-        element=given.element,
-        tolerance=given.tolerance,
-        mesh=given.mesh,
-        branch=given.branch,
-    )
 
 
 def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":

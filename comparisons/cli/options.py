@@ -1,0 +1,36 @@
+"""The options of the models as arguments of commands."""
+
+import argparse
+from typing import Any
+
+from comparisons.cli import values
+from comparisons.models import MODELS
+from comparisons.models.options import BRANCHES, Options
+
+ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
+    "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
+    "element": ({"metavar": "NAME"}, "type of the elements"),
+    "tolerance": (
+        {"type": values.part, "metavar": "X"},
+        "error allowed to the integration inside exact elements (1e-9)",
+    ),
+    "mesh": ({"type": values.mesh, "metavar": "NXxNY"}, "elements along and across"),
+    "branch": (
+        {"choices": BRANCHES},
+        "at a critical point stop (the default), turn to the stable branch, or go on along the primary one, unstable",
+    ),
+}
+"""How each field of `Options` is read, and what it is."""
+
+
+def add_options(parser: argparse.ArgumentParser, *names: str) -> None:
+    """Add the named options to a command; their help says which models have them."""
+    for name in names:
+        how, what = ARGUMENTS[name]
+        owners = ", ".join(model.name for model in MODELS.values() if name in model.options)
+        parser.add_argument(f"--{name}", help=f"{owners}: {what}", **how)
+
+
+def chosen(given: argparse.Namespace) -> Options:
+    """Return the options that were given."""
+    return Options(**{name: getattr(given, name, None) for name in ARGUMENTS})
