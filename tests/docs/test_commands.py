@@ -29,6 +29,8 @@ COMMANDS = list(dict.fromkeys(LINES))
 
 ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes")
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
+LONG = ("crossval view", "crossval compare", "crossval reproduce")
+"""Commands of many seconds, left to the slow tests; the fast tests of the commands run them on smaller scenes."""
 
 SAID = {
     "doctor": ("numpy", "scikit-fem"),
@@ -49,7 +51,7 @@ SAID = {
 @pytest.mark.parametrize(
     "line",
     [
-        pytest.param(line, marks=pytest.mark.slow if line.startswith("crossval view") else ())
+        pytest.param(line, marks=pytest.mark.slow if line.startswith(LONG) else ())
         for line in COMMANDS
         if not line.startswith(ELSEWHERE)
     ],
