@@ -1,11 +1,12 @@
-"""The error budget of beams against the solid: what makes up their difference, each part measured by itself.
+"""The error budget of beams against the solid: the parts of their difference, each measured by itself.
 
 With n the TSM elements, h the solid's mesh and eps its penalty,
 
     q_TSM(n) - q_solid(h, eps) = [TSM mesh] + [TSM theory] + [solid beside the rod] + [material law]
                                  + [solid mesh] + [penalty] + [load steps] + rest.
 
-The parts are extrapolated from runs that differ in one thing, so that they do not sum to the difference by construction.
+Each part is extrapolated from runs that differ in one setting only. The sum of the parts is therefore not the difference by
+construction, and the rest is a measured number.
 """
 
 from collections.abc import Callable, Iterator
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 TIMES = (0.25, 0.5, 0.75, 1.0)
 """Load parameters of the budget."""
 STEPS = 20
-"""Load parameters of the solutions behind it; the part for load steps has twice as many."""
+"""Load steps of the solutions that the budget is computed from; the part for load steps compares with twice as many."""
 ELEMENTS = 20
 """TSM elements, of the type `mixed`."""
 QUANTITIES = ("contact_force", "arc_position", "clamp_moment")
@@ -62,7 +63,7 @@ class Budget:
     parts: dict[str, dict[str, Array]]
 
     def rest(self, quantity: str) -> Array:
-        """What the parts do not explain, over the total."""
+        """Difference that the parts do not explain, over the total."""
         total = self.total[quantity]
         explained: Array = np.sum(list(self.parts[quantity].values()), axis=0)
         return np.asarray((total - explained) / total)
@@ -111,7 +112,7 @@ def error_budget(scene: Scene) -> Budget:
 
 
 def _step(coarse: Values, fine: Values, quantity: str, *, order: int) -> Array:
-    """Way from a coarse answer to the limit, from one with half the element length (Richardson)."""
+    """Estimate the limit minus the coarse answer, from the answer at half the element length (Richardson)."""
     step: Array = (fine[quantity] - coarse[quantity]) / (1.0 - 2.0**-order)
     return step
 

@@ -56,7 +56,7 @@ RUNS = tuple(
     for model in sorted(models.MODELS.values(), key=lambda model: (not model.meshed) * (1 + model.rod))
     for options in model.compared()
 )
-"""The runs of a comparison: the settings that every model states, models with a mesh first, the exact rod last."""
+"""The runs of a comparison, by the settings that each model states: models with a mesh first, the exact rod last."""
 PAPER = tuple(_beams(TIMOSHENKO, elements) for elements in (10, 20, 50))
 """The paper's element."""
 MIXED = _beams(tsm.elements.MIXED, 20)
@@ -65,7 +65,7 @@ SOLID, ROD, ELASTICA = (run_of(model, Options()) for model in (models.SOLID, mod
 
 
 def _layer(run: Run) -> int:
-    """Place of a run when axes are drawn over each other: the solid first, then beams without nodes, beams, exact answers."""
+    """Layer of a run in a figure, from below: the solid, beams without nodes, beams, exact answers."""
     model = models.MODELS[run.model]
     if model.continuum or not model.meshed:
         return 0 if model.continuum else 3
@@ -82,14 +82,14 @@ APART = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """What a comparison found: its rows, and the files it wrote."""
+    """Result of a comparison: one row for each run, and the files written."""
 
     rows: list[Row]
     files: list[Path]
 
     @property
     def apart(self) -> list[Row]:
-        """The completed runs on another branch than the reference; the elastica, which leaves out stretch and shear, may be far off."""
+        """The completed runs on another branch than the reference. The elastica has no stretch and no shear, so it is not judged."""
         return [
             row for row in self.rows if row.label != ELASTICA.label and row.response.completed and _apart(row)
         ]
@@ -115,11 +115,11 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     Parameters
     ----------
     scene : Scene
-        One that the exact rod can state: it is the reference.
+        A scene that the exact rod, the reference of the comparison, can state.
     folder : Path
-        Made if it is not there.
+        Output folder; it is created if it does not exist.
     report : callable
-        Takes lines about the progress.
+        Receives lines about the progress.
     watching : callable
         ``watching(label)`` gives a context with the `Watch` of a run.
 

@@ -1,10 +1,11 @@
 """The measure of the difference between two responses to one scene.
 
-A quantity is compared at the load parameters that both responses have; nothing is interpolated in the load parameter. Of several
-contacts, supports and beams the largest difference counts. Forces, moments and stresses are relative to the largest of the reference,
-positions to the length of their beam. A value that is not a number has an infinite error, and so has the arc position of a pair that is open
-in one response and closed in the other. The error of the arc position is not a number where the pair is open in both, and where the scene
-has no contact.
+A quantity is compared at the load parameters that both responses have; nothing is interpolated in the load parameter. The error
+is the largest difference over all contacts, supports and beams. Forces, moments and stresses are relative to the largest value of
+the reference, positions to the length of their beam.
+
+A value that is not a number has an infinite error. The arc position has an infinite error where its pair is open in one response
+and closed in the other. The error of the arc position is nan where the pair is open in both, and where the scene has no contact.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -19,7 +20,7 @@ from comparisons.response.axis import STATIONS, axes_at_stations
 from comparisons.scene import Scene
 
 AWAY = 1.5
-"""Heights beside clamp and contact within which a solid's stress is that of a point force."""
+"""Distance from clamp and contact, over the height, within which the stress of a solid is local; it is not compared there."""
 
 Errors = Mapping[str, Mapping[str, float]]
 """Errors by scope and quantity."""
@@ -28,7 +29,7 @@ Steps = NDArray[np.integer]
 
 @dataclass(frozen=True, kw_only=True)
 class Scales:
-    """The force and the moment that errors are relative to: the largest of the reference, 1 where that is zero."""
+    """The largest force and moment of the reference, by which errors are divided; 1 where the largest is zero."""
 
     force: float
     moment: float
@@ -46,7 +47,7 @@ def _largest_size(columns: Iterable[Array]) -> float:
 
 
 def forces(response: Response) -> dict[str, Array]:
-    """Return the contact forces, shape (s,) by pair; of a scene without contact the support forces, (s, 2) by beam and end."""
+    """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by beam and end."""
     if response.contacts:
         return {pair: contact.force for pair, contact in response.contacts.items()}
     found = {beam: support.force for beam, support in response.supports.items()}
@@ -78,11 +79,11 @@ def errors(
     Parameters
     ----------
     response, reference : Response
-        To the same scene; the response may have fewer load parameters.
+        Two responses to the same scene; the first may have fewer load parameters.
     scene : Scene
-        Gives the beams' lengths.
+        Source of the beams' lengths.
     scale : Scales, optional
-        What forces and moments are relative to, the largest of the reference if not given.
+        Divisors of forces and moments; by default the largest values of the reference.
     end : float, optional
         The load parameter of the scope ``end``, the reference's last if not given.
     quantities : iterable of str
@@ -101,9 +102,10 @@ def errors(
 
 
 def difference(response: Response, reference: Response, scene: Scene, quantity: str) -> float:
-    """Return the largest error of a quantity as far as both responses came, relative to the largest of the reference up to there.
+    """Return the largest error of a quantity over the load parameters that both responses reached.
 
-    Infinite where they share no load parameter; zero where both have nothing to compare, as a scene without contact has no arc position.
+    Forces and moments are relative to the largest value of the reference at these load parameters. The error is infinite if the
+    responses share no load parameter. It is zero if neither response has the quantity: a scene without contact has no arc position.
     """
     _, _, steps = _shared(response, reference)
     if not len(steps):
@@ -146,7 +148,7 @@ class _Pair:
     scale: Scales
 
     def worst(self, columns: Iterable[Array]) -> Array:
-        """Return the largest of the columns, shape (n,), leaving out what there is nothing to compare of; nan where nothing is left."""
+        """Return the largest of the columns that are numbers, shape (n,); nan where none is."""
         none = np.full(len(self.ours), np.nan)
         return np.asarray(np.fmax.reduce([none, *columns]))
 
@@ -201,7 +203,7 @@ def _stress(pair: _Pair) -> Array:
 
 
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:
-    """Principal stress of the larger magnitude along both faces of the one beam, nan beside clamp, tip and contacts."""
+    """Principal stress of the larger magnitude along both faces of the only beam, nan near clamp, tip and contacts (`AWAY`)."""
     beam, grid = scene.beams[0], response.grid(k)
     area, inertia, _ = beam.cross_section
     (tx, ty), height = beam.direction, beam.height or (12.0 * inertia / area) ** 0.5
@@ -233,5 +235,5 @@ assert set(_MEASURES) == set(QUANTITIES), "every quantity can be compared"
 
 
 def _largest(values: Array) -> float:
-    """Return the largest value, leaving out what is not a number; nan if nothing is left."""
+    """Return the largest of the values that are numbers; nan if none is."""
     return float(np.fmax.reduce(values, initial=np.nan))

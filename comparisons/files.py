@@ -1,4 +1,4 @@
-"""Files that are either whole or not there."""
+"""Atomic files: a file is written completely or not at all."""
 
 import os
 import signal
@@ -17,11 +17,11 @@ else:
 
 
 class OutputError(ValueError):
-    """A place where nothing can be written: one line."""
+    """A file or folder cannot be written; the message is one line."""
 
 
 def printable(text: object) -> str:
-    r"""Return `text` with what a terminal would obey, or cannot show, as escapes.
+    r"""Return `text` with escapes for the characters that control a terminal or that it cannot show.
 
     >>> printable("red \x1b[31m")
     'red \\x1b[31m'
@@ -30,14 +30,14 @@ def printable(text: object) -> str:
 
 
 def read_regular(path: str, most: int) -> bytes:
-    """Return the bytes of a regular file; a pipe is not waited for, and nothing is read without end.
+    """Return the bytes of a regular file. A pipe is refused at once, and at most `most` bytes are read.
 
     Raises
     ------
     OSError, ValueError
-        If it cannot be read, is no regular file, or has more than `most` bytes.
+        If the file cannot be read, is not a regular file, or has more than `most` bytes.
     """
-    # a system without pipes in its file system has nothing to wait for
+    # O_NONBLOCK is missing on systems without named pipes, where opening a file never waits
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags), "rb") as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -57,7 +57,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises
     ------
     OutputError
-        If there is no room for the file, or it cannot be written for another reason of the system's.
+        If the disk is full or the system refuses to write the file.
     """
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
@@ -77,10 +77,10 @@ def write_text(path: Path, text: str) -> None:
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other runs that write a set of files into `folder` waiting, so that sets do not mix.
+    """Hold the lock of `folder`: other runs that write a set of files there wait, so that two sets never mix.
 
-    The lock is on the folder itself, so it adds no file, and it ends with its process. Systems without `fcntl` lock files only: there
-    the lock is on a file in the folder, which is removed with it.
+    The lock is on the folder itself, so it adds no file, and it ends with its process. Systems without `fcntl` can lock files only.
+    On such a system the lock is a file in the folder, which is removed when the lock ends.
     """
     if not LOCKS_FOLDERS:
         from filelock import FileLock
@@ -99,18 +99,20 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def staging(folder: Path) -> Iterator[Path]:
-    """Yield a new hidden folder in `folder`, from which finished files are moved; it is removed with what is left in it.
+    """Yield a new hidden folder in `folder`, for files that are moved out when they are finished.
+
+    The hidden folder is removed at the end, with all files still in it.
 
     Raises
     ------
     OutputError
-        If there is no room, or it cannot be written for another reason of the system's.
+        If the disk is full or the system refuses to write.
     """
     try:
         with tempfile.TemporaryDirectory(dir=folder, prefix=".crossval-") as aside:
             yield Path(aside)
     except OutputError as error:
-        # files are named by where they were to be in the end
+        # the message names the final path of a file, not its temporary one
         raise OutputError(str(error).replace(f"{aside}{os.sep}", f"{folder}{os.sep}")) from error
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror or error}") from error
@@ -118,7 +120,7 @@ def staging(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def interrupts_held() -> Iterator[None]:
-    """Hold back Ctrl-C; processes started meanwhile never see it, and leave its handling to this one."""
+    """Hold back Ctrl-C. Processes started inside the block ignore it for good, so that this process alone handles it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -130,12 +132,12 @@ def interrupts_held() -> Iterator[None]:
 
 
 def writable_folder(folder: Path) -> Path:
-    """Return `folder`, made if it is not there, after a trial of writing in it.
+    """Return `folder` after a trial of writing in it; the folder is created if it does not exist.
 
     Raises
     ------
     OutputError
-        If it cannot be made or written in.
+        If the folder cannot be created or written in.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -147,12 +149,12 @@ def writable_folder(folder: Path) -> Path:
 
 
 def writable_file(path: Path) -> Path:
-    """Return `path`, links followed, after a trial of writing in its folder, which must be there.
+    """Return `path` with links followed, after a trial of writing in its folder. The folder must exist.
 
     Raises
     ------
     OutputError
-        If the folder is not there or not writable, or `path` is a folder or a device, which a rename would replace.
+        If the folder does not exist or is not writable, or if `path` is a folder or a device, which a rename would replace.
     """
     if path.exists() and not path.is_file():
         raise OutputError(f"{path}: cannot be written: is not a regular file")

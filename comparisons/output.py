@@ -1,4 +1,4 @@
-"""The numbers of a figure as files: CSV for rows, JSON for what was found."""
+"""The numbers of a study or figure as files: CSV for tables, JSON for nested results."""
 
 import csv
 import io
@@ -17,7 +17,7 @@ from comparisons.version import versions
 Row = dict[str, Any]
 """One line of a study's table."""
 Report = Callable[[str], None]
-"""Told of progress."""
+"""Receives one line about the progress."""
 
 
 def csv_text(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -36,7 +36,7 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
 
 
 def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as aligned text; a number in three digits, what is not there as a dash."""
+    """Return rows of equal keys as aligned text: numbers with three digits, a dash for a missing value."""
     cells = [list(rows[0]), *([_cell(value) for value in row.values()] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return "\n".join(

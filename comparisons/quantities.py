@@ -1,4 +1,4 @@
-"""What is compared between two responses to one scene; `comparisons.errors` measures it."""
+"""The quantities that are compared between two responses to one scene; `comparisons.errors` measures their errors."""
 
 QUANTITIES = {
     "force": "contact forces, of a scene without contact the support forces, over the largest",
@@ -9,8 +9,8 @@ QUANTITIES = {
     "shape_mean": "deflected axes at equal arc lengths, the mean distance over the length",
     "stress": "stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
 }
-"""An accuracy can be asked for each, and each can be bounded."""
+"""Quantities by name. `crossval solve --accuracy` takes each of them, and `crossval gate` can bound each."""
 KEPT = tuple(name for name in QUANTITIES if name != "stress")
 """The quantities that every model states and that a stored response keeps."""
 SCOPES = ("end", "path")
-"""An error at one load parameter, and the largest over all load parameters that both responses have."""
+"""``end``: the error at one load parameter; ``path``: the largest error over all load parameters that both responses have."""

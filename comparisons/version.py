@@ -1,4 +1,4 @@
-"""What a result belongs to: release and sources, the libraries behind it, and the machine."""
+"""Provenance of a result: the release, a digest of the sources, the libraries and the machine."""
 
 import hashlib
 import os
@@ -14,7 +14,7 @@ DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 @cache
 def version() -> str:
-    """Return the release and a digest of the sources, ``0.5.1+1a2b3c4d``: equal only where every line of code is."""
+    """Return the release and a digest of the sources, as ``0.5.1+1a2b3c4d``; equal versions have equal source files."""
     from importlib import metadata
 
     found = hashlib.sha256()
@@ -28,7 +28,7 @@ def version() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the distributions behind the numbers."""
+    """Return the versions of Python and of the installed packages that compute the numbers."""
     from importlib import metadata
 
     found = {name: metadata.version(name) for name in DISTRIBUTIONS}
@@ -36,7 +36,7 @@ def versions() -> dict[str, str]:
 
 
 def machine() -> dict[str, str]:
-    """Return what the wall times belong to: system, processor and the number of its cores."""
+    """Return the machine that wall times are measured on: system, processor and number of cores."""
     return {
         "system": platform.platform(),
         "processor": _processor() or platform.processor() or platform.machine(),

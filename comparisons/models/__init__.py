@@ -1,4 +1,4 @@
-"""The models: each solves a scene and states its response; the registry has them by name."""
+"""The models, by name in a registry. Each model solves a scene and returns its response."""
 
 from comparisons.models.base import Model, Style
 from comparisons.models.registry import MODELS, Certify, certified, references, solve

@@ -1,4 +1,4 @@
-"""The balance of everything that acts on the whole structure, from nothing but a response and its scene."""
+"""The balance of forces and moments on the whole structure, from a response and its scene alone."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,28 +10,29 @@ from comparisons.response import Array, Response
 from comparisons.scene import Scene
 
 BALANCE = 1e-6
-"""Largest unbalanced part of a force, relative to the largest that acts: Newton tolerances are far below."""
+"""Largest unbalanced force, relative to the largest force that acts. Newton's tolerances are far below."""
 LAST_PLACES, UNRESOLVED = 8 * float(np.finfo(float).eps), 1e-4
-"""A force follows from a stretch, which positions resolve to a few units in the last place: so many of EA are allowed besides, up to
-this part of the largest force."""
+"""Round-off of a balance, over EA, and its limit, over the largest force. Stored positions have an error of a few units in the last
+place. A stretch computed from them has the same error, and the axial force has EA times this error. The balance may miss by this
+much more, but by no more than the limit."""
 
 LEAST = 1e-4
-"""Smallest force that is to balance to `BALANCE`, over ``EI/L^2``: Newton's methods end at 1e-10."""
+"""Smallest force, over ``EI/L^2``, that `BALANCE` is relative to: Newton's methods end at a residual of 1e-10."""
 
 
 class Action(NamedTuple):
-    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, a free moment included."""
+    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, with any free moment added."""
 
     force: Array
     moment: Array
 
 
 def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield a sentence for forces and one for moments that do not cancel; contacts between beams are internal.
+    """Yield a sentence for forces that do not balance, and one for moments; contacts between beams are internal forces.
 
     ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M,
-    the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, its force is taken to be what
-    balances the rest, and its magnitude and its moment are compared.
+    the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, the force that balances all other forces
+    is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments.
     """
     supports, loads = _supports(response, scene), _loads(response, scene)
     outer = _sum([*supports, *loads], len(response.load_parameter))
@@ -57,7 +58,7 @@ def _sum(actions: list[Action], steps: int) -> Action:
 
 
 def _largest(scene: Scene, actions: list[Action]) -> float:
-    """Largest force, or moment over length; where nothing acts, so much that the solvers' tolerances balance."""
+    """Largest force, or moment over length. A least value keeps the solvers' residuals within balance where nothing acts."""
     length = max(beam.length for beam in scene.beams)
     forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
     moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
@@ -101,7 +102,7 @@ def _loads(response: Response, scene: Scene) -> list[Action]:
 
 
 def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:
-    """Return how many pins push, the sum of their magnitudes, and their action; of a single one as `outer` asks for it."""
+    """Return the number of pins that push, the sum of their magnitudes, and their action; a single pin balances `outer`."""
     steps = len(response.load_parameter)
     pushing, magnitude, actions = np.zeros(steps, dtype=np.int64), np.zeros(steps), [_sum([], steps)]
     touching = [spec for spec in scene.contacts if "." not in spec.node]

@@ -1,4 +1,4 @@
-"""What a model states about itself: the contract that comparison, report, studies, cost, extremes and pictures ask."""
+"""The contract of a model. Comparison, report, studies, cost, extremes and pictures use a model through it alone."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Style:
     Parameters
     ----------
     colour : str
-        In hexadecimal digits.
+        Colour in hexadecimal digits.
     marker : str
         Marker of matplotlib in diagrams of costs, and of nodes.
     width : float
@@ -45,21 +45,21 @@ class Model(ABC):
     Attributes
     ----------
     name : str
-        Key of `comparisons.models.MODELS`: on the command line, in files and in tables.
+        Key of `comparisons.models.MODELS`, used on the command line, in files and in tables.
     label : str
-        Words for people.
+        Name in figures and texts.
     options : tuple of str
         Fields of `Options` that belong to the model.
     libraries : tuple of str
-        Modules that a solution imports: they are loaded before it is timed.
+        Modules that a solution imports. They are loaded before a solution is timed.
     meshed : bool
         Whether a finer resolution makes it more accurate. A model without a mesh can be a reference.
     continuum : bool
-        Whether it is a two-dimensional body, which converges to a limit of its own, and not a rod.
+        Whether the model is a two-dimensional body, which converges to another limit than the rod.
     refinable : bool
         Whether `crossval solve --accuracy` can choose its resolution.
     rod : bool
-        Whether it has the stretch and the shear of Reissner's rod.
+        Whether the model has the stretch and the shear of Reissner's rod.
     """
 
     name: ClassVar[str]
@@ -73,7 +73,7 @@ class Model(ABC):
 
     @property
     def reference(self) -> Options | None:
-        """Options at which the answer has no error of a mesh, so that others are measured against it; None if there are none."""
+        """Options at which the answer has no mesh error and can be a reference; None if there are none."""
         return None
 
     @abstractmethod
@@ -92,7 +92,7 @@ class Model(ABC):
 
     @abstractmethod
     def styles(self) -> dict[str, Style]:
-        """Return how its answers are drawn, by the words that `run_label` and `family` begin with."""
+        """Return how figures draw the model's answers, by the words that `run_label` and `family` begin with."""
 
     @property
     def colour(self) -> str:
@@ -100,19 +100,19 @@ class Model(ABC):
         return next(iter(self.styles().values())).colour
 
     def run_label(self, options: Options) -> str:  # noqa: ARG002 - others have settings
-        """Return the words for one run, as ``TSM mixed, 20 elements``."""
+        """Return the label of one run, as ``TSM mixed, 20 elements``."""
         return self.label
 
     def setting(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - others have settings
-        """Return the setting of one run in short, as ``mixed 20``; empty if there is none."""
+        """Return the setting of one run in short, as ``mixed 20``; empty if the model has no settings."""
         return ""
 
     def family(self, scene: Scene, options: Options) -> str:  # noqa: ARG002 - others have settings
-        """Return the name of the runs that differ from this one in resolution only."""
+        """Return the name shared by all runs that differ from this one in resolution only."""
         return self.label
 
     def resolution(self, options: Options) -> float:  # noqa: ARG002 - others have settings
-        """Return the number of elements along a beam, nan without a mesh or where the scene has it."""
+        """Return the number of elements along a beam; nan without a mesh, or where the scene gives the number."""
         return nan
 
     def compared(self) -> tuple[Options, ...]:
@@ -120,13 +120,13 @@ class Model(ABC):
         return (Options(),)
 
     def resolutions(self, *, quick: bool) -> Iterable[Options]:  # noqa: ARG002 - others have meshes
-        """Return the settings whose accuracy and cost are measured with several numbers of load steps; fewer if quick."""
+        """Return the settings whose accuracy and cost `crossval trade` measures, each with several numbers of load steps; fewer if quick."""
         return (Options(),)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-        """Return the parts of the error that its theory allows against Reissner's rod, relative, by reason.
+        """Return the relative error against Reissner's rod that the model's theory allows, split by cause.
 
-        Without a theory of its own it is held to round-off.
+        A model that does not define this method is allowed round-off only.
         """
         from comparisons.models.theory import ROUND_OFF
 

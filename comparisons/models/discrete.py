@@ -1,4 +1,4 @@
-"""The two discrete models, TSM beams and the solid, as responses."""
+"""Responses of the two discrete models: TSM beams and the solid."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,7 +34,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     Raises
     ------
     ModelError
-        If a tolerance is given and the elements have a mesh.
+        If a tolerance is given for closed-form elements, which do not integrate.
     """
     import tsm
 
@@ -66,7 +66,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
 
 
 def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
-    """Return what passes accepted steps on to `watch`, contacts with their elements counted from 1."""
+    """Return a function that passes accepted steps on to `watch`; elements are counted from 1."""
     first, count = {}, 0
     for beam in structure.beams:
         first[beam.name], count = count, count + beam.elements
@@ -183,7 +183,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
 
 
 def _half_turns(response: Response, beam: str) -> Array:
-    """Largest angle (s,) between neighbouring chords of the axis, two of which span an element."""
+    """Largest angle (s,) between neighbouring chords of the axis; a quadratic element has two chords."""
     lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
     chords = [np.diff(line, axis=0) @ (1, 1j) for line in lines]
     return np.array([np.abs(np.angle(chord[1:] / chord[:-1])).max() for chord in chords])
@@ -196,7 +196,7 @@ def _response(
     axis_line: Callable[[str, int], tuple[Array, Array]],
     grid: Callable[[int], Grid],
 ) -> Response:
-    """Take over what both solvers' results have in common."""
+    """Return the response with the fields that the results of both solvers share."""
     contacts = {
         pair: ContactHistory(
             force=history.force,
@@ -234,10 +234,10 @@ def _response(
 
 
 def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
-    """Return the TSM elements, each with its own two points: section forces jump at a contact.
+    """Return the TSM elements as lines. Elements do not share points, because section forces jump at a contact.
 
-    Besides the fields, `beam` is the beam's number in the scene, `arc` the distance along its undeformed axis, and the axial stresses
-    are those of the faces to the right and left of its direction; `height` is 0 where the section has none.
+    The field `beam` is the number of the beam in the scene, `arc` the distance along the undeformed axis. Axial stresses are given at
+    the right and the left face, seen along the beam. `height` is 0 where the section has no height.
     """
     parts = [_one_beam(scene, number, result, k) for number in range(len(scene.beams))]
     data = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -271,6 +271,6 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
 
 
 def _tip(scene: Scene, result: Any, beam: str) -> Array:
-    """Deformed positions (s, 2) of a beam's less held end."""
+    """Deformed positions (s, 2) of the tip, the end of a beam with fewer held components."""
     node = 0 if scene.tip(beam) == "start" else -1
     return _rows([result.shape(beam, k)[node, :2] for k in range(len(result.load_parameter))], 2)

@@ -1,4 +1,4 @@
-"""The two exact models, Reissner's rod and the elastica, as responses."""
+"""Responses of the two exact models: Reissner's rod and the elastica."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -19,14 +19,14 @@ from comparisons.response import Array, ContactHistory, Grid, Response, SupportH
 from comparisons.scene import Scene
 
 POINTS = 401
-"""Points of a deflected axis: the pictures' resolution, not the solution's."""
+"""Points of a deflected axis in pictures. The solution does not depend on this number."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LocalStates:
-    """States of a cantilever in its local frame (`RodScene`), one per load parameter; forces are those of pin or tied point.
+    """States of a cantilever in its local frame (`RodScene`), one for each load parameter; the pin or the tied tip exerts the force.
 
-    Of all points of the path that were visited, `hits` are those of the load parameters.
+    `visited` has one outcome for each point of the path, and `hits` the indices of the points that belong to load parameters.
     """
 
     visited: Sequence[Outcome]
@@ -45,7 +45,7 @@ STOPS = {
     "LOST_CONTACT": "a contact that must persist was released",
     "SLIPPED_OFF": "a contact that must persist slipped off the beam",
 }
-"""How an exact solution can stop."""
+"""Reasons why an exact solution stops."""
 
 
 def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
@@ -126,7 +126,7 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
 def _response(
     model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
 ) -> Response:
-    """Turn local states into the scene's frame; what lies beyond a lost equilibrium is left out."""
+    """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     name, length = local.beam.name, local.beam.length
     times = np.array(scene.times)
     stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
@@ -173,7 +173,7 @@ def _response(
 
 
 def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, int]:
-    """Return why the solution stops, None if it does not, and the number of load parameters before."""
+    """Return the reason why the solution stops, None if it does not, and the number of load parameters reached before."""
     closed = False
     slipped = np.searchsorted(times, states.slip_off) if keep else len(times)
     for k, state in enumerate(states.visited):

@@ -1,4 +1,4 @@
-"""What a user may choose for one run, and the refusal of what a model cannot do."""
+"""The options of one run, and the error for a scene or option that a model cannot take."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -14,7 +14,7 @@ class ModelError(ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Choices for one run; None leaves the scene's or the model's default.
+    """Options of one run. None keeps the value of the scene, or the default of the model.
 
     Parameters
     ----------

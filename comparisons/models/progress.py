@@ -1,11 +1,11 @@
-"""What a running solution tells: how far it is, after how many iterations, and where contacts are."""
+"""Progress of a running solution: load parameter, iterations, and the elements in contact."""
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 WIDTH = 30
 REDRAW = 0.1
-"""Seconds between two pictures of a bar."""
+"""Seconds between two drawings of a progress bar."""
 
 
 class Reached(NamedTuple):
@@ -14,7 +14,7 @@ class Reached(NamedTuple):
     Attributes
     ----------
     load_parameter : float
-        Where it is.
+        Load parameter of the step.
     iterations : int
         Newton iterations since the step before.
     contacts : tuple of str
@@ -30,11 +30,11 @@ Watch = Callable[[Reached], None]
 
 
 def unwatched(_: Reached) -> None:
-    """Tell nobody."""
+    """Ignore the progress."""
 
 
 def bar(part: float) -> str:
-    """Return a bar that is filled to `part`.
+    """Return a progress bar that is filled to `part`.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The models by name: each solves a scene and states its response."""
+"""The registry of models, and the solution of a scene by one of them, with checks and certificate."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from comparisons.scene import Scene
 
 Certify = Literal["last", "all", "none"]
-"""Load parameters to certify: the last and those beside events, every one, or none."""
+"""Load parameters to certify: the last one and the neighbours of events, all, or none."""
 COARSE = 5e-2
-"""Distance from the exact equilibrium that a coarse mesh may leave: an answer further away is refused."""
+"""Largest distance from the exact equilibrium that an answer of a coarse mesh may have; an answer further away is refused."""
 
 
 FILES = ("tsm", "solid", "rod")
-"""The modules of this package that state models, as ``MODELS``; a new model is one more."""
+"""The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
     model.name: model for file in FILES for model in import_module(f"comparisons.models.{file}").MODELS
 }
 
 
 def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch = unwatched) -> Response:
-    """Return the verified response of `model`, a key of `MODELS`, to `scene`; `watch` is told of every accepted step.
+    """Return the verified response of `model`, a key of `MODELS`, to `scene`; `watch` receives every accepted step.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
 
 
 def references(scene: Scene) -> tuple[tuple[Model, Options], ...]:
-    """Return the models without an error of a mesh that can state `scene`, with the options for that, the independent rod first."""
+    """Return the models that solve `scene` without a mesh error, with their options; the independent rod comes first."""
     return tuple(
         (model, model.reference)
         for model in sorted(MODELS.values(), key=lambda model: model.meshed)
@@ -61,18 +61,18 @@ def references(scene: Scene) -> tuple[tuple[Model, Options], ...]:
 def certified(
     response: Response, scene: Scene, which: Certify = "last", *, allowance: float = COARSE
 ) -> Response:
-    """Return `response` with its certificate; one that is refused has the verdict for its status and is not completed.
+    """Return `response` with its certificate. The verdict becomes the status of a refused answer, which is not completed.
 
     Parameters
     ----------
     response : Response
-        The answer of a model; one that stopped keeps its status.
+        The answer of a model; an answer that stopped keeps its status.
     scene : Scene
-        What was asked.
+        The scene that was solved.
     which : {"last", "all", "none"}
         Load parameters to certify.
     allowance : float
-        Largest distance from the exact equilibrium, relative; a solid is allowed its height over its length besides.
+        Largest relative distance from the exact equilibrium. For a solid, the height over the length is added.
     """
     from comparisons.referee import Verdict, certify, default_allowance
     from comparisons.referee.certify import ALLOWED

@@ -1,4 +1,4 @@
-"""Reissner's rod and the elastica, exact."""
+"""The exact models: Reissner's rod and the elastica."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Rod(Model):
 
     @property
     def reference(self) -> Options | None:
-        """The rod as it is."""
+        """Default options: the rod has no settings."""
         return Options()
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return what of `scene` the exact models do not have; None if they can state it."""
+        """Return why the exact models cannot state `scene`; None if they can."""
         from comparisons.models.translate import to_rod
 
         try:
@@ -57,11 +57,11 @@ class Elastica(Rod):
 
     @property
     def reference(self) -> None:
-        """None: stretch and shear are left out."""
+        """None: without stretch and shear, the elastica is no reference."""
         return
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return what of `scene` the elastica does not have; None if it can state it."""
+        """Return why the elastica cannot state `scene`; None if it can."""
         from comparisons.models.exact import elastica_scene
 
         try:
@@ -81,7 +81,7 @@ class Elastica(Rod):
         return {self.label: Style(colour="#444444", width=1.2)}
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-        """Return what stretch and shear are worth."""
+        """Return the errors from missing stretch and shear."""
         from comparisons.models.theory import elastica_errors
 
         del options

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from comparisons.scene import Scene
 
 REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
-"""Meshes refined alike in both directions: along them an order can be fitted."""
+"""Meshes refined alike in both directions, to which an order of convergence can be fitted."""
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 
 
@@ -32,7 +32,7 @@ class Solid(Model):
     continuum = True
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return what of `scene` the solid cannot state; None if it can."""
+        """Return why the solid cannot state `scene`; None if it can."""
         from comparisons.models.translate import to_solid
 
         try:
@@ -72,7 +72,7 @@ class Solid(Model):
         return f"{self.label} {_order(scene)}"
 
     def resolution(self, options: Options) -> float:
-        """Return the number of elements along a beam, nan where the scene has it."""
+        """Return the number of elements along a beam; nan where the scene gives the number."""
         return nan if options.mesh is None else float(options.mesh[0])
 
     def resolutions(self, *, quick: bool) -> Iterator[Options]:

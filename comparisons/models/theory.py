@@ -1,14 +1,18 @@
-"""The error that a model may have against Reissner's rod by its own theory, fixed before anything is run.
+"""The allowed error of a model against Reissner's rod, from the theory of its elements, fixed before any run.
 
-Let an element of length l turn by the angle t. Its chord is ``2 sin(t/2)/t = 1 - t^2/24 + t^4/1920 - ...`` of it: an element whose strain
-measures stop before a term is off by that term, an element of second order by t^2/24, one of fourth order by t^4/1920; a
-biquadratic solid, whose slopes are off by t^2/12 at most, by the square of that. Forces feel a length about twice, and a mesh of straight
-elements or of solids puts the contact on the wrong place of a curved beam: four times the term is allowed to them, and twice to elements whose
-contact lies on a curve.
+Discretisation. Let an element of length l bend by the angle t between its ends. Its chord has the length
+``l 2 sin(t/2)/t = l (1 - t^2/24 + t^4/1920 - ...)``. The strain measures of an element keep the first terms of this series, and its
+error is the first term that they neglect: t^2/24 for an element of second order, t^4/1920 for one of fourth order. The slopes of a
+biquadratic solid have an error of at most t^2/12, and its error is the square of this number.
 
-Positions are good to their last bit, eps L. An element of length l between two of them turns by eps L/l without any force, a kink, and a
-force or a place follows by `CHANGE` times that. Where the contact force is a stiffness times a deflection, as in the paper's elements, the last
-bit is multiplied by the stiffness EI/l^3 instead. A contact force that is an unknown multiplies nothing.
+Allowance. A relative error of a length changes a force about twice as much. A mesh of straight elements or of solids has, besides,
+the contact at a wrong place of a curved beam. Four times the neglected term is therefore allowed, and twice the term for elements
+whose contact lies on a curve.
+
+Round-off. Positions are accurate to eps L. The direction of an element of length l has therefore an error of eps L/l, a kink without
+force. A contact force or position changes by `CHANGE` times the kink. In the paper's elements the contact force is a stiffness times a
+deflection, and the round-off of a position is multiplied by the stiffness EI/l^3 instead. A contact force that is an unknown of the
+system has no such factor.
 """
 
 from dataclasses import dataclass
@@ -24,24 +28,25 @@ if TYPE_CHECKING:
     from tsm.elements import ElementType
 
 MESH = 4.0
-"""Multiple of the first neglected term that is allowed."""
+"""Allowed error over the first neglected term, for a contact on straight elements or on solids."""
 CURVED = 2.0
-"""The same for an element whose contact lies on a curve."""
+"""Allowed error over the first neglected term, for an element whose contact lies on a curve."""
 EXACT = 1e-10
-"""A tenth of the accuracy that exact elements are asked for in their own scales: the rule of the order that they choose leaves less."""
+"""Allowed error of exact elements, a tenth of their default integration accuracy; the quadrature order that they choose leaves less."""
 FLOOR = 1e-9
-"""What Newton's method leaves at its tolerance, where nothing else is larger."""
+"""Error that Newton's method leaves at its tolerance: the least allowance of a discrete model."""
 DEFAULT_PENALTY = 25.0
-"""Penalty stiffness of the solid where none is given, over E b."""
+"""Default penalty stiffness of the solid, over E b."""
 ROUND_OFF = 1e-11
-"""Between exact answers."""
+"""Allowed difference between two exact answers."""
 CHANGE = 10.0
-"""Relative change of an answer over the change of a place in lengths: a half circle's force over its half height has 6."""
+"""Condition number: relative change of an answer over the change of a prescribed position in beam lengths. For the force that bends
+a beam to a half circle, as a function of the half height, the number is 6."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Bending:
-    """How much the exact answer bends and shears the beam, largest over the load parameters; dimensionless.
+    """Bending and shear of the exact answer, as dimensionless maxima over the load parameters.
 
     Attributes
     ----------
@@ -50,9 +55,9 @@ class Bending:
     curvature : float
         ``kappa L``.
     turn : float
-        Angle of the contact force, the turn of the loaded part [rad].
+        Angle by which the contact force turns, equal to the bending angle of the part between clamp and contact [rad].
     nearest : float
-        Smallest distance of the contact from the clamp, over L.
+        Smallest distance between contact and clamp, over L.
     """
 
     force: float = 0.0
@@ -62,7 +67,7 @@ class Bending:
 
 
 def chord_term(turn: Any, order: int) -> Any:
-    """Return the term of ``2 sin(t/2)/t`` with the power `order` of the turn t, without its sign: 1/24 of t^2, 1/1920 of t^4.
+    """Return the magnitude of the term of order `order` in the series of ``2 sin(t/2)/t``: t^2/24 or t^4/1920.
 
     >>> 1 / chord_term(1.0, 2), 1 / chord_term(1.0, 4)
     (24.0, 1920.0)
@@ -87,7 +92,7 @@ def element_lengths(scene: Scene, options: Options) -> tuple[float, float]:
 
 
 def beam_errors(kind: "ElementType", scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-    """Return the parts of the error of TSM elements, by reason."""
+    """Return the allowed error of TSM elements, split by cause."""
     from tsm.elements import ClosedForm
 
     if not isinstance(kind, ClosedForm):
@@ -121,7 +126,7 @@ def beam_errors(kind: "ElementType", scene: Scene, options: Options, bent: Bendi
 
 
 def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-    """Return the parts of the difference between a solid of the rod's law and the rod, by reason."""
+    """Return the allowed difference between the rod and a solid with the rod's material law, split by cause."""
     beam = scene.beams[0]
     length = 1 / (options.mesh or beam.mesh)[0]
     turn = min(bent.curvature * length, bent.turn)
@@ -146,7 +151,7 @@ def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, flo
 
 
 def elastica_errors(scene: Scene, bent: Bending) -> dict[str, float]:
-    """Return the parts of the difference between elastica and rod."""
+    """Return the allowed difference between the elastica and the rod, split by cause."""
     beam = scene.beams[0]
     soft = beam.EI / beam.length**2 * (1 / beam.EA + 1 / beam.GA)
     return {

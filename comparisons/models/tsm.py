@@ -70,7 +70,7 @@ class Tsm(Model):
         }
 
     def run_label(self, options: Options) -> str:
-        """Return the words for one run, as ``TSM mixed, 20 elements``."""
+        """Return the label of one run, as ``TSM mixed, 20 elements``."""
         count = options.elements
         words = "" if count is None else f", {count} element{'s' if count > 1 else ''}"
         return f"{self.label} {self.element(options).name}{words}"
@@ -88,7 +88,7 @@ class Tsm(Model):
         return f"{self.label} {self.element(options).name}"
 
     def resolution(self, options: Options) -> float:
-        """Return the number of elements of a beam, nan where the scene has it."""
+        """Return the number of elements of a beam; nan where the scene gives the number."""
         return nan if options.elements is None else float(options.elements)
 
     def compared(self) -> tuple[Options, ...]:
@@ -114,7 +114,7 @@ class Tsm(Model):
             yield from (Options(element=kind.name, elements=count) for count in meshes)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:
-        """Return the parts of the error that the element's order, contact and shear allow."""
+        """Return the allowed error from the element's order, contact and shear."""
         from comparisons.models.theory import beam_errors
 
         return beam_errors(self.element(options), scene, options, bent)

@@ -1,4 +1,4 @@
-"""Checks of a response that need nothing but the response and the scene."""
+"""Checks of a response against its scene, without any other solution."""
 
 import math
 from collections.abc import Iterator
@@ -15,25 +15,26 @@ from comparisons.scene import ContactSpec, Scene
 CHECK_FAILED = "CHECK_FAILED"
 UNSTABLE = "UNSTABLE"
 PULL = 1e-9
-"""Largest pulling force of a contact at its release, relative to EI/L^2: round-off."""
+"""Largest tensile force of a contact at its release, relative to EI/L^2; it allows for round-off."""
 CLOSED = 1e-9
-"""Largest gap of a closed contact, relative to the length: round-off of 2000 elements is below."""
+"""Largest gap of a closed contact, relative to the length; the round-off of 2000 elements is below it."""
 PENETRATION = 1e-2
 """Largest penetration of a penalty model, relative to the length."""
 INSIDE = 1e-3
-"""Largest depth of a round pin or thick end in a beam away from its contact, relative to the length: the stated axis is that good."""
+"""Largest depth of a round pin or thick end inside a beam away from the contact point, relative to the length. It allows for the error
+of the axis between the points that a model states."""
 KINK = 0.2
-"""Largest kink of the axis at a contact that excuses a round pin inside the beam [rad]."""
+"""Largest kink of the axis at a contact for which a round pin may lie inside the beam [rad]; see `penetration`."""
 STRAIN = 0.1
-"""Largest section force over the smaller of EA and GA in elements of small strains: beyond it, half its square is more than .5 %."""
+"""Largest section force over the smaller of EA and GA in small-strain elements: at this strain, half its square is .5 %."""
 MOTION = 1e-10
-"""Shortest path of a pin, over the length, that solutions resolve, whose positions are good to 1e-13 of it."""
+"""Shortest path of a pin, over the length, that solutions resolve: their positions are accurate to 1e-13 of the length."""
 
 
 def verified(response: Response, scene: Scene) -> Response:
-    """Return `response`, with the status ``CHECK_FAILED`` and the reason if it breaks a check.
+    """Return `response`; a response that breaks a check has the status ``CHECK_FAILED`` and the reason.
 
-    One that stopped claims only what it reached: that its elements bear, and its numbers resolve.
+    A response that stopped early is checked only for elements that are bent too much and for numbers below the round-off.
     """
     if response.completed:
         reason = next(failures(response, scene), None)
@@ -47,7 +48,7 @@ def verified(response: Response, scene: Scene) -> Response:
 
 
 def _labelled(response: Response) -> Response:
-    """Return a response that went through unstable equilibria as one that is not completed."""
+    """Return `response`, marked as not completed if its path has unstable equilibria."""
     if response.index is None or not np.any(response.index > 0):
         return response
     unstable = response.index > 0
@@ -62,9 +63,14 @@ def _failed(response: Response, reason: str) -> Response:
 def failures(response: Response, scene: Scene) -> Iterator[str]:
     """Yield one sentence for every check that a completed `response` breaks.
 
-    All load parameters of the scene are reached, everything is finite, contact forces push, closed contacts are closed,
-    open nodes are on their side unless they slipped off, contacts that must persist do, round pins are outside the beam along the whole
-    axis, and the forces and moments of supports, pins and loads on the whole structure are in balance.
+    The checks are:
+
+    - all load parameters of the scene are reached, and all numbers are finite;
+    - contact forces push, and closed contacts have no gap;
+    - open nodes are on the stated side of the beam unless they slipped off;
+    - contacts that must persist stay closed;
+    - round pins are outside the beam along the whole axis;
+    - the forces and moments of supports, pins and loads on the whole structure balance.
     """
     if not np.array_equal(response.load_parameter, scene.times):
         yield f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
@@ -81,7 +87,7 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
 
 
 def unresolved(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield one sentence for everything that is too large for the elements of a `response`, or too small for its numbers."""
+    """Yield one sentence for each deformation too large for the elements, and for each motion below the resolution of the numbers."""
     deformation = response.deformation
     if deformation is not None:
         claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
@@ -146,11 +152,11 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
 
 
 def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
-    """Return the largest depth of the stated axis inside a round pin or thick end, at every load parameter; negative or zero if none.
+    """Return the largest depth of the axis inside a round pin or thick end at each load parameter; at most zero without penetration.
 
-    Places where the distance from the node is least, on the stated side, count. The axis of a shearing beam has a kink of F/GA at a
-    contact, so that a round pin is inside it by half of that angle times the distance from the contact; this much is allowed, up to half
-    of `kink`.
+    The depth is measured at points of the axis with the least distance from the node, on the stated side. The axis of a shearing beam has
+    a kink of F/GA at a contact. Near the contact, a round pin is therefore inside the beam by half of the kink times the distance from the
+    contact. This depth is allowed, for kinks up to `kink`.
     """
     offset, beam, contact = scene.offset(spec), scene.beam(spec.beam), response.contacts[spec.pair]
     depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0

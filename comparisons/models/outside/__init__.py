@@ -1,1 +1,1 @@
-"""Programs that others wrote, asked the same questions."""
+"""Other programs, for comparison on the same problems."""

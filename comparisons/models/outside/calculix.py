@@ -1,4 +1,4 @@
-"""Questions to CalculiX about a clamped strip of the solid's, answered in the strip's frame."""
+"""CalculiX solves the clamped strip of the solid model; the answers are in the strip's frame."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ Floats = NDArray[Any]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Answer:
-    """Histories over the increments.
+    """Histories over the load increments of CalculiX.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class Answer:
     force, moment
         What the clamp exerts on the strip, ``(s, 2)`` [N] and about the clamped point ``(s,)`` [N m].
     stopped
-        Why CalculiX stopped before the end, nothing if it did not.
+        Reason why CalculiX stopped before the end; empty if it did not.
     """
 
     load_parameter: Floats
@@ -44,7 +44,7 @@ def tip_load(strip: "Strip", force: float, seconds: float = 300.0) -> Answer:
     Raises
     ------
     CalculixError
-        If CalculiX is not there or does not reach the whole load.
+        If CalculiX is not installed or does not reach the whole load.
     """
     mesh = slab(strip)
     return _answer(mesh, run(tip_load_deck(mesh, force), seconds))
@@ -53,14 +53,14 @@ def tip_load(strip: "Strip", force: float, seconds: float = 300.0) -> Answer:
 def pressed(
     strip: "Strip", start: Point, motion: Point, steps: int, penalty: float, seconds: float = 300.0
 ) -> Answer:
-    """Return the answer to a sharp pin moved along the right face, as far as CalculiX comes; see `pin_deck`.
+    """Return the answer to a sharp pin that moves along the right face, up to the last increment that converged; see `pin_deck`.
 
-    CalculiX may lose the pin through the face and go on without contact: the answer ends where nothing is pushed any more.
+    In CalculiX the pin may slip through the face, and the run then goes on without contact. The answer ends before that.
 
     Raises
     ------
     CalculixError
-        If CalculiX is not there, or does not complete one increment.
+        If CalculiX is not installed, or does not complete one increment.
     """
     mesh = slab(strip)
     deck = pin_deck(mesh, start, motion, steps, penalty)
@@ -76,7 +76,7 @@ def pressed(
 
 
 def _answer(mesh: Slab, printed: Printed, stopped: str = "") -> Answer:
-    """Collect the increments that were printed whole."""
+    """Collect the increments that CalculiX printed completely."""
     ends, held = 2 * mesh.strip.mesh[1] + 1, len(mesh.clamp)
     wanted = {("displacements", "TIP"): ends, ("displacements", "CLAMP"): held, ("forces", "CLAMP"): held}
     whole = [

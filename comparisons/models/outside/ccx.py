@@ -1,4 +1,4 @@
-"""The program ``ccx`` of CalculiX (Debian's ``calculix-ccx``): give it a deck, read what it prints."""
+"""Run ``ccx``, the solver of CalculiX (Debian's ``calculix-ccx``), on an input deck and read its printed tables."""
 
 import os
 import re
@@ -13,13 +13,13 @@ Rows = list[list[float]]
 
 _HEADER = re.compile(r" (displacements|forces) \(.*\) for set (\S+) and time\s+(\S+)")
 _SHORT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")
-"""Where Fortran leaves out the E before an exponent of three digits."""
+"""Place of the E that Fortran leaves out before an exponent of three digits."""
 _TAIL = 300
 
 
 @dataclass(frozen=True, kw_only=True)
 class Printed:
-    """What a run printed.
+    """Printed tables of a run.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ class Printed:
 
 
 class CalculixError(RuntimeError):
-    """CalculiX is not there, took too long or stopped early: one line.
+    """CalculiX is not installed, took too long or stopped early; the message is one line.
 
-    ``reason`` is that line without the name, ``printed`` what was reached, None if it did not run.
+    ``reason`` is the message without the program's name. ``printed`` holds the completed increments, None if the program did not run.
     """
 
     def __init__(self, reason: str, printed: Printed | None = None) -> None:
@@ -47,12 +47,12 @@ class CalculixError(RuntimeError):
 
 
 def run(deck: str, seconds: float = 300.0) -> Printed:
-    """Run a deck in a temporary folder, on one thread, for at most so many seconds.
+    """Run a deck in a temporary folder, on one thread, for at most `seconds`.
 
     Raises
     ------
     CalculixError
-        If there is no ``ccx``, or it does not finish; the end of its output is in the message.
+        If ``ccx`` is not installed or does not finish. The message holds the end of its output.
     """
     program = shutil.which("ccx")
     if program is None:
@@ -68,7 +68,7 @@ def run(deck: str, seconds: float = 300.0) -> Printed:
 
 
 def parse(text: str) -> Printed:
-    """Read a ``.dat`` file; a last line that is cut off is left out."""
+    """Read a ``.dat`` file; an incomplete last line is skipped."""
     tables: dict[tuple[str, str], list[Rows]] = defaultdict(list)
     times: dict[float, None] = {}
     rows: Rows = []
@@ -83,7 +83,7 @@ def parse(text: str) -> Printed:
 
 
 def _finish(command: list[str], folder: str, seconds: float) -> str:
-    """Run a command; return why it did not finish, nothing if it did."""
+    """Run a command; return the reason why it did not finish, empty if it did."""
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     try:
         done = subprocess.run(  # noqa: S603 the program found on the path, our own deck

@@ -1,12 +1,13 @@
-"""CalculiX's input for a clamped strip: a slab of quadratic bricks, so thin that plane stress is the answer.
+"""CalculiX's input for a clamped strip: a slab of quadratic bricks, thin enough for plane stress.
 
-CalculiX turns its plane elements into bricks whose faces it ties to each other; here the bricks are stated and nothing is
-tied. They are the half of the slab above its middle plane, where they are held across; the upper face is free. The modulus
-is ``E b / w``, so that the half slab of thickness w carries the forces of the whole strip of width b.
+CalculiX replaces its plane elements by bricks with tied faces. This deck states the bricks directly, so that nothing is tied.
+The bricks fill the half of the slab above the middle plane. Nodes on the middle plane are held in the direction of the thickness,
+and the upper face is free. The modulus is ``E b / w``, so that the half slab of thickness w carries the forces of the whole strip
+of width b.
 
-- Once ``NLGEOM`` is set, ``*ELASTIC`` is linear between Green's strain and the second Piola-Kirchhoff stress: the law of
-  St. Venant and Kirchhoff, to the seven digits that are printed.
-- A residual force below 1e-6 counts as zero, whatever the units: forces are stated in 1e-5 EI/L^2.
+- With ``NLGEOM``, ``*ELASTIC`` is linear between Green's strain and the second Piola-Kirchhoff stress. This is the law of
+  St. Venant and Kirchhoff, to the seven digits that CalculiX prints.
+- CalculiX takes a residual force below 1e-6 for zero, whatever the units. Forces are therefore stated in 1e-5 EI/L^2.
 - A number has at most twenty characters.
 """
 
@@ -27,23 +28,23 @@ THINNESS = 0.01
 _CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
 _BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
-"""Consistent forces of a unit force spread over the eight nodes of a face."""
+"""Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
 _CONTROLS = ("*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8")
 _PRINT = ("*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Slab:
-    """A strip as bricks, in its own frame.
+    """A strip as a mesh of bricks, in the strip's frame.
 
     Parameters
     ----------
     strip
-        What is modelled.
+        The strip that the bricks fill.
     numbers
-        Numbers of the nodes on the grid of corners and midpoints, ``(2 nx + 1, 2 ny + 1, 3)``; 0 where there is none.
+        Numbers of the nodes on the grid of corners and midpoints, ``(2 nx + 1, 2 ny + 1, 3)``; 0 at a grid point without a node.
     points
-        Positions on that grid, ``(2 nx + 1, 2 ny + 1, 3, 3)`` [m].
+        Positions of the grid points, ``(2 nx + 1, 2 ny + 1, 3, 3)`` [m].
     bricks
         Nodes of the elements ``(nx ny, 20)`` in CalculiX's order, column by column.
     """
@@ -76,7 +77,7 @@ def slab(strip: "Strip") -> Slab:
     Raises
     ------
     ValueError
-        If it is not one of St. Venant and Kirchhoff's law in plane stress, clamped at its start and evenly meshed.
+        Unless the strip has St. Venant and Kirchhoff's law in plane stress, a clamp at its start and an even mesh.
     """
     stated = (strip.clamped, strip.material, strip.plane, strip.grading, strip.mesh_file)
     if stated != (("start",), "st-venant-kirchhoff", "stress", 1.0, None):
@@ -116,8 +117,8 @@ def tip_load_deck(mesh: Slab, force: float) -> str:
 def pin_deck(mesh: Slab, start: Point, motion: Point, steps: int, penalty: float) -> str:
     """Deck of a sharp pin that moves along the right face in equal steps, from `start` by `motion` [m].
 
-    It is a needle across the half slab: two nodes, the slaves of a contact with the face. `penalty` [N/m] is what resists
-    penetration: CalculiX multiplies the stated slope of the pressure by half a face's area for each of the two.
+    The pin is a needle across the half slab. Its two nodes are the slaves of a contact with the face. `penalty` [N/m] is the contact
+    stiffness. CalculiX multiplies the stated slope of the pressure by half the area of a face for each of the two nodes.
     """
     (nx, ny), thickness = mesh.strip.mesh, mesh.thickness
     needle = int(mesh.numbers.max()) + np.array([1, 2])
@@ -151,7 +152,7 @@ def pin_deck(mesh: Slab, start: Point, motion: Point, steps: int, penalty: float
 
 
 def _model(mesh: Slab) -> list[str]:
-    """Nodes, bricks, material and supports; the rod's clamp holds the line at the middle of the edge across."""
+    """Nodes, bricks, material and supports; the clamp named ``rod`` holds transverse motion on the edge's middle line only."""
     strip, n = mesh.strip, mesh.numbers
     modulus = strip.youngs_modulus * strip.width / mesh.thickness / mesh.unit
     nodes = zip(n[n > 0], mesh.points[n > 0], strict=True)

@@ -1,4 +1,4 @@
-"""From a scene to what each model solves: the modelling assumptions, side by side."""
+"""Translation of a scene into the problem of each solver; the modelling assumptions stand here side by side."""
 
 from comparisons.models.translate.to_rod import RodScene, to_rod
 from comparisons.models.translate.to_solid import to_solid

@@ -1,16 +1,16 @@
-"""What the models of a single cantilever refuse to state, in one line each."""
+"""The scenes that the exact models can state, and one line for each reason why they cannot."""
 
 from comparisons.models.options import ModelError
 from comparisons.scene import BeamSpec, Scene, SupportSpec
 
 
 def one_beam_under_a_pin(scene: Scene, model: str) -> SupportSpec:
-    """Return the clamp of the one beam that one pin touches.
+    """Return the clamp of the single beam that a single pin touches.
 
     Raises
     ------
     ModelError
-        If the scene is another one; `model` begins the sentence.
+        If the scene has another form. The message begins with `model`.
     """
     if (len(scene.beams), len(scene.pins), len(scene.contacts)) != (1, 1, 1):
         raise ModelError(f"{model} one beam, one pin and one contact")
@@ -21,12 +21,12 @@ def one_beam_under_a_pin(scene: Scene, model: str) -> SupportSpec:
 
 
 def one_beam_with_tied_tip(scene: Scene, model: str) -> tuple[SupportSpec, SupportSpec]:
-    """Return the clamp of the one beam and the pinned support that moves its other end.
+    """Return the clamp of the single beam and the pinned support that moves its other end.
 
     Raises
     ------
     ModelError
-        If the scene is another one; `model` begins the sentence.
+        If the scene has another form. The message begins with `model`.
     """
     if len(scene.beams) > 1 or scene.pins or scene.contacts:
         raise ModelError(f"{model} one beam and no contact where its end is moved")
@@ -39,7 +39,7 @@ def one_beam_with_tied_tip(scene: Scene, model: str) -> tuple[SupportSpec, Suppo
 
 
 def _supports(scene: Scene, beam: BeamSpec, model: str) -> tuple[SupportSpec, ...]:
-    """Return the supports of a beam that carries no load, a clamp at rest first."""
+    """Return the supports of a beam without dead loads: first a clamp at rest, then any other."""
     if scene.loads:
         raise ModelError(f'{model} no dead loads, the scene loads "{scene.loads[0].node}"')
     clamp, *others = scene.supports_of(beam.name)

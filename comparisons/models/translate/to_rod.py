@@ -1,4 +1,4 @@
-"""A scene as one clamped rod in its local frame: clamp at the origin, beam along +x, a pin pushes to +y."""
+"""A scene as one clamped rod in a local frame with the clamp at the origin and the beam along +x; a pin pushes towards +y."""
 
 from dataclasses import dataclass
 
@@ -26,12 +26,12 @@ class RodScene:
     offset : float
         Distance of the contact surface from the axis.
     path : ndarray, shape (p, 2)
-        The start of the pin, or of the tied tip, its positions at the scene's load parameters and its corners, in the
-        local frame.
+        Positions of the pin or of the tied tip in the local frame: at the start, at the scene's load parameters and at
+        the corners of the path.
     hits : ndarray of int, shape (s,)
-        Those points of `path` that belong to the load parameters.
+        Indices of the points of `path` that belong to the load parameters.
     origin, axes : ndarray, shape (2,) and (2, 2)
-        The clamp; the local x and y axes as columns.
+        Position of the clamp, and the local x and y axes as columns.
     """
 
     beam: BeamSpec
@@ -122,7 +122,7 @@ def _tied(scene: Scene) -> RodScene:
 
 
 def _frame(scene: Scene, clamp: str, *, mirrored: bool) -> tuple[Array, Array]:
-    """Return the clamp and the axes: from the clamp along the beam, and to the left of that, to the right if mirrored."""
+    """Return the clamp and the axes: x from the clamp along the beam, y to its left, or to its right if mirrored."""
     beam = scene.beams[0]
     along = np.array(beam.direction) * (1.0 if clamp == "start" else -1.0)
     left = np.array([-along[1], along[0]])

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from fem_reference import SolidProblem, Strip
 
 SLENDER = 0.1
-"""Largest height over length of the rectangle that stands for a section given by area and second moment."""
+"""Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
 
 def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProblem":
@@ -19,14 +19,14 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     Parameters
     ----------
     scene : Scene
-        Beams, each clamped at one end and not supported at the other, pins and contacts.
+        Beams, each clamped at one end and free at the other, with pins and contacts.
     mesh : (int, int), optional
         Elements along and across of every beam, in place of the scene's.
 
     Raises
     ------
     ModelError
-        If the scene is another one.
+        If the solid cannot state the scene.
     """
     from fem_reference import Contact, EndLoad, Pin, SolidProblem
 
@@ -78,7 +78,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     Raises
     ------
     ModelError
-        If that rectangle is not slender in the plane.
+        If the rectangle is not slender in the plane.
     """
     if beam.width is not None and beam.height is not None:
         return beam.width, beam.height

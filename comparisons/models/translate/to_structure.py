@@ -18,7 +18,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     scene : Scene
         Any scene.
     elements : int, optional
-        Elements of every beam, in place of the scene's, or of one if they are exact.
+        Elements of every beam. By default the scene's number, or one exact element.
     element : str, optional
         Key of `tsm.ELEMENTS`, `mixed` if not given.
 
