@@ -1,4 +1,4 @@
-"""An accuracy instead of a mesh: which model a scene requires, how fine, and what error is left."""
+"""Solution to a requested accuracy: the choice of model and mesh, and the estimate of the remaining error."""
 
 from comparisons.accuracy.answer import Answer
 from comparisons.accuracy.choose import solve_to

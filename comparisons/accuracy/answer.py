@@ -1,4 +1,4 @@
-"""The answer to a scene at a stated accuracy, and how it came about."""
+"""The answer to a scene at a requested accuracy, with the decisions that led to it."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,15 +14,15 @@ class Discretised:
     Attributes
     ----------
     response : Response
-        At all load parameters of the scene.
+        Response at all load parameters of the scene.
     scene : Scene
-        What was solved, with the elements and meshes that were chosen.
+        The solved scene, with the chosen elements and meshes.
     resolution : str
-        Elements in words.
+        Description of the mesh.
     estimate : float
-        Estimated error of the quantity asked for, infinite where there is none.
+        Estimated error of the requested quantity, infinite without an estimate.
     decisions : tuple of str
-        What was tried and why, in order.
+        Trials with their reasons, in order.
     """
 
     response: Response
@@ -34,12 +34,12 @@ class Discretised:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Theory:
-    """What no refinement of a beam removes: its distance from the solid that it stands for.
+    """Error of beam theory against the solid body, which no finer mesh of the beam removes.
 
     Attributes
     ----------
     error : float
-        Size to expect of it in a contact force, relative.
+        Expected relative error of a contact force.
     slenderness : float
         Largest h/L.
     strain : float
@@ -65,7 +65,7 @@ class Answer:
     model : str
         Model that was chosen.
     accuracy : float
-        What was asked for.
+        Requested accuracy.
     quantity : str
         Key of `QUANTITIES`.
     theory : Theory or None
@@ -73,7 +73,7 @@ class Answer:
     decisions : tuple of str
         Every decision, in order.
     seconds : float
-        Time for everything.
+        Total time [s].
     """
 
     found: Discretised

@@ -19,20 +19,20 @@ NEWTON = 1e-10
 """Tolerance of Newton's method, in forces over ``EI/L^2`` (`tsm.Settings`)."""
 SHARPEST = 1e-14
 FIRST = 4
-"""Elements of a beam to start with."""
+"""Elements of a beam in the first mesh."""
 MOST = 4000
 ROUNDS = 10
 LEAST_GROWTH, MOST_GROWTH = 1.1, 4.0
-"""Elements of the next mesh over those of the last."""
+"""Least and largest ratio of the numbers of elements of two successive meshes."""
 LEAST = 0.05
-"""Least density of elements, over the largest: what carries nothing still takes an element."""
+"""Least density of elements over the largest density; a part of a beam without load keeps some elements."""
 
 
 def exact_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
     """Solve with one exact element a beam, to the accuracy that its error estimate needs.
 
-    The estimate is that of the integration inside the elements and Newton's tolerance, both over the size of the quantity:
-    a small load needs a sharper integration for the same relative error.
+    The estimate is the integration error inside the elements plus Newton's tolerance, both divided by the size of the quantity.
+    A small load therefore needs a more accurate integration for the same relative error.
     """
     tolerance, said = 1e-9, []
     while True:
@@ -77,9 +77,10 @@ def _largest(histories: list[Array]) -> float:
 def graded_to(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) -> Discretised:
     """Solve with elements in closed form, refined where the solution is curved and where forces act.
 
-    A mesh and the one with every element halved are compared at a few load parameters; their difference gives the error of the former.
-    Where it is too large, the next mesh has as many elements as the order promises, with the density
-    ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))``, the largest over the load parameters: equal shares of the error of the order p.
+    The answers on a mesh and on the mesh with all elements halved are compared at a few load parameters. Their difference gives the
+    error of the first mesh. If the error is too large, the next mesh has the number of elements that the order p predicts. Its density
+    is the largest of ``(kappa^4 + (N/EI)^2 + (V/EI)^2)^(p/(4 (p + 1)))`` over the load parameters, which gives all elements an equal
+    share of the error.
     """
     order, element = kind.order, kind.name
     short, said = pilot(scene), []
@@ -115,7 +116,7 @@ def _solve(scene: Scene, mesh: Scene, element: str) -> Response:
 
 
 def _shear_limit(response: Response, scene: Scene, floor: tuple[float, int]) -> float:
-    """Return what an element leaves however small it is: factor and power of the largest shear strain under a contact."""
+    """Return the error that no mesh removes: the element's factor times a power of the largest shear strain under a contact."""
     factor, power = floor
     strains = [
         float(np.abs(response.contacts[contact.pair].force).max(initial=0.0)) / scene.beam(contact.beam).GA
@@ -176,7 +177,7 @@ def _graded(mesh: Scene, response: Response, wanted: int, order: int) -> Scene:
 
 
 def _density(data: dict[str, Any], EI: float, order: int) -> Array:
-    """Return the elements per length that a state asks for, up to a factor."""
+    """Return the density of elements for a state, up to a constant factor."""
     kappa, N, V = (data[name].reshape(-1, 2).mean(axis=1) / EI for name in ("M", "N", "V"))
     density: Array = (kappa**4 + N**2 + V**2) ** (order / (4 * (order + 1)))
     return density

@@ -27,16 +27,16 @@ def solve_to(
     Parameters
     ----------
     scene : Scene
-        What is to be solved.
+        The scene to solve.
     accuracy : float
-        Largest error over all load parameters, of the discretisation: against the exact rod for beams, against the limit of fine
-        meshes for the solid. What beam theory itself leaves out is estimated besides.
+        Largest discretisation error over all load parameters: against the exact rod for beams, against the limit of fine meshes for
+        the solid. The error of beam theory itself is estimated separately.
     quantity : str
         Key of `QUANTITIES`.
     model : {"tsm", "solid"}, optional
-        Model to use, else what the scene requires.
+        Model to use; by default the one that the scene requires.
     element : str, optional
-        Type of TSM elements to use, else ``exact``.
+        Type of the TSM elements; by default ``exact``.
 
     Raises
     ------

@@ -5,12 +5,12 @@ from dataclasses import replace
 from comparisons.scene import Scene
 
 FEWEST = 8
-"""Load parameters that a pilot has at least, if the scene has as many."""
+"""Least number of load parameters of a pilot, if the scene has as many."""
 SAFETY = 2.0
-"""The error between a pilot's load parameters may be larger than at them."""
+"""Safety factor of an estimate, because the error between the load parameters of a pilot may be larger than at them."""
 
 
 def pilot(scene: Scene) -> Scene:
-    """Return the scene with some of its load parameters only: a divisor of their number, so that all are shared."""
+    """Return the scene with fewer load parameters. Their number is a divisor of the scene's, so that the scene has all of them."""
     n = scene.load_parameters
     return replace(scene, load_parameters=next(m for m in range(min(FEWEST, n), n + 1) if n % m == 0))

@@ -1,4 +1,4 @@
-"""What a scene requires: the bodies that carry something, and the model that can state it."""
+"""The bodies of a scene that carry load, and the model that the scene requires."""
 
 from dataclasses import dataclass, replace
 
@@ -7,23 +7,23 @@ from comparisons.models.options import ModelError, Options
 from comparisons.scene import Scene
 
 STOCKY = 0.1
-"""Height over length from which a beam is a solid."""
+"""Height over length from which a beam is solved as a solid."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Requirement:
-    """What is to be solved, and with what.
+    """The scene to solve, and the model and options to solve it with.
 
     Attributes
     ----------
     scene : Scene
-        Without the bodies that carry nothing.
+        The scene without the beams that carry no load.
     model : Model
-        One with a mesh.
+        A model with a mesh.
     options : Options
-        The type of its elements, where it has types.
+        Options with the element type, if the model has several.
     decisions : tuple of str
-        Why.
+        Reasons for the choice.
     """
 
     scene: Scene
@@ -35,7 +35,7 @@ class Requirement:
 def required(
     scene: Scene, quantity: str, *, model: str | None = None, element: str | None = None
 ) -> Requirement:
-    """Return what `scene` and `quantity` require; `model` and `element` are taken where they are given.
+    """Return the requirement of `scene` and `quantity`; a given `model` or `element` takes precedence.
 
     Raises
     ------

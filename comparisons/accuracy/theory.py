@@ -1,4 +1,4 @@
-"""What beam theory itself leaves out, estimated from a solution."""
+"""Estimate of the error of beam theory, from a solution."""
 
 import numpy as np
 
@@ -7,21 +7,21 @@ from comparisons.response import Response
 from comparisons.scene import Scene
 
 LOOKED_AT = 8
-"""States that are searched for the largest strain."""
+"""Number of states that are searched for the largest strain."""
 
 
 def beam_theory(response: Response, scene: Scene) -> Theory | None:
-    """Return the size of the difference between beams and the solids that they stand for.
+    """Return an estimate of the difference between beams and the solid bodies that they approximate.
 
-    A section of height h that stays plane misses terms of second order in the strain ``h kappa/2`` at the faces and in ``h/l``,
-    with l the beam's length; taken is the larger one of half the first square and the second. On the main scene it is
-    measured (`crossval study thin-beams`): 8.6e-4, 2.1e-4, 5.7e-5 for h/L = .02, .01, .005, estimated 1.0e-3, 2.5e-4, 6.3e-5.
-    The material's law is not in it.
+    Plane sections of height h neglect terms of second order in the face strain ``h kappa/2`` and in ``h/l``, with l the beam's length.
+    The estimate is the larger of half the first square and the second square. The effect of the material law is not included.
+    On the main scene, `crossval study thin-beams` prints the differences 8.6e-4, 2.1e-4 and 5.7e-5 for h/L = .02, .01 and .005.
+    The estimates are 1.0e-3, 2.5e-4 and 6.3e-5.
 
     Returns
     -------
     Theory or None
-        None where no beam's height is known, or nothing was reached.
+        None if no beam's height is known, or no load parameter was reached.
     """
     heights = {beam.name: beam.height for beam in scene.beams if beam.height is not None}
     if not heights or not len(response.load_parameter):

@@ -13,7 +13,7 @@ from comparisons.version import version
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is solved, and how: everything that a result depends on.
+    """A scene with a model and its options: all that a result depends on.
 
     Element order, penalty and load steps are entries of the scene (`BeamSpec.solid_element`, `ContactSpec.penalty`,
     `Scene.load_parameters`), elements and meshes are options.

@@ -1,4 +1,4 @@
-"""What one case of a study measures: its response and its cost."""
+"""Measurement of one case of a study: its response and its cost."""
 
 import json
 import statistics
@@ -21,7 +21,7 @@ from comparisons.response.to_json import as_dict
 
 REFUSED = "REFUSED"
 SLOW = 10.0
-"""Seconds from which one run is both warm-up and measurement."""
+"""Time of a run [s] above which the first run is the measurement, without a warm-up."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,18 +31,18 @@ class Measurement:
     Attributes
     ----------
     response : Response
-        Storable, as far as the solution came; its status is ``REFUSED`` if the model cannot state the case. Without axes if no run is timed, and without the wall time of one run.
+        Storable response, up to the last load parameter reached. Its status is ``REFUSED`` if the model cannot state the scene. It has no
+        axes if no run is timed, and no wall time.
     seconds : float
-        Processor time from the scene to the checked response, imports left out, median over `repeats` runs after a warm-up; nan if there is
-        none. On one thread it is the time on the clock of a core that does nothing else, and it is not lengthened by what else
-        the machine does.
+        Processor time from the scene to the checked response without imports [s]: the median over `repeats` runs after a warm-up, nan if
+        no run is timed. On one thread it equals the wall time on an idle core, and other programs do not lengthen it.
     repeats : int
-        Runs timed: one, and no warm-up, where the first took more than 10 s.
+        Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
     peak_memory : int
         Largest rise of the process's resident memory over its start in the first run, interpreter and libraries left out [byte].
     verdict : str
-        Verdict of the certificate of the last load parameter and of those beside events, ``CERTIFIED`` or another; empty where nothing was
-        reached, or no run is timed.
+        Verdict of the certificate for the last load parameter and the neighbours of events, ``CERTIFIED`` or another. It is empty if no
+        load parameter was reached or no run is timed.
     """
 
     response: Response
@@ -67,8 +67,7 @@ class Measurement:
 def measure(case: Case, *, repeats: int = 3) -> Measurement:
     """Solve `case` once to warm up, then `repeats` times with the clock on; if `repeats` is zero, the first time counts.
 
-    A solution that stops is measured like any other, a scene that the model refuses has the status ``REFUSED``: nothing is raised
-    for either.
+    A solution that stops is measured like any other. A scene that the model refuses has the status ``REFUSED``. Neither raises.
     """
     for library in MODELS[case.model].libraries:
         import_module(library)

@@ -1,4 +1,4 @@
-"""Who works on a case: a process, and whether it is still there."""
+"""The process that works on a case, and the test whether it still runs."""
 
 import os
 import socket
@@ -24,7 +24,7 @@ class Owner:
     pid : int
         Its number there.
     born : float
-        When it was started [s since 1970], since numbers of processes are used again.
+        Start of the process [s since 1970], needed because systems reuse process numbers.
     """
 
     host: str
@@ -37,9 +37,10 @@ class Owner:
         return cls(host=socket.gethostname(), pid=os.getpid(), born=psutil.Process().create_time())
 
     def alive(self, heard: float) -> bool:
-        """Whether it may still be at work, last heard of at the time `heard`.
+        """Whether the process may still work on its cases; `heard` is the time of its last sign of life.
 
-        On this machine a process is asked for; one on another machine, or one that has stopped, is believed for `LEASE`.
+        On this machine the process table answers. A process on another machine counts as alive for `LEASE` seconds after `heard`, and
+        so does a stopped process.
         """
         if time() - heard > LEASE:
             return False

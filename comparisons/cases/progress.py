@@ -1,4 +1,4 @@
-"""Progress of a sweep for a person: a bar on a terminal, lines at milestones elsewhere."""
+"""Progress of a sweep: a progress line on a terminal, lines at milestones elsewhere."""
 
 import math
 import sys
@@ -22,7 +22,7 @@ def shown(stream: TextIO | None = None, *, quiet: bool = False) -> Progress:
 
 @contextmanager
 def line_ended(stream: TextIO | None = None) -> Iterator[None]:
-    """End the line of a bar that an exception cuts short, for the message that follows."""
+    """End the progress line when an exception interrupts it, so that the message starts on a new line."""
     stream = stream or sys.stderr
     try:
         yield

@@ -1,4 +1,4 @@
-"""What the results file of a sweep holds, as records and as a table."""
+"""Contents of a sweep's results file, as records and as a table."""
 
 import sqlite3
 import zlib
@@ -28,7 +28,7 @@ class Result:
     key : str
         `Case.key`.
     scene, model, label, version : str
-        Names; the version is that of this package.
+        Names of scene, model and case, and the version of this package.
     settings : dict
         The options given and every key of the scene, by the names of study files.
     measurement : Measurement
@@ -45,7 +45,7 @@ class Result:
 
 
 def read_results(path: Path) -> list[Result]:
-    """Return what the results file `path` holds, sorted by scene, model and what varies in the scene; others may be writing it.
+    """Return the results in the file `path`, sorted by scene, model and varied settings. Other processes may write the file meanwhile.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def varied(results: list[Result]) -> list[str]:
 
 
 def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
-    """Return one row of a table for each of `results`: settings, how it ended, the last state reached, cost.
+    """Return one table row for each of `results`, with settings, status, last state reached and cost.
 
     The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``. Without
     `timings` seconds and memory, which differ from run to run, are left out.
@@ -124,7 +124,7 @@ def result_rows(results: list[Result], *, timings: bool = True) -> list[Row]:
 
 
 def result_table(results: list[Result], *, timings: bool = True) -> str:
-    """Return a table for a reader, and below it why the cases that stopped did."""
+    """Return a table for a reader, with the reasons of the stopped cases below it."""
     if not results:
         return "no results yet"
     hidden = {"load_parameter", "cutbacks", "repeats", "message"}

@@ -27,13 +27,13 @@ class Tally:
     Attributes
     ----------
     total, done, failed : int
-        Cases; recorded ones; those among them without a completed and checked solution.
+        Numbers of all cases, of recorded cases, and of recorded cases without a completed and checked solution.
     statuses : dict of int
         Recorded cases by status.
     seconds, left : float
-        Time since the run began, and what is left at the pace so far; nan while there is no pace.
+        Time since the run began, and estimated time to its end, nan before the first case is done [s].
     older : dict of int
-        Cases that other versions have results of, by version; these are among the recorded ones only where they are kept.
+        Numbers of cases with a result of another version, by version. They count as recorded only with `keep`.
     """
 
     total: int
@@ -46,7 +46,7 @@ class Tally:
 
 
 Progress = Callable[[Tally], None]
-"""Told whenever a case is done, and every few seconds."""
+"""Called after each finished case, and every few seconds."""
 
 
 def run(
@@ -58,16 +58,16 @@ def run(
     progress: Progress = lambda _: None,
     keep: bool = False,
 ) -> Tally:
-    """Do all `cases` that `store` has no result of this version of; return when all are recorded.
+    """Measure all `cases` without a result of this version in `store`; return when all are recorded.
 
-    Other runs may work on the same store: every case is done by one of them. A case whose worker dies is tried once more, alone;
-    if its worker dies again, it is recorded as ``WORKER_LOST``, and one that raises as ``ERROR``. These two a later run tries
-    again, every other status is a result.
+    Several runs may share one store; each case is then measured by one of them. A case whose worker dies is tried once more, alone.
+    If its worker dies again, the case is recorded as ``WORKER_LOST``. A case that raises is recorded as ``ERROR``. A later run repeats
+    cases with these two statuses; every other status is a result.
 
     Parameters
     ----------
     cases : iterable of Case
-        In the order of work; equal ones are done once.
+        Cases in the order of work; equal cases are measured once.
     store : Store
         Where results are.
     workers : Workers
@@ -75,9 +75,9 @@ def run(
     repeats : int
         Runs timed for each case.
     progress : callable
-        Told of the progress.
+        Receives the progress.
     keep : bool
-        Whether results of other versions do as well.
+        Whether results of other versions are accepted.
 
     Raises
     ------
@@ -177,7 +177,7 @@ class _Sweep:
         self.progress(self.tally())
 
     def suspect(self) -> None:
-        """The executor broke: blame a case that was alone in it, suspect all if there were several."""
+        """Handle a broken executor: a single running case caused it; of several running cases, each is suspect and later runs alone."""
         keys = list(self.flying)
         self.flying.clear()
         if not self.suspects:
@@ -201,7 +201,7 @@ class _Sweep:
 
 
 def solve(key: str, case: Case, repeats: int) -> Measurement:
-    """Measure `case` in a worker, whose version and files must be those of the key."""
+    """Measure `case` in a worker; raise if the worker has another version or other mesh files than the key."""
     if case.key != key:
         raise RuntimeError("the worker has another version of this package, or of a mesh file")
     return measure(case, repeats=repeats)

@@ -9,9 +9,9 @@ from time import monotonic, sleep
 from comparisons.files import OutputError, writable_file
 
 APPLICATION = 0x54534D58
-"""The id in the header of the file ("TSMX"), by which SQLite files are told apart."""
+"""The application id in the header of the SQLite file ("TSMX"), which marks it as a results file."""
 VERSION = 2
-"""Of the tables and of what they hold."""
+"""Version of the tables and of their contents."""
 PATIENCE = 60.0
 """Seconds to wait for other writers."""
 
@@ -103,7 +103,7 @@ def _open(path: Path, mode: str) -> tuple[sqlite3.Connection, bool]:
     )
     try:
         connection.row_factory = sqlite3.Row
-        # in WAL mode this loses nothing when a process dies, and the last transactions at most when the machine does
+        # in WAL mode, a killed process loses nothing; a crash of the machine may lose the last transactions
         connection.execute("PRAGMA synchronous = NORMAL")
         connection.execute("PRAGMA foreign_keys = ON")
         return connection, _recognised(connection, path)

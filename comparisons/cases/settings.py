@@ -18,14 +18,14 @@ OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
 
 
 def record_name(kind: str, record: Mapping[str, Any]) -> str:
-    """Return the name of a record of a scene: its own, a contact's pair, the node of a support or load."""
+    """Return the name by which a study addresses a record: its `name`, the pair of a contact, or the node of a support or load."""
     if kind == "contact":
         return f"{record['node']}->{record['beam']}"
     return f"{record['beam']}.{record['end']}" if kind in ("support", "load") else str(record["name"])
 
 
 def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
-    """Return `scene` with settings changed; one for a record by name goes before one for every record of its kind.
+    """Return `scene` with changed settings. A change for a named record takes precedence over a change for all records of its kind.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def _changed_record(kind: str, record: Any, changes: Mapping[Path, object]) -> A
 
 
 def settings(definition: str, options: str) -> dict[str, object]:
-    """Return the settings of a recorded case, by name; a record that is the only one of its kind is not named.
+    """Return the settings of a recorded case by key; the key omits the record's name if the scene has only one of its kind.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def settings(definition: str, options: str) -> dict[str, object]:
 
 
 def in_order(values: Iterable[object]) -> tuple[Any, ...]:
-    """Return a key that sorts values of any kind: what is not there first, numbers by size, lists by their items."""
+    """Return a sort key for values of any kind: missing values first, numbers by size, lists by their items."""
     return tuple(_rank(value) for value in values)
 
 

@@ -26,21 +26,21 @@ WORKER_LOST = "WORKER_LOST"
 ERROR = "ERROR"
 """The status of a case that raised an exception, which no model should."""
 UNSETTLED = (WORKER_LOST, ERROR)
-"""What tells of the machine or the program and not of the case: the next study tries it again."""
+"""Statuses that come from the machine or from a bug and not from the case; the next study repeats the case."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """What became of an attempt to claim cases, by their keys.
+    """Result of an attempt to claim cases, by their keys.
 
     Attributes
     ----------
     mine : list of str
-        Now this run's.
+        Cases that this run has claimed.
     done : dict of str
-        Recorded, with their statuses.
+        Recorded cases with their statuses.
     taken : list of str
-        Being worked on by another run.
+        Cases that another run works on.
     """
 
     mine: list[str]
@@ -91,7 +91,8 @@ class Store:
     def older(self, cases: Mapping[str, Case]) -> dict[str, tuple[str, str]]:
         """Return version and status of the settled results that other versions have of `cases`, by the cases' keys.
 
-        Of several versions the last by name; where a mesh file has a part in it, its content then is not known, and none is given.
+        If several versions have a result, the last version by name is returned. A case with a mesh file has none, because the content
+        of the file at that time is not known.
         """
         keys = {
             (to_toml(case.scene), case.model, options_text(case)): key

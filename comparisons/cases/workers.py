@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""What the numerical libraries of a worker read when they are loaded: seconds of cases are those of one thread."""
+"""Environment of a worker: numerical libraries use one thread, so that times of cases are comparable."""
 CLUSTER_PATIENCE = 10.0
 """Seconds to wait for the cluster."""
 
@@ -38,7 +38,7 @@ class Workers:
         ``start()``: a context manager that gives a `concurrent.futures.Executor` and, on leaving after an exception, ends what
         runs. It is called again after the executor broke.
     lost : tuple of exception types
-        What a future raises whose worker died for good, while the executor lives on.
+        Exceptions that a future raises after its worker died for good, while the executor goes on.
     """
 
     width: int

@@ -14,27 +14,27 @@ class StoppedError(RuntimeError):
 
 
 class Verdict(StrEnum):
-    """What becomes of a claim."""
+    """Verdict on a claim."""
 
     RIGHT = "right"
     STOPPED = "stopped"
     WITHDRAWN = "withdrawn"
-    """An answer that its own checks refuse: neither right nor a stop in time."""
+    """The checks of the response refuse the answer. It counts neither as right nor as stopped."""
     WRONG = "wrong"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity:
-    """What is compared.
+    """A number with its reference value.
 
     Attributes
     ----------
     name : str
-        With its unit, or without one where it is dimensionless.
+        Name with its unit; without a unit where the quantity is dimensionless.
     exact : float
         The reference value.
     scale : float, optional
-        What an error is divided by, the magnitude of the reference value if not given.
+        Divisor of the error; by default the magnitude of the reference value.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Allowance:
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """An error, what is allowed, and why that much.
+    """An error with its allowance and the reason of the allowance.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Finding:
 
     @property
     def share(self) -> float:
-        """The error as a part of what is allowed, infinite if it is no number."""
+        """The error over the allowed error, infinite if the error is nan."""
         share = self.error / self.allowed
         return share if math.isfinite(share) else math.inf
 
@@ -92,13 +92,13 @@ class Claim:
     Attributes
     ----------
     name : str
-        What answers: a model with its resolution, or a bound.
+        Name of the model with its resolution, or of a bound.
     statement, source : str
-        The case with its sizes and units; where the reference values come from.
+        The case with its sizes and units, and the source of the reference values.
     quantities : tuple of Quantity
         What is compared, with the reference values.
     allowance : Allowance
-        Of every quantity.
+        Allowed error of every quantity.
     measure : callable
         Returns a value for every quantity; raises `StoppedError` where there is no answer.
     """
@@ -194,7 +194,7 @@ def judge(claim: Claim) -> Judgement:
 
 
 def decided(findings: Sequence[Finding], *, completed: bool = True) -> Verdict:
-    """Return the verdict on what was found: one error beyond what is allowed is wrong, also if the solution stopped later."""
+    """Return the verdict on the findings. One error above its allowance is wrong, also if the solution stopped later."""
     if not all(finding.holds for finding in findings):
         return Verdict.WRONG
     return Verdict.RIGHT if completed else Verdict.STOPPED

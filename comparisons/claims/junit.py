@@ -12,7 +12,7 @@ class JUnitCase:
     Attributes
     ----------
     classname, name : str
-        What it belongs to, and its own name.
+        Name of the group of checks, and name of the check.
     seconds : float
         What it took.
     failure : str or None

@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 @contextmanager
 def _open_streams() -> Iterator[bool]:
-    """Say in one line where standard output is closed; what is told on a closed standard error is told to nobody."""
+    """Report a closed standard output in one line. Messages to a closed standard error are discarded."""
     if sys.stderr is not None:
         if sys.stdout is None:
             _told("output: standard output is closed", BAD_INPUT)

@@ -18,7 +18,7 @@ EPILOG = """exit status: 0 completed and checked, 2 bad input, 3 the solution st
 
 
 def report(line: str) -> None:
-    """Tell of progress on standard error."""
+    """Report progress on standard error."""
     print(printable(line), file=sys.stderr, flush=True)
 
 

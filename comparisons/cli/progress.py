@@ -12,9 +12,9 @@ from comparisons.models.progress import REDRAW, Reached, Watch, bar, unwatched
 
 @contextmanager
 def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Watch]:
-    """Yield what draws a bar for one solution while it runs, and clear the line afterwards; nothing where there is no terminal.
+    """Yield a `Watch` that draws a progress line for one solution, and clear the line afterwards; without a terminal nothing is drawn.
 
-    The bar shows load parameter, Newton iterations so far and the elements in contact.
+    The line shows the load parameter, the Newton iterations so far and the elements in contact.
     """
     stream = stream or sys.stderr
     if quiet or not stream.isatty():

@@ -43,7 +43,7 @@ def load_steps(scene: Scene) -> tuple[int, ...]:
 
 
 def limit_cases(scene: Scene, *, quick: bool = False) -> list[Case]:
-    """Return the solids that their limit is extrapolated from, coarse to fine: Q2, closed contact without penetration."""
+    """Return the solids for the extrapolation to the limit, coarse to fine: Q2 elements, contact without penetration."""
     exact = with_contact(with_order(scene, "Q2"), penetration=PENETRATION)
     return [_solid(exact, mesh) for mesh in (QUICK_LIMIT if quick else LIMIT)]
 
@@ -128,7 +128,7 @@ def resolution(case: Case) -> float:
 
 
 def refined(case: Case, cases: Iterable[Case]) -> list[Case]:
-    """Return those of `cases` that differ from `case` in resolution only, a solid's alike in both directions."""
+    """Return the members of `cases` that differ from `case` in resolution only; a solid must be refined alike in both directions."""
     found = []
     for other in cases:
         alike = other.options.mesh is None or other.options.mesh in REFINED

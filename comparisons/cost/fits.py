@@ -70,11 +70,12 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> Fit | None:
 
 
 def convergence(resolution: Sequence[float], error: Sequence[float], floor: float) -> Fit | None:
-    """Return the power law of an error over rising resolution, in its asymptotic range: minus the exponent is the order.
+    """Return the power law of an error over rising resolution, fitted in the asymptotic range; the order is minus the exponent.
 
-    Errors from the first one below `floor` on are left out. The asymptotic range is the longest run of meshes from one to the next of
-    which the error falls with at least nine tenths of the median of the falling local orders: neither chance on coarse meshes nor
-    round-off on fine ones. Its finest four points are fitted; None if they are fewer than three.
+    The first error below `floor` and all later errors are left out. The local order of two successive meshes is the slope between
+    them. The asymptotic range is the longest run of meshes whose local orders are at least nine tenths of the median positive local
+    order. This excludes chance on coarse meshes and round-off on fine ones. The four finest points of the range are fitted. The result
+    is None for fewer than three points.
     """
     x, y = np.asarray(resolution, dtype=float), np.asarray(error, dtype=float)
     below = np.flatnonzero(~(y > floor))

@@ -15,10 +15,10 @@ Tables = dict[str, Array]
 def extrapolated(responses: Sequence[Response]) -> Response:
     """Return the limit of the last three responses, coarse to fine with a constant ratio of refinement, at the same load parameters.
 
-    The order is observed from the responses, in the largest norm of every quantity over the load parameters: with the differences
-    ``d1, d2`` of neighbours, ``q = q3 + d2 / (|d1|/|d2| - 1)`` (Richardson, Aitken). Where the differences do not fall by a tenth
-    at least, nothing is added. The last difference ``|d2|`` tells how well the limit is known: what a constant order would leave is less,
-    but a local singularity, as under a load on one node, lowers the order once the rest has converged.
+    With the differences ``d1, d2`` of successive responses, the limit of a quantity is ``q = q3 + d2 / (|d1|/|d2| - 1)`` (Richardson,
+    Aitken). The norm is the maximum over the load parameters, so that the order is observed and not assumed. If ``|d2|`` is more than
+    nine tenths of ``|d1|``, nothing is added. The last difference ``|d2|`` is the stated uncertainty of the limit. It is larger than the
+    error at a constant order, because a local singularity, as under a load on one node, lowers the order on fine meshes.
     """
 
     def limit(read: Callable[[Response], Tables]) -> Tables:
@@ -57,7 +57,7 @@ def _remainder(before: Sequence[Array], last: Sequence[Array]) -> float:
 
 
 def _supported(support: SupportHistory, beam: str, force: Tables) -> SupportHistory:
-    """Return the support with the forces of the limit, which of a scene with contacts are those of the contacts alone."""
+    """Return the support with the extrapolated force, if the scene has no contact; with contacts only their forces are extrapolated."""
     other = support.other_end
     if other is not None:
         other = replace(other, force=force.get(f"{beam}.other_end", other.force))

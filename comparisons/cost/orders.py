@@ -11,9 +11,9 @@ from comparisons.cost.points import Point, Trade
 from comparisons.output import Row
 
 LARGEST = 4
-"""Settings of a family that its cost exponent is fitted to: small ones cost what is independent of their size."""
+"""Number of the largest settings of a family to which the cost exponent is fitted; the cost of small settings does not depend on size."""
 ABOVE = 3.0
-"""Errors within this many uncertainties of what they are measured against are not fitted."""
+"""Least error in a fit, over the uncertainty of the reference."""
 
 
 def orders(trade: Trade, quantity: str) -> Iterator[Row]:

@@ -21,18 +21,18 @@ AXES = {
 APART = 0.045
 """Least distance of two labels, over the height of the diagram."""
 ALIKE = 1.2
-"""Errors within this factor of each other have one label, that of the cheaper setting."""
+"""Ratio of two errors up to which they share one label, with the name of the cheaper setting."""
 
 
 def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) -> None:
-    """Draw the errors of all settings against a cost: against the reference, and of each model against what it converges to.
+    """Draw the errors of all settings over a cost, in two panels: errors against the reference, and errors against each model's limit.
 
     Parameters
     ----------
     trade : Trade
         The sweep.
     quantity, scope, cost : str
-        Of `comparisons.quantities` and `COSTS`.
+        Names in `comparisons.quantities` and `COSTS`.
     paths : Path
         Files, in the formats of their suffixes.
     """

@@ -26,9 +26,10 @@ class Point:
     measured : Measurement
         Its answer and cost.
     errors : dict of dict of float
-        Against the reference, by scope and quantity.
+        Errors against the reference, by scope and quantity.
     own_errors : dict of dict of float
-        Against what the model converges to: of the solid its own limit, nan if that is not known, of the others the reference.
+        Errors against the model's limit, by scope and quantity. The solid has a limit of its own, with nan where it is not known; the
+        limit of all other models is the reference.
     """
 
     case: Case
@@ -63,7 +64,7 @@ class Trade:
     limit: Reference | None
 
     def uncertainty(self, model: str, scope: str, quantity: str) -> float:
-        """Return how well that is known what a model converges to; nan if it is not."""
+        """Return the uncertainty of a model's limit; nan if the limit is not known."""
         known = self.limit if MODELS[model].continuum else self.reference
         return nan if known is None else known.uncertainty[scope][quantity]
 
@@ -94,7 +95,8 @@ class Cheapest:
     target : float
         Largest error accepted.
     tsm, solid, solid_against_reference : Point or None
-        The cheapest in seconds; the solid by its error against its own limit, and against the reference. None if there is none.
+        Settings with the least seconds; None if no setting reaches the target. The error of `solid` is measured against the solid's
+        limit, the error of `solid_against_reference` against the reference.
     untold : bool
         Whether the solid's limit is known less well than the target.
     """
@@ -109,12 +111,12 @@ class Cheapest:
 
     @property
     def ratio(self) -> float:
-        """Seconds of the solid over those of the beams at this error, each against what it converges to."""
+        """Seconds of the solid over seconds of the beams at this error, which is measured against each model's limit."""
         return _ratio(self.solid, self.tsm)
 
     @property
     def ratio_against_reference(self) -> float:
-        """The same with both against the reference."""
+        """Seconds of the solid over seconds of the beams, with both errors measured against the reference."""
         return _ratio(self.solid_against_reference, self.tsm)
 
 
@@ -142,7 +144,7 @@ def cheapest(trade: Trade, scope: str, quantity: str, target: float) -> Cheapest
 
 
 def _not_by_chance(point: Point, scope: str, quantity: str) -> float:
-    """Error against the reference, or against the model's own limit if that is larger: a coarse mesh may cancel its model's difference."""
+    """Larger of the errors against the reference and against the model's limit. On a coarse mesh, discretisation and model error may cancel."""
     either = (point.errors[scope][quantity], point.own_errors[scope][quantity])
     return max((error for error in either if isfinite(error)), default=nan)
 
@@ -162,9 +164,9 @@ class OnFront:
 
 
 def front(trade: Trade, model: str, scope: str, quantity: str, cost: str) -> list[OnFront]:
-    """Return the Pareto front of a model by rising cost, each error against what the model converges to.
+    """Return the Pareto front of a model by rising cost, with errors against the model's limit.
 
-    Errors below the uncertainty of that are equal.
+    Errors below the uncertainty of the limit count as equal.
     """
     points, doubt = trade.of_model(model, scope), trade.uncertainty(model, scope, quantity)
     costs = [point.spent(cost) for point in points]

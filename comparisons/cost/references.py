@@ -1,4 +1,4 @@
-"""What errors are measured against: the best exact answer of a scene, and the solid's own limit."""
+"""References for errors: the best exact answer of a scene, and the limit of the solid."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from tsm.elements import EXACT, MIXED
 Measured = Mapping[Case, Measurement]
 
 ROUND_OFF = 2.0**-52
-"""No answer is known better, even if another one is equal to it."""
+"""Least uncertainty of a reference, also where two answers are equal."""
 
 
 class NoReferenceError(ValueError):
@@ -32,13 +32,13 @@ class Reference:
     response : Response
         The response.
     scene : Scene
-        With all load parameters.
+        The scene with all load parameters.
     scale : Scales
-        What errors are relative to.
+        Divisors of the errors.
     end : float
         The load parameter of the scope ``end``.
     uncertainty : dict of dict of float
-        How well the response is known, by scope and quantity.
+        Uncertainty of the response, by scope and quantity.
     name, sentence : str
         What it is, in a few words and in full.
     """

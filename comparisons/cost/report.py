@@ -26,7 +26,7 @@ def write_trade_page(
     fitted : sequence of dict
         Orders of convergence and cost exponents of `quantity`.
     quantity : str
-        Of `comparisons.quantities.KEPT`: the one that is shown.
+        Quantity to show, a name in `comparisons.quantities.KEPT`.
     """
     assert quantity in KEPT, "only what was measured can be shown"
     name = quantity.replace("_", " ")

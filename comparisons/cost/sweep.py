@@ -55,7 +55,7 @@ def trade_off(
     quick : bool
         Fewer settings.
     progress : callable
-        Told of the progress.
+        Receives the progress.
 
     Raises
     ------

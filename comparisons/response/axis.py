@@ -1,4 +1,4 @@
-"""Deformed axes at the points where two responses are compared and where one is stored."""
+"""Deformed axes, sampled at fixed stations for comparison and storage."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -9,12 +9,12 @@ import numpy as np
 from comparisons.response.record import Array, Response
 
 STATIONS = np.linspace(0.0, 1.0, 101)
-"""Arc lengths over the length."""
+"""Arc lengths of the stations, over the length of the beam."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SampledAxes:
-    """Deformed axes as arrays, in the place of `Response.axis_line`.
+    """Deformed axes as arrays; callable like `Response.axis_line`.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ def axes_at_stations(response: Response, beam: str, steps: Iterable[int]) -> Arr
         found = np.moveaxis(CubicSpline(first, points)(_stations(first)), 1, 0)
     else:
         found = np.array([CubicSpline(arc, line)(_stations(arc)) for arc, line in lines])
-    # a spline meets its points but for round-off; both ends are the model's own
+    # a spline passes through its points up to round-off only; the ends keep the exact values of the model
     found[:, 0], found[:, -1] = [line[0] for _, line in lines], [line[-1] for _, line in lines]
     return np.asarray(found)
 
@@ -55,7 +55,7 @@ def _stations(arc: Array) -> Array:
 
 
 def sampled_axes(response: Response) -> SampledAxes:
-    """Return the deformed axes of all beams at `STATIONS`; those of a response that is sampled already as they are."""
+    """Return the deformed axes of all beams at `STATIONS`; axes that are sampled already are returned unchanged."""
     if isinstance(response.axis_line, SampledAxes):
         return response.axis_line
     steps = range(len(response.load_parameter))
@@ -67,14 +67,14 @@ def sampled_axes(response: Response) -> SampledAxes:
 
 
 def storable(response: Response, *, axes: bool = True) -> Response:
-    """Return a response of arrays alone, which can be stored and sent: with its axes at `STATIONS`, or without axes.
+    """Return a response of arrays only, which can be stored or sent to another process, with its axes at `STATIONS` or without axes.
 
-    Meshes, the deformation of elements and the certificate are left out: they belong to the solution at hand.
+    Meshes, the deformation of elements and the certificate are not kept.
     """
     kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
     return replace(response, axis_line=kept, grid=no_grid, deformation=None, certificate=None)
 
 
 def no_grid(_: int) -> NoReturn:
-    """Refuse to return a mesh: the `grid` of a stored response."""
+    """Raise: a stored response has no mesh. It is the `grid` of such a response."""
     raise NotImplementedError("a stored response has no mesh")

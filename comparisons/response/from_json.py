@@ -1,4 +1,4 @@
-"""A response read back from the JSON file that states it."""
+"""Reader of a response in a JSON file."""
 
 import json
 from typing import Any
@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 
 
 class ResponseError(InputError):
-    """A JSON file that states no response."""
+    """A JSON file that does not hold a response."""
 
 
 def read_response(path: str) -> Response:
     """Return the response that the JSON file `path` states, as ``crossval solve --json`` writes it.
 
-    Its grid is left out.
+    The response has no grid.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def restated(data: Any) -> Response:
 
 
 def _given(data: dict[str, Any], key: str, shape: tuple[int]) -> NDArray[np.int64] | None:
-    """Return a list of whole numbers; None where a program does not state it."""
+    """Return a list of whole numbers; None where the file does not have it."""
     return None if data.get(key) is None else _numbers(data, key, shape).astype(np.int64)
 
 
@@ -118,7 +118,7 @@ def _text(data: dict[str, Any], key: str) -> str:
 
 
 def _numbers(data: dict[str, Any], key: str, shape: tuple[int | None, ...], prefix: str = "") -> Array:
-    """Return a list of numbers; null is not a number."""
+    """Return a list of numbers, null as nan."""
     try:
         found = np.array(data.get(key), dtype=np.float64)
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""What every model can state about a scene."""
+"""The response of a model to a scene, and the records of contacts, supports, events and meshes in it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ class ContactHistory:
     arc_position : ndarray, shape (s,)
         Distance along the undeformed axis from the beam's start; nan where the pair is open.
     gap : ndarray, shape (s,)
-        Zero where closed (minus the penetration of a penalty model), positive or nan where open.
+        Zero where closed, or minus the penetration for a penalty model; positive or nan where open.
     compliance : float
         Penetration per force of a penalty model, ``gap = -compliance force``.
     slip_off : float
@@ -43,16 +43,18 @@ class ContactHistory:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportHistory:
-    """What the support of a beam exerts on it; of two supports, the one that holds more, the start's if they hold the same.
+    """Force and moment of a support on its beam. Where a beam has two supports, the record has the one with more held components.
+
+    If both supports hold equally many components, the record has the support at the start.
 
     Attributes
     ----------
     force : ndarray, shape (s, 2)
-        Force.
+        Force of the support.
     moment : ndarray, shape (s,)
         Moment about the supported point, zero where the rotation is free.
     other_end : SupportHistory or None
-        What a second support exerts, at the beam's other end.
+        Record of a second support at the other end of the beam.
     """
 
     force: Array
@@ -67,19 +69,20 @@ class ContactEvent:
     Attributes
     ----------
     kind : str
-        ``touch``, ``release``, ``slip-off`` or ``pass-through``: the contact point moved on to the neighbouring element.
+        ``touch``, ``release``, ``slip-off`` or ``pass-through``. In a pass-through the contact point passes a beam node and moves on to the
+        next element.
     load_parameter : float
-        Where.
+        Load parameter of the event.
     pair : str
         ``node->beam``.
     element : int
-        Element that is touched, from 0 at the beam's start; after a pass-through, the new one.
+        Number of the element in contact, from 0 at the beam's start. After a pass-through, number of the next element.
     arc_position : float
         Distance along the undeformed axis from the beam's start.
     force : float
         Contact force before the event.
     released : float
-        Strain energy, less the work of the loads, set free by the jump that follows a slip-off.
+        Potential energy (strain energy less the work of the loads) that is released in the jump after a slip-off.
     """
 
     kind: str
@@ -100,7 +103,7 @@ class CriticalPoint:
     kind : str
         ``limit point`` or ``bifurcation``.
     load_parameter : float
-        Where.
+        Load parameter of the point.
     mode : dict of ndarray, shape (m, 2)
         Displacements of the beams' axes in the buckling mode; the largest is 1.
     """
@@ -112,19 +115,20 @@ class CriticalPoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deformation:
-    """The largest deformation of one element: what its strain measures, and its shape functions, have to bear.
+    """The largest deformation of any element, for the check that the element's kinematics still approximate it.
 
     Attributes
     ----------
     load_parameter : ndarray, shape (n,)
-        Where: of beams at every accepted step, also between the load parameters that were asked for.
+        Load parameters of the entries. Beams have one for each accepted step, also between the load parameters of the scene.
     turn : ndarray, shape (n,)
-        Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
-        the distances a and b of the contact from its ends [rad].
+        Largest angle by which an element bends between its ends [rad]. For an element in contact the angle is at least
+        ``F min(a, b) l/EI``, the bend under a constant moment of the contact force, with the distances a and b of the contact from the
+        ends of the element.
     strain : ndarray, shape (n,)
-        Section force or contact force over the smaller of EA and GA, of elements that take strains for small; else zero.
+        Largest section force or contact force over the smaller of EA and GA, for elements with small-strain theory; else zero.
     bearable : float
-        Turn [rad] up to which the element is an approximation: where the first term that it neglects leaves a fifth of the force.
+        Largest bend [rad] for which the element is an approximation: the first neglected term is then a fifth of the force.
     """
 
     load_parameter: Array
@@ -159,11 +163,11 @@ class Response:
     Attributes
     ----------
     model, scene : str
-        Names.
+        Names of the model and of the scene.
     status, message : str
-        How the run ended: a name and its sentence.
+        Status with which the run ended, and its sentence.
     completed : bool
-        Whether the model says that it went through.
+        Whether the model reports a complete solution.
     continuum : bool
         Whether the model is a two-dimensional body and not a rod.
     load_parameter : ndarray, shape (s,)
@@ -171,33 +175,34 @@ class Response:
     contacts : dict of ContactHistory
         By pair, ``node->beam``; empty without contact.
     events : tuple of ContactEvent or None
-        In order; None for a model that does not locate them.
+        Contact events in their order; None for a model that does not locate events.
     supports : dict of SupportHistory
         By beam; beams without a support are left out.
     tips : dict of ndarray, shape (s, 2)
-        Position of the end that is held less, by beam: the beam's end unless that is clamped and its start is not.
+        Position of the tip of each beam, the end with fewer held components. At equality the tip is the beam's ``end``.
     newton_iterations : ndarray of int, shape (s,)
-        All iterations spent since the previous load parameter.
+        Newton iterations since the previous load parameter, rejected steps included.
     cutbacks, unknowns : int
         Rejected steps; size of the system of equations.
     wall_seconds : float
         Time of the solution alone.
     axis_line : callable
-        ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k; of a response
-        that was stored, `comparisons.response.axis.SampledAxes`.
+        ``axis_line(beam, k)``: arc length (m,) and deformed positions (m, 2) of a beam's axis at load parameter k. A stored
+        response has `comparisons.response.axis.SampledAxes` here.
     grid : callable
         ``grid(k)``: the model's mesh and fields at load parameter k; a response that was stored has none.
     integration_error : float
-        Estimated error of the integration inside exact elements, in positions over the longest beam's length, angles and forces over ``EI/L^2``.
+        Estimated error of the integration inside exact elements: the largest error of positions over the longest beam, of angles,
+        and of forces over ``EI/L^2``.
     deformation : Deformation, optional
-        Of the most deformed element; None where no element approximates.
+        Deformation of the most deformed element; None for models without approximating elements.
     index : ndarray of int, shape (s,), optional
-        Number of negative eigenvalues of the energy under the supports and closed contacts, 0 where the equilibrium is stable; -1
-        where it is not defined; None for a model that does not state it.
+        Number of negative eigenvalues of the second variation of the energy, under the supports and closed contacts. It is 0 where
+        the equilibrium is stable, and -1 where it is not defined. None for a model that does not compute it.
     critical : tuple of CriticalPoint
         Critical points that the model met.
     certificate : Certificate, optional
-        What the referee says of the answer.
+        Verdict of the referee on the answer.
     """
 
     model: str
@@ -230,7 +235,7 @@ class Response:
 
 
 def unanswered(status: str, message: str) -> Response:
-    """Return the response of a model that gave no answer, by a name and a sentence: no load parameter, no beam."""
+    """Return an empty response, without load parameters and beams, for a model that gave no answer."""
 
     def nothing(*_: object) -> NoReturn:
         raise AssertionError("no load parameter was reached")

@@ -18,7 +18,7 @@ CRITICAL = ("limit-point", "bifurcation")
 
 
 def as_json(response: Response, **more: Any) -> str:
-    """Return the response, and what else is to be stated, as JSON text; a value that is not a number is null."""
+    """Return the response and the tables `more` as JSON text; a value that is not a number is null."""
     return to_text({**as_dict(response), "versions": versions(), **more})
 
 
@@ -30,10 +30,10 @@ def to_text(data: dict[str, Any]) -> str:
 def as_dict(response: Response) -> dict[str, Any]:
     """Return what a response states, by the names of the JSON file.
 
-    ``supports.{beam}`` holds moment and force of the beam's support, and those of a second one under ``other_end``: where a clamped
-    beam's tip is moved, the first is the clamp and the other the force on the tip. ``events`` is null for a model that
-    does not locate them. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every load parameter.
-    `comparisons.response.from_json.restated` reads all of it but the certificate.
+    ``supports.{beam}`` holds moment and force of a support, and ``other_end`` in it the moment and force of a second support. For a
+    clamped beam with a moved tip, the first support is the clamp and the second the support of the tip. ``events`` is null for a
+    model that does not locate events. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every
+    load parameter. `comparisons.response.from_json.restated` reads all tables except the certificate.
     """
     axes = sampled_axes(response)
     return {
@@ -79,7 +79,7 @@ def _support(support: SupportHistory) -> dict[str, Any]:
 
 
 def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()) -> str:
-    """Return a few lines for a reader: how the run ended and the last state reached, and `more` of them."""
+    """Return a few lines for a reader: the status, the last state reached, and the lines `more`."""
     force, length = (unit.strip() for unit in units.split(","))
     rows = [("status", f"{response.status}: {response.message}")]
     if len(response.load_parameter):

@@ -1,4 +1,4 @@
-"""What holds and loads the ends of beams: records, hashable, without arrays, checked when they are made."""
+"""Supports and loads of beam ends, as hashable records without arrays that check their values at construction."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -12,7 +12,7 @@ COMPONENTS = ("x", "y", "rotation")
 
 @dataclass(frozen=True, kw_only=True)
 class SupportSpec:
-    """A support of a beam's end; what it holds stays at rest or moves by a prescribed amount times the load parameter.
+    """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class SupportSpec:
     end : {"start", "end"}
         Which end. Beams that share an end are rigidly joined there: one support holds the joint.
     kind : {"clamped", "pinned", "roller"}
-        Holds position and rotation; the position; one component of it.
+        A clamped end has position and rotation held, a pinned end the position, a roller one component of the position.
     free : {"x", "y"}
         The direction in which a roller is free.
     fixed : tuple of {"x", "y", "rotation"}

@@ -1,4 +1,4 @@
-"""What touches beams: records, hashable, without arrays, checked when they are made."""
+"""Pins and contact pairs, as hashable records without arrays that check their values at construction."""
 
 import math
 from bisect import bisect_left
@@ -33,7 +33,7 @@ class PinSpec:
     path : tuple of (float, float)
         A polyline [length], instead of `start` and `displacement`.
     radius : float, optional
-        Of a round pin, whose centre is on the path [length]; a point if not given.
+        Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.
 
     Raises
     ------
@@ -100,8 +100,8 @@ class ContactSpec:
     penalty : float
         Penalty stiffness of the solid model [force/length]; automatic if not given.
     penetration : float
-        Largest penetration that the solid's augmented Lagrangian steps leave, relative to the beam's length; if not given,
-        what the penalty leaves.
+        Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given,
+        the penalty alone bounds the penetration.
     keep : bool
         Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.
     """

@@ -1,4 +1,4 @@
-"""Joints: beams that share an end are one structure, which must be held, and each of its joints by one support at most."""
+"""Joints of beams. Beams that share an end form one structure. A structure needs supports, with one at most at each joint."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from comparisons.scene.records import BeamSpec, Scene
 
 NEAR = 1e-6
-"""Distance of two ends, relative to the beam, below which they are one joint by intention and must be so exactly."""
+"""Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
 
 
 def check_joints(scene: Scene) -> None:
@@ -70,10 +70,10 @@ def _check_meeting(scene: Scene) -> None:
 
 
 def _neighbours(longest: dict[Point, float]) -> Iterator[tuple[Point, Point]]:
-    """Yield the pairs of ends that are no farther apart than `NEAR` of the shorter beam, and some besides.
+    """Yield all pairs of ends with a distance of at most `NEAR` times the shorter beam; some pairs may be farther apart.
 
-    The ends lie in grids of squares, one grid for every power of two among the lengths; an end of a beam looks about in its own
-    grid, in which the ends of longer beams are too.
+    The search uses grids of squares, one grid for every power of two among the beam lengths. A grid has the ends of all beams of
+    its length or longer. Each end is compared with the ends in the neighbouring squares of the grid for its beam's length.
     """
     levels = {place: math.frexp(length)[1] for place, length in longest.items()}
     for level in sorted(set(levels.values())):

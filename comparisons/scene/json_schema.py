@@ -36,11 +36,11 @@ OF_RULES: dict[Rule, Schema] = {
     rules.truth: {"type": "boolean"},
     rules.ends: {"type": "array", "items": END, "uniqueItems": True},
 }
-"""What a rule says about a value, as far as a schema can say it."""
+"""The part of each rule that JSON Schema can express."""
 
 
 def json_schema() -> Schema:
-    """Return the schema: what it refuses the reader refuses too; rules between keys are the reader's alone.
+    """Return the schema. A file that the schema refuses is refused by the reader too; rules between keys are checked by the reader only.
 
     Examples
     --------

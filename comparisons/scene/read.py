@@ -1,4 +1,4 @@
-"""Scene files: TOML in, `Scene` out, one line for everything that is wrong."""
+"""Reader of scene files: it turns TOML into a `Scene`, or raises an error of one line."""
 
 from dataclasses import MISSING as NO_DEFAULT
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""The records of a beam and of the whole scene: hashable, without arrays, checked when they are made."""
+"""A beam and the whole scene, as hashable records without arrays that check their values at construction."""
 
 import math
 from dataclasses import dataclass
@@ -41,11 +41,11 @@ class BeamSpec:
     shear_modulus : float
         Shear modulus, instead of `poissons_ratio` [force/length^2].
     width : float
-        Of the section, out of plane [length].
+        Width of the section, out of plane [length].
     height : float
-        Of the section, in plane [length].
+        Height of the section, in plane [length].
     area : float
-        With `second_moment`, instead of `width` and `height` [length^2].
+        Area of the section, with `second_moment` instead of `width` and `height` [length^2].
     second_moment : float
         Second moment of area, with `area` [length^4].
     shear_area : float
@@ -55,7 +55,7 @@ class BeamSpec:
     elements : int
         Number of TSM elements, all of one length.
     nodes : tuple of float
-        Where TSM elements meet, as parts of the length, in place of `elements`.
+        Positions of the inner TSM nodes as parts of the length, instead of `elements`.
     mesh : (int, int)
         Elements of the solid along and across.
     solid_clamp : {"rod", "full"}
@@ -63,10 +63,10 @@ class BeamSpec:
     solid_element : {"Q1", "Q2", "Q2-full"}
         Elements of the solid.
     solid_mesh_file : str, optional
-        A mesh of the solid's own in place of `mesh`, in the beam's frame, with named edges: see
+        File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see
         `fem_reference.mesh_file.read_mesh`.
     material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
-        Law of the solid.
+        Material law of the solid.
 
     Raises
     ------
@@ -149,7 +149,7 @@ class BeamSpec:
 
 
 def _cube(number: float) -> float:
-    """Third power; infinite where a float's own raises."""
+    """Third power; infinite where Python's power raises OverflowError."""
     try:
         return number**3
     except OverflowError:
@@ -158,7 +158,7 @@ def _cube(number: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Beams, what holds and loads them, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
+    """Beams with supports and loads, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
 
     Beams whose ends have the same coordinates are rigidly joined there.
 
@@ -173,7 +173,7 @@ class Scene:
     beams : tuple of BeamSpec
         At least one.
     supports, loads, pins, contacts : tuple of SupportSpec, LoadSpec, PinSpec, ContactSpec
-        Every pin is in a contact; a pin, a load or a moving support there must be, and no beam may be free.
+        Every pin is in a contact. At least one pin, load or moving support is needed, and no beam may be free.
 
     Raises
     ------
@@ -250,11 +250,11 @@ class Scene:
         return beam.start if end == "start" else beam.end
 
     def supports_of(self, beam: str) -> tuple[SupportSpec, ...]:
-        """Return the supports of a beam, the one that holds most first; of equals, the start's."""
+        """Return the supports of a beam by falling number of held components; at equality the support at the start is first."""
         return self._supports_of[beam]
 
     def tip(self, beam: str) -> str:
-        """Return the less held end of a beam: "end", but "start" where the beam's end holds more."""
+        """Return the end of a beam with fewer held components, "end" at equality."""
         own = self.supports_of(beam)
         more = bool(own) and own[0].end == "end" and (len(own) == 1 or own[0].held != own[1].held)
         return "start" if more else "end"

@@ -1,4 +1,4 @@
-"""Rules for single values of a scene: each returns the value in its stored form or raises its sentence.
+"""Rules for single values of a scene. A rule returns the value in its stored form, or raises an error with its sentence.
 
 A record names the rule of a field in the field's type, ``Annotated[float, positive]``; `apply_rules` applies them.
 """
@@ -17,9 +17,9 @@ Rule = Callable[[object], object]
 
 
 LARGEST = 1e50
-"""Largest size of a number, a coordinate or a length: squares, products and quotients of such numbers stay in floating-point range."""
+"""Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
 RANGE = (1e-100, 1e100)
-"""Sizes of what must be positive: moduli, dimensions of sections, stiffnesses."""
+"""Range of positive quantities: moduli, dimensions of sections, stiffnesses."""
 
 
 class RuleError(ValueError):
@@ -285,7 +285,7 @@ def records(kind: type, at_least: int = 0) -> Rule:
 
 
 def exactly_one_of(given: Mapping[str, object], groups: tuple[tuple[str, ...], ...]) -> None:
-    """Raise unless exactly one of `groups` of keys is given, and that one whole (None means not given)."""
+    """Raise unless exactly one of the `groups` of keys is given, with all its keys; None means not given."""
     wanted = " or ".join(" and ".join(group) for group in groups)
     present = [group for group in groups if any(given[item] is not None for item in group)]
     if not present:

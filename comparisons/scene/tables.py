@@ -1,4 +1,4 @@
-"""Input files of TOML tables: read them, check their keys, and say in one line what is wrong."""
+"""Reader of TOML input files: it checks the keys and raises errors of one line."""
 
 import difflib
 import re
@@ -10,9 +10,9 @@ from comparisons.files import read_regular
 from comparisons.scene.rules import MISSING, FieldError
 
 LARGEST_FILE = 16_000_000
-"""Bytes of an input file."""
+"""Largest size of an input file [byte]."""
 DEEPEST = 50
-"""Parts of a dotted key; the time to parse one rises with the square of their number."""
+"""Largest number of parts of a dotted key; the time to parse a key rises with the square of this number."""
 _DEEP = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{DEEPEST}}}""")
 
 
@@ -33,7 +33,7 @@ def read_text(path: str, absent: str, kind: type[InputError]) -> str:
     Raises
     ------
     InputError
-        Of the given kind; it says `absent` where there is no such file.
+        An error of the given kind, with the reason `absent` where the file does not exist.
     """
     try:
         return read_regular(path, LARGEST_FILE).decode("utf-8")

@@ -14,7 +14,7 @@ COLOURS = (
     palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
 )  # fmt: skip
 HATCHES = ("", "//", "..", "", "xx", "\\\\", "++")
-"""Of the parts, in their order; hatches tell neighbours apart in grey."""
+"""Colours and hatches of the parts, in their order; hatches distinguish neighbours in grey print."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:

@@ -33,7 +33,7 @@ def _three(vectors: Array) -> Array:
 
 
 def body_grid(response: Response, k: int) -> Grid:
-    """Return the body with its own fields and, at every point, the index: 0 where the equilibrium is stable, -1 where it is not told."""
+    """Return the body with its fields and, at every point, the index: 0 where the equilibrium is stable, -1 where it is not known."""
     grid = response.grid(k)
     if response.index is None:
         return grid

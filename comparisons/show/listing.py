@@ -19,7 +19,7 @@ def digest(path: Path) -> str:
 
 
 def with_digests(text: str, digests: Mapping[str, str]) -> str:
-    """Return the XML `text` of a list, open at its end, with its own digest and the `digests` of files by name as a comment."""
+    """Return the XML `text` of an unfinished list, followed by a comment with the digest of `text` and the `digests` of files by name."""
     own = hashlib.sha256(text.encode()).hexdigest()
     entries = "".join(f"{value}  {name}\n" for name, value in {"itself": own, **digests}.items())
     return f"{text}{MARK}\n{entries}-->\n"

@@ -1,4 +1,4 @@
-"""One colour for each model, in every figure and on every page: Okabe and Ito's, told apart with every common colour blindness.
+"""One colour for each model in all figures and pages, from Okabe and Ito's palette for colour-blind readers.
 
 Elements of one model differ by markers and dashes, which also tell the models apart in grey.
 """

@@ -58,7 +58,7 @@ class Scale:
     force : float
         Length of an arrow per force.
     label : str
-        Of the stress.
+        Label of the stress.
     """
 
     centre: tuple[float, float]

@@ -45,14 +45,14 @@ class Judgement:
     cell : Cell
         The cell.
     verdict : Verdict
-        Wrong is an error above what is allowed, at any load parameter that was reached, and a case without a status of its own;
-        an answer that fails its own checks is withdrawn, and counts neither as right nor as stopped.
+        Wrong: an error is above its allowance at a load parameter that was reached, or the case raised or lost its worker. Withdrawn: the answer fails the
+        checks of a response; it counts neither as right nor as stopped.
     status, message : str
         How the solution ended.
     reached : float
         The last load parameter reached, zero if none was.
     findings : tuple of Finding
-        Of every check, over what was reached; empty if nothing was.
+        Findings of all checks over the load parameters that were reached; empty if none was.
     iterations, cutbacks : int
         What it took.
     seconds : float

@@ -6,7 +6,7 @@ from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene
 from comparisons.scene.rules import Point
 
 SLENDERNESS = 50.0
-"""L/h where it is not what varies: that of Konyukhov and Schweizerhof's cantilever."""
+"""Default slenderness L/h, taken from Konyukhov and Schweizerhof's cantilever."""
 SHEAR = 1 / 2.6
 """G/E of Poisson's ratio .3."""
 
@@ -28,7 +28,7 @@ def cantilever(
 
 
 def sheared(psi: float) -> BeamSpec:
-    """Return the cantilever with ``psi = EI/(GA L^2)``, its EA and EI those of `cantilever`."""
+    """Return the cantilever with ``psi = EI/(GA L^2)``, and with EA and EI of `cantilever`."""
     h = 1 / SLENDERNESS
     second_moment = h**4 / 12
     return BeamSpec(
@@ -44,7 +44,7 @@ def sheared(psi: float) -> BeamSpec:
 
 
 def rigid_in_shear(beam: BeamSpec) -> BeamSpec:
-    """Return what an Euler-Bernoulli element takes `beam` for."""
+    """Return `beam` as an Euler-Bernoulli element sees it, rigid in shear."""
     values = {**vars(beam), "poissons_ratio": None, "shear_modulus": 1e9 * beam.youngs_modulus}
     return BeamSpec(**values)
 
@@ -65,7 +65,7 @@ def pushed(
 def half_circle(
     beam: BeamSpec, *, steps: int = 10, surface: str = "axis", penalty: float | None = None
 ) -> Scene:
-    """Return the path of Konyukhov and Schweizerhof: from the tip to where that of an exact half circle would be."""
+    """Return the path of Konyukhov and Schweizerhof: from the tip to the end of a half circle with the beam's length."""
     below = 0.0 if surface == "axis" or beam.height is None else -beam.height / 2
     L = beam.length
     return pushed(

@@ -1,4 +1,4 @@
-"""Responses in the units of another beam: a mechanical problem has no other lengths and forces than its own."""
+"""Conversion of a response to the units of a similar beam; mechanics does not depend on the units of length and force."""
 
 from dataclasses import replace
 
@@ -7,9 +7,9 @@ from comparisons.scene import BeamSpec
 
 
 def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response:
-    """Return the response of `beam` as that of `other`, if both are the same up to units; axes and gaps are left as they are.
+    """Return the response of `beam` in the units of `other`, a beam that differs in units only. Axes and gaps are not converted.
 
-    Lengths are multiplied by the ratio of the lengths, forces by that of ``EI/L^2``, moments by that of ``EI/L``.
+    Lengths are scaled by the ratio of the lengths L, forces by the ratio of ``EI/L^2``, moments by the ratio of ``EI/L``.
     """
     length = other.length / beam.length
     force = other.EI / beam.EI / length**2

@@ -121,7 +121,7 @@ def column(load: float, aside: float, **section: Any) -> Scene:
 
 
 ASIDE = 1e-3
-"""Of the head of a column that buckles, over its length."""
+"""Sideways displacement of the head of a buckling column, over its length."""
 HELD_ASIDE = "the head is held L/1000 aside, which raises the load by pi^2/32 of the square, 3e-7"
 
 

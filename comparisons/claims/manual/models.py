@@ -29,7 +29,7 @@ class Model:
     Attributes
     ----------
     name, setting : str
-        Of the `Trial`.
+        Model and setting of the `Trial`.
     key : str
         Key of `comparisons.models.MODELS`.
     options : Options
@@ -125,7 +125,7 @@ def on_scene(
 
 
 def trial(model: Model, tolerance: float, reason: str, measure: Callable[[], Measured]) -> Trial:
-    """Return the trial of a model that is measured in a way of its own."""
+    """Return the trial of a model with the given measurement."""
     allowance = Allowance(error=tolerance, why=reason)
     return Trial(model=model.name, setting=model.setting, allowance=allowance, measure=measure)
 

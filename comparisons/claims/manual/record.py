@@ -65,7 +65,7 @@ class Trial:
     setting : str
         Its resolution.
     allowance : Allowance
-        Of every quantity.
+        Allowed error of every quantity.
     measure : callable
         Solves; raises `StoppedError` where there is no answer.
     """

@@ -1,4 +1,4 @@
-"""Cases with an independent exact rod: Reissner's, with stretch and shear, by quadrature and collocation of its own."""
+"""Cases with the exact Reissner rod, with stretch and shear, solved independently by quadrature and collocation."""
 
 from collections.abc import Sequence
 
@@ -119,7 +119,7 @@ def ks_face() -> Problem:
 
 
 def ks_biot() -> Problem:
-    """The main scene with the solid's law that is the rod's."""
+    """The main scene with a solid whose material law is equivalent to the rod's."""
     scene = ks(material="biot-linear")
     quantities, rod = _at_times(scene)
 

@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 PAIR = "pin->cantilever"
 INFINITE = 1e10
-"""EA and GA that stand for infinity, over EI/L^2."""
+"""EA and GA of a beam without stretch and shear, over EI/L^2."""
 UNIT: dict[str, Any] = {"youngs_modulus": 1.0, "second_moment": 1.0, "area": INFINITE, "shear_modulus": 1.0}
 """A section with EI = 1 N m^2 that neither stretches nor shears."""
 ELASTICA_TEXT = f"L = 1 m, EI = 1 N m^2, neither stretch nor shear (EA = GA = {INFINITE:g} N stand for that)"

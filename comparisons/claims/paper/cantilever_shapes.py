@@ -33,7 +33,7 @@ class Lift:
     Attributes
     ----------
     start : float
-        Of the pin [m].
+        Starting position of the pin [m].
     displacement : ndarray, shape (k,)
         Load parameters with contact, as displacement of the pin [m].
     force, rod_force, arc, rod_arc : ndarray, shape (k,)
@@ -41,7 +41,7 @@ class Lift:
     slip_off : dict of float
         Displacement at slip-off [m] by number of elements.
     rod_slip_off : float
-        That of the exact rod [m].
+        Displacement at slip-off of the exact rod [m].
     reached : dict of float
         Largest displacement [m] at which each formulation with 18 elements still found equilibrium in contact, by
         `tsm.solve` as it is set.
@@ -122,7 +122,7 @@ def _lift(scene: Scene, start: float, tried: tuple[Formulation, ...]) -> tuple[L
 
 
 def _reached(scene: Scene, element: str) -> float:
-    """Load parameter up to which the contact was followed: that of its slip-off where it came to it."""
+    """Load parameter up to which the contact was followed: the slip-off, or the end of the run before it."""
     response = solve(scene, TSM.name, Options(element=element))
     contact = response.contacts[scene.contacts[0].pair]
     if np.isfinite(contact.slip_off):

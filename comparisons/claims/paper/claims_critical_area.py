@@ -21,7 +21,7 @@ SIMPLE, CANTILEVER, TIMOSHENKO, MIXED = (
 MOVES = 0.5
 """A median critical area beyond half the element means that the tolerance is below the round-off everywhere in it."""
 CURED = -1.5
-"""A floor that grows with a smaller power of l_i/l than this is another than that of the third power."""
+"""Slope of a floor over l_i/l, in logarithms. A less steep floor cannot come from a stiffness with the third power of l/l_i."""
 CLEARLY = 2.0 / 3.0
 """Part of the cases that is more than chance: single critical areas scatter by a factor of two."""
 

@@ -32,7 +32,7 @@ PRINTED = {
 """The ranges of the critical area in [P] section 4.1."""
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 SHOWN_TOLERANCE = 1e-10
-"""That of the curves against displacement."""
+"""Tolerance of the curves against displacement."""
 RATIOS = 10.0 ** -np.arange(1.0, 16.5, 0.5)
 FITTED = (1e-13, 1e-2)
 """Ratios of the fitted slopes: below, a ratio has no digits left; above, it is no small one."""
@@ -60,7 +60,7 @@ class Measured:
     start : float
         Starting position of the pin [m].
     tolerance : float
-        Of Newton's method.
+        Tolerance of Newton's method.
     node : float
         Arc position of the beam node or the tip [m].
     displacement, ratio : ndarray, shape (k,)
@@ -91,7 +91,7 @@ class Floor:
     floor : ndarray
         Median over random states.
     slope : float
-        Of the straight line through the logarithms; nan at `PRINTED_SHEAR_PSI`, where there is no single line.
+        Slope of the straight line fitted to the logarithms; nan at `PRINTED_SHEAR_PSI`, where one line does not fit.
     """
 
     element: str

@@ -127,7 +127,7 @@ class DoubleBeam:
     iterations, seconds : int, float
         Newton iterations and wall time of `mixed` at the scene's own load parameters.
     attempts : tuple of Attempt
-        Of the other formulations.
+        Attempts with the other formulations.
     stopped : tuple of str
         What did not go through.
     """

@@ -69,7 +69,7 @@ def force_floor(
     samples : int
         Number of random states: place, direction, rotations and strain.
     seed : int
-        Of the random states.
+        Seed of the random states.
 
     Returns
     -------

@@ -74,7 +74,7 @@ def over_readings(cases: Sequence[bool | None], number: str, why: str) -> Judgem
     cases : sequence of bool or None
         Whether it holds in every reading; None where this program ends before the reading does.
     number, why : str
-        Of the judgement.
+        Measured numbers and reason of the judgement.
 
     Returns
     -------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fem_reference import SolidProblem, Strip
 
 LOADS = (1.0, 5.0)
-"""Of the tip, in EI/L^2."""
+"""Loads on the tip, in EI/L^2."""
 MESHES = ((50, 2), (100, 4))
 RUNS = ((50, 20.0), (100, 20.0), (200, 20.0), (400, 200.0))
 """Numbers of CalculiX's steps to the end of the pin's way, and its contact stiffness [N/m].
@@ -26,7 +26,7 @@ At 20 N/m the penetration takes some 5e-5 of the force; at 200 N/m longer steps 
 SHOWN = (0.1, 0.25, 0.5, 0.7)
 """Load parameters of the contact."""
 PENETRATION = 1e-10
-"""Of our solid, over the length."""
+"""Penetration of the solid model, over the length."""
 
 
 def peers(report: Report) -> list[Row]:

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 STEPS = 20
 """Load parameters of every run."""
 LATE = slice(2, None)
-"""Those past t = .1."""
+"""Load parameters past t = .1."""
 MESHES = tuple((nx, 2) for nx in range(40, 61))
-"""Of the scatter study."""
+"""Meshes of the scatter study."""
 SEQUENCE = ((25, 2), (50, 2), (100, 2), (200, 4))
 PENETRATION = 1e-10
 

@@ -39,7 +39,7 @@ def scrolling(label: str, inner: str) -> str:
 def picture(path: Path, caption: str) -> str:
     """Return an SVG or PNG file as a figure that is part of the page.
 
-    An SVG is an image of its own and not a part of the document, where its names and its style would meet those of others.
+    An SVG is embedded as an image. As a part of the document, its names and styles could clash with other figures.
     """
     content = base64.b64encode(path.read_bytes()).decode("ascii")
     image = f'<img alt="{text(caption)}" src="data:{TYPES[path.suffix]};base64,{content}">'

@@ -14,11 +14,11 @@ from comparisons.show.pages.markup import scrolling, text
 from comparisons.show.pages.page import Section
 
 POINTS = 61
-"""Of a deformed axis."""
+"""Points of a deformed axis."""
 DIGITS = 5
-"""Decimals of its coordinates, over the size of the scene."""
+"""Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
-"""Of the lines of runs: they tell them apart without colour."""
+"""Dashes of the lines of runs, which distinguish runs without colour."""
 INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 
 
@@ -117,7 +117,7 @@ def motion_section(
     focus : str
         The label of the run whose tip is shown enlarged.
     vtu : mapping of str
-        By label, where the VTU files of the load parameters are: ``{}`` stands for their number, from 1.
+        Path of the VTU files of the load parameters, by label. ``{}`` in it is replaced by the number of the load parameter, from 1.
     """
     labels = _ordered([*responses, *(label for track in shown for label in track.values)])
     times = max((one.load_parameter for one in responses.values()), key=len)
@@ -155,7 +155,7 @@ def _ordered(labels: Sequence[str]) -> list[str]:
 
 
 def _line_style(label: str, number: int) -> dict[str, Any]:
-    """Colour, dashes and width; the page has its own black and grey, which are light on a dark screen."""
+    """Colour, dashes and width. The page replaces black and grey by colours that are light on a dark screen."""
     style = palette.style(label)
     return {
         "colour": INKS.get(style.colour, style.colour),
