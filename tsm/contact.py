@@ -1,9 +1,12 @@
 """Geometry of contact: where a node lies relative to a beam, and which element owns it.
 
-A node has exactly one owner. While the arc position is an unknown, the owner is the element that holds it: passing
-a beam node is a change of owner inside the iteration, and both neighbours describe the same point. Where the
-position follows from a projection on chords, the owner is the element whose projection falls inside; on the convex side
-of a kink, where none does, and on the concave side, where two do, it is the nearer one, the first of two equals.
+A contacting node has exactly one owner, the element that it touches. If the arc position is an unknown, the owner is the element in
+which the arc position lies. When the contact passes a beam node, the owner changes inside the iteration; at the beam node, both
+neighbours describe the same point.
+
+If the position follows from a projection on chords, the owner is the element whose chord has the projection inside. On the convex
+side of a kink no chord has it, and on the concave side two chords may. The owner is then the nearer element, or the first of two at
+the same distance.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) 
 
 
 def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
-    """State with moved contacts; those that left their element belong to the neighbour."""
+    """State with moved contacts; a contact that left its element is handed over to the neighbour."""
     owned: list[Touch | None] = []
     for pair, touch in zip(model.pairs, touches, strict=True):
         if touch is None:

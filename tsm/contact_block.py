@@ -1,4 +1,4 @@
-"""The contacts' part of the linear system: its border, and the units in which it is solved."""
+"""Border of the linear system, which holds the contacts, and the units in which the system is solved."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Bordered(NamedTuple):
     right, below : ndarray, shapes (equations + 1, border), (border, equations + 1)
         Border columns and rows.
     corner : ndarray, shape (border, border)
-        Where they meet; the unknowns of open contacts stand alone in it.
+        Matrix of the border's rows and columns. An open contact has 1 on its diagonal and zeros elsewhere.
     condensed_residual : ndarray, shape (equations + contact unknowns,), or 0
-        What the residual inside elements adds to the residual once it is eliminated.
+        Contribution of the residual inside exact elements after the inner unknowns are eliminated.
     groups : tuple
         Tangents of the element groups.
     """
@@ -41,12 +41,12 @@ class Bordered(NamedTuple):
 
 
 class Units:
-    """Units of the equations and unknowns: exact elements put lengths, forces and angles into one matrix.
+    """Units of the equations and unknowns, needed because exact elements put lengths, forces and angles into one matrix.
 
     Parameters
     ----------
     model : Model
-        Its longest beam and largest ``EI/L^2`` are the units.
+        Model whose longest beam and largest ``EI/L^2`` are the units.
     k : int
         Bandwidth.
     """
@@ -81,7 +81,7 @@ class ContactBlock:
     right, below, corner : ndarray
         Border of the tangent, see `Bordered`.
     residual, condensed_residual : ndarray, shape (contact unknowns,)
-        Residuals of the contacts, and what is added once the unknowns inside elements are eliminated.
+        Residuals of the contacts, and their contribution after the unknowns inside elements are eliminated.
     forces : dict
         Force on the beam of every closed pair.
     pushed : list
@@ -107,7 +107,7 @@ class ContactBlock:
         self.crowded = False
 
     def leave_open(self, pair: PairModel) -> None:
-        """Let the unknowns of an open pair stand alone."""
+        """Decouple the unknowns of an open pair: 1 on the diagonal, zeros elsewhere."""
         if pair.slot >= 0:
             slots = self._slots(pair)
             self.corner[slots, slots] = np.eye(pair.element_type.contact_unknowns)
@@ -164,7 +164,7 @@ class ContactBlock:
                     self.below[slots.start + i, equation] -= 1
 
     def _share(self, p: Any, first: tuple[PairModel, Touch], second: tuple[PairModel, Touch]) -> None:
-        """Let two contacts on one element feel each other's dent."""
+        """Couple two contacts on one element: each force deflects the element at the other contact."""
         (one, a), (two, b) = first, second
         coupling = one.law.coupling
         assert coupling is not None, "both have unknowns"

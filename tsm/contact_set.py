@@ -1,4 +1,4 @@
-"""The set of closed contacts: its start, its changes, which open pairs may close, and which closed ones may not open."""
+"""The set of closed contacts: its initial state, its changes, and the rules for opening and closing."""
 
 from __future__ import annotations
 

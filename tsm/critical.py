@@ -1,13 +1,13 @@
-"""Critical points: where the tangent of the equilibrium path is singular, so that a buckling mode needs no force.
+"""Critical points of the equilibrium path. The tangent is singular there, and a buckling mode needs no force.
 
-At a limit point the load parameter is stationary along the path, and no equilibrium of this branch lies beyond. At a bifurcation point
-the path goes on, unstable, and another branch crosses it. Both are located by a number g that vanishes with the tangent K and is
-smooth there (Griewank and Reddien 1984)::
+At a limit point the load parameter is stationary along the path, and this branch has no equilibrium beyond. At a bifurcation point
+the path goes on, unstable, and another branch crosses it. Both kinds are located as the root of a number g. This number vanishes
+where the tangent K is singular and is smooth there (Griewank and Reddien 1984)::
 
     [ K  b ] [ v ]   [ 0 ]
     [ c  0 ] [ g ] = [ 1 ],     g = -1/(c . y),  v = y/(c . y),  K y = b
 
-for any fixed b and c; v is the mode.
+The vectors b and c are arbitrary and fixed; v is the mode.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from tsm.stability import mode
 from tsm.system import Linearisation
 
 _LOCATED = 1e-13
-"""Bracket of a critical load parameter at which it is found, and g there in parts of its value at the ends of the step."""
+"""Tolerance of the search: width of the bracket of the critical load parameter, and g over its value at the ends of the step."""
 _SHIFT = 1e-6
-"""Part of a mode by which the axis is moved to see its shape."""
+"""Amplitude of the mode in the difference quotient that gives its shape along the axis."""
 
 
 class CriticalKind(StrEnum):
@@ -48,7 +48,7 @@ class CriticalPoint:
     kind : CriticalKind
         Limit point or bifurcation.
     load_parameter : float
-        Where.
+        Load parameter of the point.
     mode : dict of ndarray, shape (m, 2)
         Displacements of the beams' axes in the buckling mode, at the stations of `Result.axis_line`; the largest is 1.
     """
@@ -68,7 +68,7 @@ def _bordered(newton: Newton, system: Linearisation, across: Array | None = None
     system : Linearisation
         Tangent at an equilibrium.
     across : ndarray, optional
-        The vector c; a fixed one with parts along all displacements if not given.
+        The vector c; by default a fixed vector with components along all displacements.
     """
     size = len(newton.scale)
     draw = np.random.default_rng(1)
@@ -87,9 +87,9 @@ def _bordered(newton: Newton, system: Linearisation, across: Array | None = None
 def locate_bifurcation(
     newton: Newton, before: PathTangent, after: PathTangent, solve: Callable[[float], Equilibrium | None]
 ) -> Equilibrium | None:
-    """Equilibrium at the singular tangent of a path that goes on beyond it.
+    """Locate a bifurcation, the equilibrium with a singular tangent on a path that goes on.
 
-    The index tells on which side of the point an equilibrium lies, g how far from it.
+    The index of an equilibrium shows the side of the bifurcation, and g measures the distance to it.
 
     Parameters
     ----------

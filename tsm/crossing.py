@@ -1,6 +1,6 @@
-"""Crossings: a node that goes through a touched line within a step and lies past an end of the beam after it.
+"""Crossings: within one step, a node goes through a beam and on past the beam's end.
 
-After such a step the node is nowhere over the beam, so that no gap tells of the contact on the way.
+After such a step the node no longer projects onto the beam, so the gap at the end of the step does not show the missed contact.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ from tsm.root import find_root
 from tsm.state import State
 
 _CROSSED = 1e-14
-"""Gap, in parts of the longest beam, and bracket of load parameters at which a crossing is found."""
+"""Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
     """First crossing between two configurations with the same closed contacts.
 
-    The configuration is taken to move straight from one to the other; the touched line goes on beyond the beam's ends as a tangent.
+    All points are assumed to move on straight lines between the configurations. The contact surface is extended beyond the beam's ends
+    along its tangents.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Largest bending and strain of the elements along the path, to be compared with what their approximations allow."""
+"""Largest bending and strain of the elements along the path, for comparison with the limits of their approximations."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ class Deformation:
     load_parameter : ndarray, shape (n,)
         Load parameter of every accepted step.
     turn : ndarray, shape (n,)
-        Angle by which an element bends between its ends, or would by a contact's moment all along it, ``F min(a, b) l/EI`` with
-        the distances a and b of the contact from its ends [rad].
+        Largest angle by which an element bends between its ends [rad]. For an element in contact the angle is at least
+        ``F min(a, b) l/EI``, the bend under a constant moment of the contact force, with the distances a and b of the contact from the
+        ends of the element.
     strain : ndarray, shape (n,)
         Section force, or contact force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
     bearable : float
@@ -38,7 +39,7 @@ class Deformation:
 
 
 def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation | None:
-    """Return turn and strain at every equilibrium; None where all elements are exact, which bear any."""
+    """Return turn and strain at every equilibrium; None if all elements are exact, because exact elements have no limit."""
     kinds = {ELEMENTS[beam.beam.element] for beam in model.beams.values()}
     bearable = [kind.bearable_turn for kind in kinds if isinstance(kind, ClosedForm)]
     if not bearable:

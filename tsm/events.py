@@ -1,4 +1,4 @@
-"""Contact events: what changes between two configurations, and where exactly it does.
+"""Contact events between two configurations, and their exact load parameters.
 
 ============= ==============================================================================
 touch         the gap of an open pair falls below zero, its node on the stated side
@@ -10,8 +10,9 @@ limit-point   the load parameter is stationary along the path
 bifurcation   another branch crosses the path, which goes on unstable
 ============= ==============================================================================
 
-The first three change the set of closed contacts. Each of them, and line contact, has a margin, positive before and negative
-after, and lies where its margin is zero. A pass-through changes nothing and is interpolated.
+The first three events change the set of closed contacts. Each of them, and line contact, has a margin: a number that is positive
+before the event and negative after it. The event is located at the root of its margin. A pass-through does not change the set of
+closed contacts; its load parameter is interpolated.
 """
 
 from __future__ import annotations
@@ -28,12 +29,12 @@ from tsm.projection import arc_position
 from tsm.root import find_root
 
 ROUND_OFF = 1e-10
-"""Margins smaller than this are zero."""
+"""Absolute margin below which a margin counts as zero."""
 
 _LOCATED = 1e-12
-"""Margin at which an event is found: what depends on its load parameter may be a thousand times as sensitive."""
+"""Largest margin of a located event. Results at the event may depend on its load parameter with a factor of a thousand."""
 _APART = 1e-14
-"""Width of the bracket of load parameters within which a margin jumps."""
+"""Width of the bracket of load parameters at which a margin that jumps is located."""
 
 
 class EventKind(Enum):
@@ -55,19 +56,19 @@ class Event:
     Attributes
     ----------
     kind : EventKind
-        What happened.
+        Kind of the event.
     load_parameter : float
-        Where.
+        Load parameter of the event.
     pair : str
         Name of the pair.
     element : int
-        The owner, counted from 0 at the beam's start; after a pass-through, the new owner.
+        Number of the owner, from 0 at the beam's start; after a pass-through, number of the new owner.
     arc_position : float
         Distance along the undeformed axis [length].
     force : float
         Contact force, before the event.
     released : float
-        Strain energy, less the work of the loads, set free by the jump that follows a slip-off.
+        Potential energy (strain energy less the work of the loads) that is released in the jump after a slip-off.
     """
 
     kind: EventKind
@@ -185,7 +186,7 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
 
 
 def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:
-    """Margins that have become negative, as they were before and after."""
+    """Pairs of margins, before and after, of the events whose margin became negative."""
     return [(a, b) for a, b in zip(before, after, strict=True) if b.value < -ROUND_OFF]
 
 
@@ -209,7 +210,8 @@ def locate(
     Returns
     -------
     tuple or None
-        Where the margin is zero, or where it jumps below zero at a load parameter that is exact to round-off.
+        Equilibrium at the root of the margin, with the margin; or just past a jump of the margin to below zero, whose load parameter is
+        exact to round-off.
     """
     (begin, first), (end, last) = before, after
 

@@ -1,7 +1,7 @@
-"""Falls: where a structure comes to rest when a contact that held it slips off.
+"""Falls: the motion of a structure from a lost contact to the equilibrium where it rests.
 
-Without the lost contact there may be no equilibrium nearby. The structure therefore moves against a drag, and its potential decreases in steps
-that may be as short as necessary. Beams and pins that it meets on the way become contacts.
+Without the lost contact there may be no equilibrium nearby. The structure therefore moves against a viscous drag, in steps that each
+lower its potential and may be as short as necessary. Beams and pins that the structure meets on the way become contacts.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from tsm.status import Status
 from tsm.system import Drag
 
 _LAST_PART = 1e-2
-"""A touch within a fall is located to this part of the lost force; the path of a fall is not the load's."""
+"""Accuracy of a touch within a fall, as a part of the lost force. It may be low, because the path of a fall has no physical meaning."""
 _FIRST_PACE = 1e-1
-"""Time of the first step of a fall."""
+"""First time step of a fall, in the units of `_resistance`."""
 _LEVEL = 1e-9
-"""Rise of the energy, in parts of itself and of ``EI/L``, that round-off may leave."""
+"""Largest rise of the energy that counts as round-off, over the energy and over ``EI/L``."""
 _TRIALS = 200
-"""Steps of a fall at most, refused ones included: a structure that nothing holds never comes to rest."""
+"""Largest number of steps of a fall, with refused ones; a structure without supports and contacts never comes to rest."""
 
 
 @dataclass(kw_only=True)
@@ -51,19 +51,19 @@ class Fall:
     iterations: int = 0
 
     def rest(self, state: State, energy: float) -> Equilibrium | None:
-        """Find where the structure comes to rest when it moves against a dwindling drag.
+        """Find the equilibrium that the structure reaches against a drag which is reduced from step to step.
 
         Parameters
         ----------
         state : State
-            From where it falls, without what held it: its forces are in no equilibrium any more.
+            Configuration at the start of the fall, without the lost contact and therefore out of equilibrium.
         energy : float
-            Potential of that configuration while it was held.
+            Potential of this configuration with the lost contact.
 
         Returns
         -------
         Equilibrium or None
-            None if nothing holds it.
+            Equilibrium at rest; None if the structure finds none.
         """
         pace, over = _FIRST_PACE, _before(self.newton.model, state)
         resistance = _resistance(self.newton.model)
@@ -93,13 +93,13 @@ class Fall:
 
 
 def descends(newton: Newton, energy: float, after: State) -> bool:
-    """Whether an equilibrium has no more potential than `energy`; too long a step against little drag ends on another equilibrium."""
+    """Whether the potential of an equilibrium is at most `energy`. A time step that is too long may end on another equilibrium with more."""
     scale = newton.model.force_scale * newton.model.length
     return newton.potential(after) <= energy + _LEVEL * (scale + abs(energy))
 
 
 def _before(model: Model, state: State) -> set[int]:
-    """Open pairs whose node lies on its side of the beam, or on the surface: it cannot come to lie behind without a contact."""
+    """Open pairs whose node lies on the stated side of the beam or on the surface, and which must touch before they pass it."""
     small = ROUND_OFF * model.length
     beside = set()
     for k, (pair, touch, armed) in enumerate(zip(model.pairs, state.touches, state.armed, strict=True)):
@@ -116,7 +116,7 @@ def met(margins: list[Margin]) -> list[Margin]:
 
 
 def _resistance(model: Model) -> Array:
-    """Drag of the nodes, in proportion to the lengths of their elements; per time that is counted in beams falling under ``EI/L^2``."""
+    """Drag of the nodes, proportional to the lengths of their elements. In the unit of time a beam falls by L under ``EI/L^2``."""
     l0 = model.properties.l0
     share = np.bincount(model.element_nodes.ravel(), np.repeat(l0 / 2, 2), len(model.coordinates))
     per_way = np.zeros(model.dof_count)

@@ -1,7 +1,7 @@
-"""Inertia of a symmetric matrix that is a band with a border: how many of its eigenvalues are negative.
+"""Number of negative eigenvalues of a symmetric matrix that is a band with a border.
 
-``negatives(K) = negatives(A) + negatives(D - B^T A^-1 B)`` (Haynsworth 1968) for a band A, border columns B and a corner D. Most bands
-pass Cholesky's factorisation and have none; where one does not, the whole is factorised.
+For a band A, border columns B and a corner D, ``negatives(K) = negatives(A) + negatives(D - B^T A^-1 B)`` (Haynsworth 1968).
+Most bands are positive definite, which Cholesky's factorisation shows. If A is not positive definite, the whole matrix is factorised.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from tsm.lapack import lapack
 
 _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-13
-"""Cholesky's pivots, in parts of the diagonal, below which a band may as well be singular."""
+"""Smallest pivot of Cholesky's factorisation, over the diagonal, of a band that is treated as regular."""
 _SOFT = 1e5
-"""Largest flexibility, in plain numbers, of a structure without its contacts: beyond, the band is near its own critical point and has too few digits."""
+"""Largest dimensionless flexibility of a structure without its contacts. A larger one shows a nearly singular band, whose Schur complement
+has too few digits."""
 _DENSE = 1500
-"""Most unknowns of a dense matrix."""
+"""Largest number of unknowns of a dense matrix."""
 
 
 class Symmetric(NamedTuple):
@@ -30,9 +31,9 @@ class Symmetric(NamedTuple):
     band : ndarray, shape (k + 1, n)
         LAPACK's lower band storage.
     right : ndarray, shape (n, b)
-        Border columns, for plain numbers as unknowns.
+        Border columns, for dimensionless unknowns.
     corner : ndarray, shape (b, b)
-        Where they meet, likewise.
+        Matrix of the border's rows and columns, for dimensionless unknowns.
     units : ndarray, shape (n,)
         Units of the band's unknowns, over the root of an energy.
     multipliers : int
@@ -68,7 +69,7 @@ def negatives(symmetric: Symmetric) -> int | None:
 
 
 def _negatives_sparse(symmetric: Symmetric) -> int | None:
-    """The same for a large matrix, by an LU decomposition whose pivots stay on the diagonal; None where they do not."""
+    """Number of negative eigenvalues of a large matrix, by an LU decomposition; None if a pivot leaves the diagonal."""
     from scipy.sparse import block_array, coo_array, dia_array
     from scipy.sparse.linalg import splu
 
@@ -97,14 +98,14 @@ def _negatives_sparse(symmetric: Symmetric) -> int | None:
 
 
 def _equilibrating(largest: Array) -> Array:
-    """Factors of rows and columns that bring their largest entries near one; the number of negative eigenvalues stays (Sylvester)."""
+    """Scale factors that bring the largest entry of every row near one. Scaling keeps the number of negative eigenvalues (Sylvester)."""
     with np.errstate(all="ignore"):
         factor = 1 / np.sqrt(largest)
     return np.where(np.isfinite(factor), factor, 1.0)
 
 
 def _negatives_dense(matrix: Array) -> int | None:
-    """The same for a dense matrix, of which the lower triangle is read, by Bunch and Kaufman's factorisation."""
+    """Number of negative eigenvalues of a dense matrix from its lower triangle, by Bunch and Kaufman's factorisation."""
     lower = np.abs(np.tril(matrix))
     scale = _equilibrating(np.maximum(lower.max(axis=0, initial=0.0), lower.max(axis=1, initial=0.0)))
     factors, exchanges, _ = lapack().dsytrf(matrix * scale * scale[:, None], lower=1)

@@ -1,4 +1,4 @@
-"""Estimate of the memory that a solution needs, made before it starts."""
+"""Estimate of the memory of a solution, before the solution starts."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tsm.structure import Structure
 PART = 0.8
 """Part of the machine's memory that a solution may take."""
 CLOSED, EXACT_ONE, BORDER = 500, 2100, 50
-"""Bytes that every accepted load parameter keeps for an element in closed form, for an exact one, and for either and every unknown of the
-contacts; measured."""
+"""Measured memory of one accepted load parameter [byte]: for an element in closed form, for an exact element, and for each pair of an
+element and a contact unknown."""
 
 
 def needed(structure: Structure, load_parameters: int) -> int:
-    """Return the bytes that a solution keeps at all its load parameters, and as much again for one that is being solved.
+    """Return the memory of a solution [byte] for all its load parameters, plus one more load parameter that is being solved.
 
-    The unknowns of the contacts couple with all others in dense columns, and with one another.
+    The unknowns of the contacts couple with all other unknowns and with one another in dense columns.
     """
     kinds = [ELEMENTS[beam.element] for beam in structure.beams]
     elements = sum(beam.elements for beam in structure.beams)

@@ -1,4 +1,4 @@
-"""Newton's method. It never raises: the last iterate comes back with a status."""
+"""Newton's method. It returns the last iterate with a status and never raises."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from tsm.status import Status
 from tsm.system import Assembler, Drag, Linearisation
 
 LONGEST, _LONGEST_WHOLE = 1.0, 1.4
-"""Longest iteration, in parts of 0.3 L and 0.7 rad; more where no contact passes from element to element."""
+"""Largest Newton step, over 0.3 L and 0.7 rad; the second value holds where no contact passes from element to element."""
 _RISE, _SHORTEST = 10.0, 0.1
-"""Merit test of exact elements: an iteration that raises the residual tenfold is halved, three times at most. A stricter test stops good ones."""
+"""Merit test of exact elements. An iteration that raises the residual tenfold is halved, at most three times. A stricter test refuses
+iterations that would converge."""
 _NEAR = 1.0
-"""Residual below which a state is worth more Gauss nodes."""
+"""Residual below which the number of Gauss nodes may be raised."""
 _CRITICAL = 1e-6
-"""A contact so stiff that round-off leaves a larger residual than this has no equilibrium: the critical area."""
+"""Largest round-off of the residual at which an equilibrium is accepted. A stiffer contact is in the critical area."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,16 +76,17 @@ class _Iteration(NamedTuple):
     part: float = 1.0
 
     def to_halve(self, residual: float) -> bool:
-        """Whether the residual after the iteration is so much larger that a shorter step is to be tried."""
+        """Whether the residual has risen so much that half of the step is tried instead."""
         return not residual <= _RISE * self.residual and self.part > _SHORTEST
 
 
 class Newton:
     """Newton's method on forces, contact positions and directions together.
 
-    The norm is the largest entry of the residual, forces over ``EI/L^2``, moments over ``EI/L``, positions over
-    L/1000, with L the longest beam: a scale that cannot vanish. Converged is what lies below `tolerance`, or twice in a row
-    below the residual's round-off, ``4 eps (EA L/l0 + EI/l0^2)`` and ``4 eps k_c L`` for a contact of stiffness k_c.
+    The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``, positions over L/1000. L is the
+    longest beam, so that no scale can vanish. An iteration has converged if its norm is below `tolerance`. It has also converged if the
+    last two norms are below the round-off of the residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of
+    stiffness k_c.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
@@ -107,7 +109,7 @@ class Newton:
         return self.assembler.energy(state) - work
 
     def balanced(self, equilibrium: Equilibrium) -> bool:
-        """Whether support reactions and pin forces add up to nothing."""
+        """Whether support reactions, pin forces and loads are in balance."""
         model, system = self.model, equilibrium.system
         held = np.zeros(model.dof_count)
         held[model.fixed] = system.nodal[model.fixed]
@@ -133,7 +135,7 @@ class Newton:
         Parameters
         ----------
         start : State
-            Where the iteration starts. Its load parameter is held unless there is a constraint.
+            Start of the iteration. The load parameter is held unless there is a constraint.
         drag : Drag, optional
             Resistance to leaving a configuration.
         across : ndarray, shape (equations + contact unknowns,), optional
@@ -196,7 +198,7 @@ class Newton:
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
     ) -> Status | None:
-        """How the iteration ends here, None where it goes on."""
+        """Status with which the iteration ends, None if it goes on."""
         if not np.isfinite(residuals[-1]):
             return Status.NOT_FINITE
         if self.converged(residuals, system):
@@ -206,7 +208,7 @@ class Newton:
         return Status.PING_PONG if _alternates(owners) else Status.ITERATION_LIMIT
 
     def with_more_nodes(self, state: State, system: Linearisation, residuals: list[float]) -> State | None:
-        """State with a finer integration inside the elements, where it comes near equilibrium, or in it, and needs one."""
+        """State with more Gauss nodes in the exact elements; None if it is far from equilibrium or needs no more."""
         near = residuals[-1] <= _NEAR
         if not near or (
             len(residuals) > 1 and residuals[-2] <= _NEAR and not self.converged(residuals, system)
@@ -257,13 +259,13 @@ class Newton:
         step : ndarray, shape (equations + contact unknowns,)
             Change of the unknowns.
         system : Linearisation
-            The one that the step solves.
+            Linear system that the step solves.
         t : float, optional
             Load parameter after the step, if it changes.
         residual : bool
             Whether the step removes the residual.
         part : float
-            What is taken of the step that may be taken.
+            Fraction of the admissible step that is taken.
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
@@ -311,6 +313,6 @@ class Newton:
 
 
 def _alternates(owners: list[tuple[int, ...]]) -> bool:
-    """Whether the owners of the contacts went to and fro over the last six iterations."""
+    """Whether the owners of the contacts alternated over the last six iterations."""
     last = owners[-6:]
     return len(last) == 6 and last[0] != last[1] and all(a == b for a, b in zip(last, last[2:], strict=False))

@@ -15,7 +15,7 @@ from tsm.state import State, Touch
 
 
 def weights_at(times: Sequence[Any], t: Any) -> list[Any]:
-    """Weights, at t, of values at earlier times in the polynomial through them (Lagrange): numbers, or arrays over many structures."""
+    """Lagrange weights that extrapolate values at earlier times to t, as numbers or as arrays over many structures."""
     return [
         math.prod((t - other) / (time - other) for k, other in enumerate(times) if k != n)
         for n, time in enumerate(times)

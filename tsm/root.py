@@ -23,18 +23,18 @@ def find_root(
     Parameters
     ----------
     evaluate : callable
-        Value of the function at an argument, with what belongs to it; None where it has no value.
+        Value of the function at an argument, with any data that belong to it; None where the function has no value.
     before, after : tuple of (float, float)
         Argument and value on both sides of the root; the values have opposite signs.
     small : float
         Absolute value that counts as zero.
     apart : float
-        Width of the bracket at which a function that jumps is past its root.
+        Width of the bracket at which the search ends for a function that jumps.
 
     Returns
     -------
     Answer or None
-        What `evaluate` gave with the root, or just past a jump; None where it gave None.
+        Data from `evaluate` at the root, or just past a jump; None where `evaluate` returned None.
     """
     (t0, y0), (t1, y1) = before, after
     sign = 1.0 if y0 > 0 else -1.0

@@ -1,6 +1,6 @@
-"""Scales of the unknowns and equations: what a residual, a step and round-off are measured by.
+"""Scales of the unknowns and equations, for the norms of residuals, steps and round-off.
 
-Every function takes one structure, or many in the last axis.
+Every function takes one structure, or many structures along the last axis.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from tsm.sizes import Sizes
 
 ROUND_OFF = 4 * float(np.finfo(float).eps)
 SHARP = 1e-3
-"""Positions are held this much sharper than forces: they cost nothing, and a stiff contact needs them."""
+"""Scale of positions over the length. Positions are solved to a thousandth of the relative residual of forces. A stiff contact needs
+this accuracy, and it has no cost."""
 _TURN, _WAY = 0.7, 0.3
 """Largest step: rotation [rad], and displacement in parts of the structure's extent."""
 
@@ -59,6 +60,6 @@ def scales_of(model: Model, coordinates: Array, properties: Properties, sizes: S
 
 
 def largest(values: Array, scale: Array) -> Array:
-    """Largest scaled value: norm of a residual, size of a step. One number for every structure of the last axis."""
+    """Largest scaled value, the norm of a residual or the size of a step, for each structure of the last axis."""
     size: Array = np.abs(values * scale).max(axis=0, initial=0.0)
     return size

@@ -21,17 +21,17 @@ class Settings:
     max_iterations : int
         Newton iterations before a step is cut back.
     accuracy : float
-        Bound on the estimated error of the integration inside exact elements, in positions over the longest beam's length,
-        angles, and forces over ``EI/L^2``.
+        Bound on the estimated integration error inside exact elements: the largest error of positions over the longest beam, of
+        angles, and of forces over ``EI/L^2``.
     smallest_step : float
         Floor of the load step, as a part of the whole load.
     max_attempts : int
-        Load steps tried between two load parameters.
+        Largest number of load steps, with refused ones, between two prescribed load parameters.
     max_chatter : int
         Contact events allowed at one load parameter, per contact pair.
     branch : {"stop", "stable", "primary"}
-        What happens at a critical point of the path: it ends there by name, it turns to the stable branch of least energy, or it goes on
-        unstable where it can.
+        Continuation at a critical point. With ``stop`` the path ends there, with the kind of the point as status. With ``stable`` it
+        turns to the stable branch of least energy. With ``primary`` it goes on along the unstable branch, if there is one.
     """
 
     tolerance: float = 1e-10

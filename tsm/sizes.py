@@ -1,4 +1,4 @@
-"""Sizes of a structure: the lengths and forces that everything else is measured by."""
+"""Characteristic lengths and forces of a structure, from which all scales are made."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ class Sizes(NamedTuple):
     length, extent : ndarray, shape (...)
         Length of the longest beam, and of the largest structure of joined beams.
     force_scale, least_force : ndarray, shape (...)
-        Largest ``EI/L^2`` of a beam: with its length, and with the extent of its structure, whose forces may be that small.
+        Largest ``EI/L^2`` of a beam. `force_scale` has the length of the beam for L, `least_force` the extent of its structure: the
+        forces of a long frame of short beams may be that small.
     """
 
     length: Array
@@ -33,7 +34,9 @@ def sizes_of(lengths: Array, extents: Array, EI: Array) -> Sizes:
 
 
 def joined_extents(element_nodes: Array, starts: Array, coordinates: Array, lengths: Array) -> Array:
-    """Diagonals of the structures of joined beams, or a beam's length if it is larger: how far the ends of a beam may go.
+    """Extents of the structures of joined beams, a bound on the displacements of their ends.
+
+    The extent is the diagonal of the structure, or the length of its longest beam if that is larger.
 
     Parameters
     ----------

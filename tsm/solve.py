@@ -19,12 +19,12 @@ from tsm.structure import Structure
 
 
 class SolveError(RuntimeError):
-    """A solution stopped; `result` holds what was reached.
+    """A solution stopped; `result` holds all accepted load parameters.
 
     Attributes
     ----------
     result : Result
-        With the status that names the reason.
+        Partial result; its status is the reason for the stop.
     """
 
     def __init__(self, result: Result) -> None:
@@ -74,7 +74,7 @@ def solve(
     Returns
     -------
     Result
-        With status COMPLETED, or, if not `throw`, with what was reached and why it stopped.
+        Result with the status COMPLETED. Without `throw`, a solution that stopped returns a partial result with the reason as status.
 
     Raises
     ------

@@ -5,8 +5,8 @@ The energy's Hessian, bordered by the contacts, is a symmetric matrix K::
     [ A   B ]   A: band of the beams
     [ B^T D ]   D: the contacts' forces, arc positions and angles
 
-A contact force is the multiplier of a position that is held: with m of them the Hessian over the variations that the closed
-contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968), and the same holds with a flexibility at the contact.
+A contact force is the Lagrange multiplier of a constraint on a position. With m multipliers, the Hessian over the variations that the
+closed contacts admit has ``negatives(K) - m`` negative eigenvalues (Haynsworth 1968). The same holds with a flexibility at the contact.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
 _IDLE = 1e-9
-"""Force of a closed contact, over ``EI/L^2``, that does not push."""
+"""Largest force of a closed contact, over ``EI/L^2``, that counts as zero."""
 _TURNS = 4
-"""Times that the null vectors are found anew."""
+"""Number of iterations for the null vectors."""
 UNDEFINED = -1
-"""Index of what has none."""
+"""Index of an equilibrium for which no index is defined."""
 
 
 class Mode(NamedTuple):
@@ -55,7 +55,8 @@ class Mode(NamedTuple):
 def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
 
-    A contact that is closed without force admits variations to one side; there is an index only if it is the same with the contact open.
+    A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
+    contact open.
 
     Parameters
     ----------
@@ -69,9 +70,9 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     Returns
     -------
     int
-        Number of negative eigenvalues; for an exact element with more than a few hundred modes, a lower bound. -1 where there is no index: a
-        singular tangent, numbers that are not finite, closed contacts of the paper's elements, whose
-        force is normal to the chord and so has no energy, or more than 1,500 unknowns whose pivots leave the diagonal.
+        Number of negative eigenvalues; a lower bound for an exact element with more than a few hundred modes. The index is -1, not
+        defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose pivots leave the
+        diagonal. It is -1 also for closed contacts of the paper's elements: their force is normal to the chord and has no energy.
     """
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
@@ -100,7 +101,7 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
 
 
 def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
-    """The same without the force and arc position of contacts that carry no force."""
+    """Symmetric tangent without the force and arc position of the contacts that carry no force."""
     right, corner = symmetric.right.copy(), symmetric.corner.copy()
     right[:, idle] = corner[idle] = corner[:, idle] = 0.0
     corner[idle, idle] = 1.0
@@ -108,9 +109,9 @@ def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
 
 
 def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | None:
-    """Null vector of a tangent near a critical point, and whether the load drives it.
+    """Null vector of a tangent near a critical point, and the share of the load that drives it.
 
-    The tangent is bordered by a column and a row, which makes it regular; both come to be the null vectors (Govaerts 2000).
+    A column and a row are added to the tangent, which makes it regular. They converge to the null vectors (Govaerts 2000).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A configuration: displacements and the contacts that are closed in it."""
+"""A configuration: displacements and closed contacts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from tsm.elements.properties import Array
 
 Cuts = tuple[tuple[int, tuple[int, ...]], ...]
-"""Exact elements with contacts, counted over the exact elements: their pairs in order of arc position."""
+"""Exact elements in contact: the number among the exact elements, and the contact pairs in order of arc position."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,11 +19,11 @@ class Touch:
     element : int
         Global number of the element that owns the contacting node.
     xi : float
-        Position on it, 0 to 1 from end i to end j.
+        Position on the element, 0 to 1 from end i to end j.
     force : tuple of float
         Force on the beam (x, y).
     angle : float
-        Angle of the section from the x axis; of exact elements only.
+        Angle of the section from the x axis, used by exact elements only.
     """
 
     element: int
@@ -39,7 +39,7 @@ class Profile:
     Attributes
     ----------
     cuts : tuple
-        Where the elements are cut.
+        Contacts that cut the elements.
     angle : ndarray, shape (s, p)
         Angles of the sections from the x axis at the p Gauss nodes of the s segments.
     """

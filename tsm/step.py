@@ -1,4 +1,4 @@
-"""Accepted steps, and what is noted on the way from one to the next."""
+"""Accepted steps, and the log of the march between two of them."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Step:
 
 @dataclass(kw_only=True)
 class StepLog:
-    """What a march has noted since the last step that it handed on; attributes as in `Step`."""
+    """Events, iterations and cut-backs since the last yielded step; attributes as in `Step`."""
 
     iterations: int = 0
     cutbacks: int = 0

@@ -1,4 +1,4 @@
-"""How long the load steps are: they grow while the path is followed, and are cut back where an attempt fails."""
+"""Control of the load steps. Steps grow while the path is followed and are cut back where an attempt fails."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tsm.settings import Settings
 from tsm.status import Status
 
 _SAFE = 0.8
-"""Part of the step that the tangents would still allow, of which the next one is tried."""
+"""Safety factor: next step over the step that the tangents would still allow."""
 _SHORTEST = 0.1
 """Shortest part of a refused step that is tried next."""
 _NAMED = {
@@ -17,11 +17,11 @@ _NAMED = {
     Status.TWO_CONTACTS,
     Status.PING_PONG,
 }
-"""Failures that say more than that the step was cut back to its floor."""
+"""Failures that are reported by their own status instead of the general status of a step at its floor."""
 
 
 def allowed(unexplained: float) -> float:
-    """Return the part of a step that its tangents would still explain, from the part of it that they do not."""
+    """Return the fraction of a step that its tangents would explain; `unexplained` is the fraction that they do not explain."""
     return _SAFE * FOLLOWED / max(unexplained, 1e-9)
 
 
@@ -43,7 +43,7 @@ class StepControl:
         self.step, self.failure, self.part = 1.0, failure, 1 / 2
 
     def fail(self, status: Status, part: float = 1 / 2) -> Status:
-        """Give up an attempt; a part of its step is tried next."""
+        """Give up an attempt; the fraction `part` of its step is tried next."""
         self.failure, self.part = status, min(max(part, _SHORTEST), 1 / 2)
         return status
 
@@ -61,7 +61,7 @@ class StepControl:
         self.step = min(max(min(2.0, fitting) * taken, self.step if fitting >= 1 else 0.0), 1.0)
 
     def verdict(self, folds: bool) -> Status:
-        """Why no step goes on; `folds` where the path is as fast as beside a limit point."""
+        """Status that explains why no step succeeds; `folds` if the speed of the path shows a limit point."""
         if self.failure in _NAMED or self.smallest > 0.5:
             return self.failure
         return Status.LIMIT_POINT if folds else Status.CUTBACK_FLOOR

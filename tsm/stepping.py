@@ -1,8 +1,8 @@
-"""March along the load: it tries a step, and accepts what the path, its stability and its contacts allow.
+"""March along the load parameter, with checks of the path, its stability and its contacts before a step is accepted.
 
-A step goes to the next prescribed load parameter, or less far after a cut-back. It starts from the extrapolation of the
-last accepted states. Where an event lies inside the step, the step ends on the event, the
-contact is opened or closed, and the march goes on from there.
+A step goes to the next prescribed load parameter, or less far after a cut-back. Newton's method starts from the extrapolation of the
+last accepted states. If an event lies inside the step, the step ends at the event. The contact is then opened or closed, and the march
+goes on from there.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ from tsm.step_control import StepControl, allowed
 from tsm.track import FAR, Track
 
 _STRAIGHT = 0.02
-"""A step that changes the index has passed a bifurcation if its tangents leave less than this part of it unexplained; it may have left the path otherwise."""
+"""Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
-"""Load parameter beyond a critical point, and displacement along its mode in parts of the longest beam, from where a structure falls."""
+"""Start of a fall at a critical point: load parameter beyond the point, and displacement along its mode over the longest beam."""
 _NEAR = 1e-9
-"""Turns of a pin that are as close as this to a prescribed load parameter are there."""
+"""Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
 _COINCIDENT = 1e-6
-"""Touch and slip-off closer than this, in parts of the longest beam, are one event: a hand-over."""
+"""Distance over the longest beam below which a touch and a slip-off are one event, a hand-over."""
 
 
 class Stepper:
@@ -62,15 +62,15 @@ class Stepper:
     track : Track
         The path so far, from which the next state is predicted.
     control : StepControl
-        How long the next step is.
+        Length of the next step.
     log : StepLog
-        What has happened since the last step that was handed on.
+        Events, iterations and cut-backs since the last yielded step.
     margins : list of Margin
-        What the contacts of the last equilibrium may do next.
+        Margins of the events that the contacts of the last equilibrium may have next.
     chatter : Counter
         Changes of every contact pair at every load parameter.
     target : float
-        Load parameter that the march is on the way to.
+        Next prescribed load parameter.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
@@ -95,7 +95,7 @@ class Stepper:
         Parameters
         ----------
         accepted : list of State
-            In equilibrium, all with the same closed contacts.
+            States in equilibrium, all with the same closed contacts.
         step : float
             Longest next step.
         """
@@ -141,7 +141,7 @@ class Stepper:
                             return
 
     def _ends(self, load_parameters: list[float]) -> list[float]:
-        """Where steps must end: at the load parameters, and where a pin turns on the way to the last of them."""
+        """Load parameters at which a step must end: the prescribed ones, and the corners of pin paths before the last of them."""
         turns = self.model.turns
         begin, end = self.accepted.state.load_parameter, load_parameters[-1]
         ahead = turns[bisect_right(turns, begin + _NEAR) : bisect_left(turns, end)]
@@ -171,7 +171,7 @@ class Stepper:
         return self._advance(reached)
 
     def _advance(self, reached: Equilibrium) -> Status:
-        """Accept an equilibrium without an event on the way, if the step has followed the path and passed no critical point."""
+        """Accept an equilibrium if the step has no event, has followed the path and has passed no critical point."""
         before, tangent = self.accepted.state, PathTangent(self.newton, reached)
         unexplained = max(self.track.unexplained(end, reached) for end in (self.track.tangent, tangent))
         fitting = allowed(unexplained)
@@ -188,7 +188,7 @@ class Stepper:
         return Status.CONVERGED
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
-        """End the path at the bifurcation within a step, turn to the stable branch there, or go on to what was reached."""
+        """At a bifurcation within a step, end the path, turn to the stable branch, or accept the equilibrium beyond."""
         singular = locate_bifurcation(self.newton, self.track.tangent, tangent, self._solve)
         if singular is None:
             return self.control.refuse()
@@ -209,7 +209,7 @@ class Stepper:
         self.log.events.append(Event(kind=EventKind[kind.name], load_parameter=load_parameter))
 
     def _turn(self, critical: Equilibrium) -> Status:
-        """Let the structure fall from beside a critical point, pushed along its mode both ways; take the rest of least energy."""
+        """Let the structure fall from a critical point, pushed along its mode in both directions; accept the equilibrium of less energy."""
         t, model = critical.state.load_parameter, self.model
         ahead = t + min(_AHEAD, (self.target - t) / 2)
         mode = mode_shape(self.newton, critical)
@@ -249,7 +249,7 @@ class Stepper:
         return equilibrium
 
     def _stop_at_first(self, events: list[tuple[Margin, Margin]], goal: float) -> Status:
-        """End the step on its first event; where a force or position jumps instead, the step is too long and refused."""
+        """End the step at its first event. If a force or position jumps instead, the step is too long and is refused."""
         t = self.accepted.state.load_parameter
         first: tuple[Equilibrium, Margin] | None = None
         for before, after in events:
@@ -312,7 +312,7 @@ class Stepper:
         return status
 
     def _close(self, state: State, margin: Margin) -> State:
-        """State with an open pair closed without force, or, where its node is on the far side, no longer armed."""
+        """State with an open pair closed without force. A pair whose node is on the far side stays open and may not close (not armed)."""
         k, pair = margin.pair, self.model.pairs[margin.pair]
         if margin.value < -ROUND_OFF:
             return changed(self.model, state, k, None, armed=False)
@@ -322,7 +322,7 @@ class Stepper:
         return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
 
     def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
-        """Find equilibrium with the contacts changed; contacts that a jump would make pull are released in it."""
+        """Find equilibrium with the changed contacts; contacts whose force would become tensile in a jump are released."""
         energy = began = self.newton.potential(event.state)
         while True:
             equilibrium = self._settled(state, energy if jump else None)
@@ -357,7 +357,7 @@ class Stepper:
         return Status.CONVERGED
 
     def _settled(self, state: State, energy: float | None) -> Equilibrium | None:
-        """Equilibrium with other contacts: near the state, or, where a jump frees `energy`, to which the structure falls."""
+        """Equilibrium with changed contacts, near the state, or at the end of a fall from the potential `energy`."""
         equilibrium = self.newton.solve(state)
         self.log.iterations += equilibrium.iterations
         converged = equilibrium.status is Status.CONVERGED
@@ -372,7 +372,7 @@ class Stepper:
         return equilibrium if converged else None
 
     def _note_release(self, released: float) -> None:
-        """Enter the energy of a jump with the slip-off that set it off, the last one noted."""
+        """Record the released energy of a jump with the slip-off that caused it, the last one in the log."""
         n = max(n for n, event in enumerate(self.log.events) if event.kind is EventKind.SLIP_OFF)
         self.log.events[n] = replace(self.log.events[n], released=released)
 

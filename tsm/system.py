@@ -5,7 +5,7 @@
     [ A  B ] [ dq ]     [ r ]
     [ C  D ] [ dz ] = - [ s ]
 
-A is the banded tangent of the beams (LAPACK ``gbsv``), the border holds the unknowns of the closed contacts; its
+A is the banded tangent of the beams, factorised by LAPACK's ``gbsv``. The border B, C, D holds the unknowns of the closed contacts. Its
 Schur complement is small and dense. The cost is linear in the number of elements.
 """
 
@@ -28,7 +28,8 @@ from tsm.structure import Point
 
 _EPS = float(np.finfo(float).eps)
 _WEAK = 1e-12
-"""Pivot of the band, in parts of its column, below which only the contacts hold the beams: their Schur complement would have no digits."""
+"""Smallest pivot of the band, over its column, for which the Schur complement has digits. A smaller pivot means that only contacts hold
+the beams, and the whole matrix is solved instead."""
 
 
 @dataclass(kw_only=True, eq=False)
@@ -38,7 +39,7 @@ class Linearisation:
     Attributes
     ----------
     nodal : ndarray, shape (dofs,)
-        Forces of beams and contacts on all degrees of freedom; on the prescribed ones, the reactions.
+        Forces of beams and contacts on all degrees of freedom. On prescribed degrees of freedom they are the reactions.
     residual : ndarray, shape (equations + contact unknowns,)
         Unbalanced forces and end residuals of exact elements, then the residuals of the contacts: position (2), direction of the force, and
         on exact elements the angle.
@@ -158,7 +159,7 @@ class Assembler:
         )
 
     def _gather(self, values: list[Array]) -> Array:
-        """Sum what the groups (n, e) give on all degrees of freedom."""
+        """Sum the values (n, e) of the groups on all degrees of freedom."""
         count = self.model.dof_count
         sums = [
             np.bincount(dofs, weights=part.ravel(), minlength=count)
@@ -172,7 +173,7 @@ class Assembler:
         return tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
 
     def rate(self, state: State, velocities: tuple[Point, ...] | None = None) -> Array:
-        """Derivative of the residual in the load parameter: loads, prescribed displacements, moving pins (the present ones if none)."""
+        """Derivative of the residual in the load parameter, from loads, prescribed displacements and pin velocities (by default at the state)."""
         model = self.model
         velocities = self.velocities(state.load_parameter) if velocities is None else velocities
         nodal, contacts = -model.load, np.zeros(model.contact_unknowns)
@@ -258,7 +259,7 @@ class Assembler:
         return x if self.units is None else x * self.units.columns[:, None]
 
     def _solve_whole(self, tangent: Bordered, sides: Array) -> Array | None:
-        """Solve without the division into band and border: beams that only their contacts hold have a singular band."""
+        """Solve band and border as one matrix. The band is singular if only contacts hold the beams."""
         from scipy.sparse.linalg import splu
 
         try:

@@ -1,7 +1,7 @@
-"""The path up to the last accepted equilibrium: states and tangents, and what they predict.
+"""The path up to the last accepted equilibrium, with its states, its tangents and the prediction of the next state.
 
-The next step starts from the extrapolation of the last accepted states, or along the tangent where they are few. It has followed the
-path if the tangents at both of its ends explain it.
+The next step starts from the extrapolation of the last accepted states, or from the tangent if there are few states. The step has
+followed the path if the tangents at both of its ends explain it.
 """
 
 from __future__ import annotations
@@ -14,17 +14,19 @@ from tsm.state import State
 from tsm.status import Status
 
 MEMORY = 4
-"""States that the predictor extrapolates from, a cubic in the load parameter: a path has kinks where contacts pass from element to element."""
+"""Number of states in the extrapolation, a cubic in the load parameter. More states do not help where contacts pass from element to
+element, because the path has kinks there."""
 _MEMORY_WHOLE = 8
-"""The same where nothing is passed."""
+"""Number of states in the extrapolation where no contact passes from element to element."""
 FAR = 1.0
-"""Largest distance of an equilibrium from its prediction, in largest Newton steps; with 2, one random pin in a hundred ends on another branch."""
+"""Largest distance of an equilibrium from its prediction, over the largest Newton step. With 2 instead of 1, one random pin in a hundred
+ends on another branch."""
 _FEW = 3
-"""Fewer states than these are extrapolated along the tangent."""
+"""Number of states below which the tangent predicts the next state."""
 _FOLD = 100.0
-"""Faster than this, in largest Newton steps per whole load, a path nears a limit point: there the speed is infinite."""
+"""Speed of the path, in largest Newton steps per whole load, above which a limit point is near. At a limit point the speed is infinite."""
 _GROWING, _ROOM = 1.4, 0.6
-"""Growth of the speed that shows a limit point ahead, and the part of the way there of the next step, a little less than tangents explain."""
+"""Growth of the speed that shows a limit point ahead, and the next step over the distance to it. The tangents explain a little more."""
 
 
 class Track:
@@ -35,7 +37,7 @@ class Track:
     accepted : Equilibrium
         The last one.
     history : list of State
-        States that the predictor extrapolates from, oldest first: all with the same closed contacts.
+        States for the extrapolation, oldest first, all with the same closed contacts.
     tangent, earlier : PathTangent
         Tangents at the last equilibrium and at the one before it.
     index : int
@@ -79,17 +81,17 @@ class Track:
         return self.newton.prescribed(extrapolate(self.newton.model, self.history, t), t)
 
     def unexplained(self, tangent: PathTangent, reached: Equilibrium) -> float:
-        """Part of the step to an equilibrium that a tangent does not explain; 0 with contacts that have no energy, whose tangents are not compared."""
+        """Fraction of the step to an equilibrium that a tangent does not explain; 0 if `chord_contact`, where no tangent is usable."""
         return 0.0 if self.chord_contact() else tangent.unexplained(self.accepted.state, reached.state)
 
     def strays(self, predicted: State, reached: Equilibrium) -> bool:
-        """Whether an equilibrium lies too far away; where contacts on chords allow no tangent, too far from its prediction."""
+        """Whether an equilibrium lies too far away, or too far from its prediction where contacts on chords have no usable tangent."""
         if self.chord_contact():
             return self.newton.apart(predicted, reached.state) > FAR
         return self.newton.apart(self.accepted.state, reached.state) > LONGEST_STEP
 
     def chord_contact(self) -> bool:
-        """Whether a contact is closed whose stiffness grows without bound at the nodes: its tangents are round-off there."""
+        """Whether a closed contact has a stiffness that grows without bound at the beam nodes, where round-off spoils its tangent."""
         pairs = zip(self.newton.model.pairs, self.accepted.state.touches, strict=True)
         return any(touch is not None and pair.slot < 0 for pair, touch in pairs)
 

@@ -1,6 +1,6 @@
-"""Many structures of one topology at once: every array operation runs over all of them.
+"""Solution of many structures of one topology at once; every array operation runs over all structures.
 
-Axes: the structure comes last in every array here, so that each operation is one pass over contiguous numbers.
+The structure is the last axis of every array in this package, so that an operation is one pass over contiguous numbers.
 """
 
 from tsm.batch.result import BatchResult

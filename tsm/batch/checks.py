@@ -13,7 +13,7 @@ from tsm.path import FOLLOWED, LONGEST_STEP
 from tsm.scaling import largest
 
 SHORT = 0.1
-"""Step, in largest Newton steps, that needs no history to be extrapolated from."""
+"""Step over the largest Newton step below which no history is needed for an extrapolation."""
 
 
 def norm(equations: Equations, batch: BatchState, system: BatchLinearisation) -> Array:
@@ -23,10 +23,10 @@ def norm(equations: Equations, batch: BatchState, system: BatchLinearisation) ->
 
 
 def follows(equations: Equations, batch: BatchState, which: Array) -> Array:
-    """Whether equilibria lie near their prediction, on the side of the determinant that the path is on.
+    """Whether equilibria lie near their prediction and the determinant of the tangent keeps its sign.
 
-    The stepper compares a step with the tangents at both its ends. Here the step has to end near its extrapolation; any other step is left to
-    the stepper.
+    The stepper compares a step with the tangents at both ends. The batch requires an end near the extrapolation and leaves all other
+    steps to the stepper.
     """
     free, history = equations.model.free[:, None], batch.history
     last = history.q[newest(history, which), free, which]
@@ -42,9 +42,9 @@ def follows(equations: Equations, batch: BatchState, which: Array) -> Array:
 def eventless(
     equations: Equations, batch: BatchState, which: Array, normal: Array, arc: Array, tolerance: float
 ) -> Array:
-    """Whether surely no contact opened or closed on the way to equilibria with given contact forces and arc positions.
+    """Whether it is certain that no contact opened or closed on the way to equilibria with given contact forces and arc positions.
 
-    A node behind its line past an end of the beam may have come there through the beam, which the stepper looks into.
+    A node that is past an end of the beam and behind its extended surface may have gone through the beam. The stepper examines this case.
     """
     iterate, constants, length = batch.iterate, batch.constants, batch.constants.sizes.length[which]
     soft = np.minimum(1.0, ROUND_OFF / np.maximum(tolerance, constants.scales.noise[which]))
@@ -64,7 +64,7 @@ def eventless(
 def balanced(
     equations: Equations, batch: BatchState, system: BatchLinearisation, which: Array, tolerance: float
 ) -> Array:
-    """Whether support reactions and pin forces add up to nothing, as in `Stepper`."""
+    """Whether support reactions and pin forces are in balance, as in `Newton.balanced`."""
     model, iterate, constants = equations.model, batch.iterate, batch.constants
     total = np.zeros((2, len(which)))
     for c in range(2):

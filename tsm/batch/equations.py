@@ -260,5 +260,5 @@ def _everything(*sizes: int) -> list[Array]:
 
 
 def properties_of(constants: BatchConstants, e: Array, which: Array) -> Properties:
-    """Constants of one element of each of some structures."""
+    """Constants of one element in each of the structures `which`."""
     return Properties(*(column[e, which] for column in constants.properties))

@@ -1,9 +1,9 @@
-"""March of many structures: one iteration of Newton's method for all of them at a time, each on its own step.
+"""March of many structures: each Newton iteration runs for all structures, and each structure has a load step of its own.
 
-A structure whose iteration ends accepts its configuration and sets off for its next load parameter while the others still
-iterate. Whatever is not plain (a step that does not converge soon, a contact that opens or closes, a pin that turns, a change of the
-determinant's sign) is left to the `Stepper`: it goes on from the last accepted configurations to the next prescribed load parameter,
-and hands the structure back. Events and critical points are found by the stepper alone.
+A structure whose iteration ends accepts its configuration and starts its next load step while the others still iterate. Four cases are
+left to the `Stepper`: a step that does not converge soon, a contact that opens or closes, a corner of a pin's path, and a change of the
+determinant's sign. The stepper goes on from the last accepted configurations to the next prescribed load parameter and then returns
+the structure to the batch. Only the stepper finds events and critical points.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from tsm.stepping import Stepper
 from tsm.structure import Structure
 
 _ENTRIES = 20_000
-"""Elements that are iterated at once: so many that a pass is not all calls, so few that its arrays stay near."""
+"""Elements in one pass: enough to outweigh the cost of the calls, and few enough for the arrays to stay in the cache."""
 _SOON = 12
-"""Iterations after which a structure is left to the stepper: a path that is followed closely takes three or four of them."""
+"""Iterations after which a structure is left to the stepper; a step that follows its path closely takes three or four."""
 
 
 class March:

@@ -1,4 +1,4 @@
-"""Outcome of a batch: tables over all structures, and the `Result` of each when it is asked for."""
+"""Outcome of a batch: tables over all structures, and a `Result` for each structure on demand."""
 
 from __future__ import annotations
 

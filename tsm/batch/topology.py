@@ -1,4 +1,4 @@
-"""What structures must have in common to be solved at once: everything that decides their numbering."""
+"""The topology that structures of a batch must share: all that decides their numbering."""
 
 from __future__ import annotations
 

@@ -28,19 +28,20 @@ def deflected_axes(p: Properties, x: Array, force: Array, contacts: Sequence[Poi
 
         phi' = l0 (M + a + b xi)/EI,  M' = -(r' x n),  r' = l0 ((1 + n.t/EA) t + (n.n_/GA) n_)
 
-    solved by Picard's iteration from the chord. The small a and b bring the axis to the rotation of end j and onto the chord, and
-    a factor beside one to the chord's length: what the element leaves of its equilibrium inside.
+    They are solved by Picard's iteration from the chord. The element satisfies equilibrium inside only approximately. Three small
+    corrections therefore close the axis: a and b fit the rotation of end j and the direction of the chord, and a factor close to one
+    fits the length of the chord.
 
     Parameters
     ----------
     p : Properties
         Constants of the elements, arrays over them.
     x, force : ndarray, shape (6, elements)
-        Their displacements and the nodal forces on them.
+        Displacements of the elements and nodal forces on them.
     contacts : sequence of PointForce
-        What touches them.
+        Contact forces on the elements.
     xi : ndarray, shape (m,)
-        Where, as parts of the length.
+        Positions along the elements, as parts of the length.
 
     Returns
     -------

@@ -1,13 +1,14 @@
-"""The beam element between contacts: basic system simply supported on the chord.
+"""The beam element without contact, with the basic system simply supported on the chord.
 
-With the elongation ``e = l - l0`` of the chord, and of the end rotations from it the mean m (shear bends it so) and half the
-difference h (constant curvature), ``theta_i = m + h, theta_j = m - h``, the strain energy is ::
+The element has three deformations: the elongation ``e = l - l0`` of the chord, the mean m of the end rotations from the chord, which
+goes with a shear force, and half their difference h, which goes with a constant curvature. The rotations are ``theta_i = m + h`` and
+``theta_j = m - h``. The strain energy is ::
 
     U = (e + em m^2 + eh h^2)^2 / (2 (c0 + cm m^2 + ch h^2)) + (km m^2 + kh h^2)/2 + r4 m^4 + r2 m^2 h^2
 
     c0 = l0/EA,  km = 12 EI/(l0 (1 + Phi)),  kh = 4 EI/l0
 
-The paper's element has these three coefficients only. The six others carry the strains of the Reissner rod, axial
+The paper's element has only the three coefficients c0, km and kh. The six others represent the strains of the Reissner rod, axial
 ``(1 + u') cos theta + w' sin theta - 1`` and shear ``w' cos theta - (1 + u') sin theta``::
 
     em = l0 (1 - 5 Phi^2)/(10 (1 + Phi)^2) + 12 EI Phi/(l0 EA (1 + Phi)^2),    eh = l0/6
@@ -15,14 +16,16 @@ The paper's element has these three coefficients only. The six others carry the 
     r4 = v sm/6 + v^2 cm/2,    r2 = v sh/6 + v^2 ch/2,    v = -12 EI/(l0^2 (1 + Phi))
     sm = l0 (1 + B/2 + B^2/10 + B^3/140),    sh = l0 (1 + B/10),    B = -6/(1 + Phi)
 
-``em, eh`` are for the length that bending takes up, ``integral (w'^2 - gamma^2)/2`` with the shear strain gamma ("bow"); the second term
-of em is for the stretch by the shear force v m, which has a part along the turned sections. ``cm, ch`` are for the share of the axial
-force in shear, ``r4, r2`` for a finite gamma. With
-rotations of the size d the error of the energy is of the order d^6 where e is of the order d^2, and of the order d^4 where e is of
-the order d. Without the six the element converges with second order only; with the bow alone it converges to a limit that is off
-by gamma^2.
+- ``em, eh`` represent the bow: bending shortens the chord by ``integral (w'^2 - gamma^2)/2``, with the shear strain gamma. The second
+  term of em is the stretch by the shear force v m, which has an axial component in the turned sections.
+- ``cm, ch`` represent the component of the axial force that shears the turned sections.
+- ``r4, r2`` represent a finite gamma.
 
-In the terms of the tangent stiffness method ([P] (1)-(2)) the returned tangent is ``K_O + K_G``.
+For rotations of the size d the error of the energy is of the order d^6 if e is of the order d^2, and of the order d^4 if e is of the
+order d. Without the six coefficients the element converges with second order only. With the bow alone it converges to a limit with a
+relative error of the order gamma^2.
+
+In the terms of the tangent stiffness method ([P] (1)-(2)), the returned tangent is ``K_O + K_G``.
 """
 
 from __future__ import annotations
@@ -161,9 +164,9 @@ def reduced_response(a: Coefficients, x: Array) -> tuple[Array, Array]:
     Returns
     -------
     force : ndarray, shape (4, ...)
-        Gradient of the energy; `GATHER` makes nodal forces of it.
+        Gradient of the energy; `GATHER` converts it to nodal forces.
     tangent : ndarray, shape (10, ...)
-        Upper triangle of its derivative in the order of `PAIRS`; `SPREAD` makes the nodal one of it.
+        Upper triangle of the gradient's derivative in the order of `PAIRS`; `SPREAD` converts it to the nodal tangent.
     """
     shift = x[3:5] - x[:2]
     chord = a.chord + shift

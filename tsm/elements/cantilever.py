@@ -1,14 +1,14 @@
 """The cantilever basic system of the paper's second contact element.
 
-Clamped at end i, in the frame of the section there: x along the tangent at i, y across it. Element edge forces
-``[Y_j, Y_c, M_j]`` over the deflections y_j of end j and y_c of the contact point from that tangent and the
-rotation of end j from it ([P] (7), Fig. 4). [P] prints no J. To first order in the rotations the frame is the chord's
+The element is clamped at end i. Its frame has x along the tangent at end i and y across it. The element edge forces
+``[Y_j, Y_c, M_j]`` belong to the deflections y_j of end j and y_c of the contact point and to the rotation of end j, all measured
+from the tangent at end i ([P] (7), Fig. 4). [P] prints no J. To first order in the rotations, this frame is the frame of the chord
 turned by theta_i, so that ::
 
     [y_j, y_c, theta_j]_cantilever = T [theta_i, theta_j, y_c]_chord,    T = [[-l0, 0, 0], [-a, 0, 1], [-1, 1, 0]]
 
-and ``S = T^T K T v``: in exact arithmetic the element of [P] (5), with other round-off. The rotation and
-the stiffness are evaluated one after the other, as the basic system has it, and not multiplied out.
+and ``S = T^T K T v``. In exact arithmetic this is the element of [P] (5); only the round-off differs. Transformation and stiffness are
+therefore applied one after the other, as the basic system states them, and not multiplied out.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
-"""The contact elements of the paper: force by a stiffness times the deflection, normal to the chord.
+"""The contact elements of the paper, in which the contact force is a stiffness times a deflection and normal to the chord.
 
-Basic system simply supported on the chord, element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)), contact
-point at the distances a and b from the ends, measured on the chord as parts of l0. Nodal forces ``U = J S`` with J the
-transposed derivative of the basic deformations; the tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``, whose last part
-([P] leaves it open) is what makes Newton's method quadratic while the node slides. It is not symmetric.
+The basic system is simply supported on the chord, with the element edge forces ``S = [N, M_i, M_j, Y_c]`` ([P] (3)). The contact point
+has the distances a and b from the ends, measured on the chord as parts of l0. The nodal forces are ``U = J S``, with J the transposed
+derivative of the basic deformations. The tangent is ``J (dS/dv) J^T + dJ S + J (dS/da) da``. [P] does not state its last part, which
+makes Newton's method quadratic while the node slides. The tangent is not symmetric.
 
-Everything is divided by a and b, which is what the paper calls the critical area. The other basic system is in
-`cantilever`, the matrices with the paper's misprints are in `as_printed`.
+The stiffness has powers of a and b in its denominators. The paper calls the loss of accuracy beside a node the critical area. The other
+basic system is in `cantilever`, the matrices with the paper's misprints are in `as_printed`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ElementForce = Callable[[Properties, Any, Array], tuple[Array, Array, Array]]
 """Element force equation: from ``xi`` and ``v = [theta_i, theta_j, y_c]`` to ``S = [M_i, M_j, Y_c]``, dS/dv, dS/da."""
 
 INSIDE = 1e-15
-"""Contact points are kept this far inside the element, in parts of its length: at its ends K is infinite."""
+"""Least distance of a contact point from the ends of the element, over its length: at the ends K is infinite."""
 
 # element displacements (6), node (2)  ->  r = x_c - x_i, chord d, theta_i, theta_j
 _REDUCE = np.zeros((6, 8))

@@ -25,11 +25,11 @@ class ContactLaw:
     ----------
     response : callable
         ``(p, x, lever, xi, force, side, offset) -> (gradient, tangent)`` over element (6), node (2) and the contact's unknowns. The
-        tangent is the gradient's derivative. It is added to the beam's, or stands for the whole element if there are no unknowns.
+        tangent is the derivative of the gradient. A law with unknowns adds both to the beam's; a law without unknowns replaces the beam's.
     energy : callable
-        ``(p, x, lever, xi, force, side, offset) -> float``: what the contact adds to the strain energy in equilibrium.
+        ``(p, x, lever, xi, force, side, offset) -> float``: contribution of the contact to the strain energy in equilibrium.
     coupling : Coupling or None
-        Further functions of a law whose force and arc position are unknowns; None where the force follows from the displacements.
+        Further functions of a law whose force and arc position are unknowns; None if the force follows from the displacements.
     """
 
     response: Callable[[Properties, Any, Any, Any, Any, float, float], tuple[Array, Array]]
@@ -54,8 +54,8 @@ class Coupling:
     dent : callable
         ``(p, xi, eta) -> number``: deflection of the element at xi by a unit force at eta.
     crossing : callable
-        ``(p, (xi, eta), force, force) -> (gradient, tangent)`` that two contacts on one element add to each other, over force (2) and
-        arc position of the first, then of the second; numbers, or arrays over many elements with ``xi <= eta``.
+        ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over force (2) and arc position
+        of the first contact, then of the second. The arguments are numbers, or arrays over many elements with ``xi <= eta``.
     """
 
     jet: Callable[[Properties, Any, Any, Any, Any, Any], tuple[Array, Array]]

@@ -1,4 +1,4 @@
-"""What an element type states about itself: the contract that solver, batch, accuracy, extremes and pictures ask."""
+"""The contract of an element type. Solver, batch, accuracy, extremes and pictures use an element through it alone."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class ElementType(ABC):
     name : str
         Key of `tsm.ELEMENTS`.
     source : str
-        Where the equations stand.
+        Source of the equations.
     sheared : bool
-        Whether the beam deforms in shear. Otherwise its shear number is zero, whatever the section.
+        Whether the beam deforms in shear. Otherwise its shear number is zero, for any section.
     variant : bool
-        Whether the element is kept to be compared with another one only: with misprints, or without a term. Matrices of
-        extreme cases leave it out.
+        Whether the element exists only for comparison with another one, as an element with misprints or without a term. The
+        matrix of extreme cases does not have it.
     colour, marker : str
         How figures draw its answers: a colour in hexadecimal digits, a marker of matplotlib.
     """
@@ -50,11 +50,11 @@ class ElementType(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(ElementType):
-    """An element whose equations are integrated. Contacts cut it: force (2), arc position and the section's angle are unknowns."""
+    """An element whose equations are integrated. A contact cuts it in two; force (2), arc position and section angle are unknowns."""
 
     @property
     def meshed(self) -> bool:
-        """Whether the error falls with the number of elements: one is as good as many."""
+        """False: one element is as accurate as many."""
         return False
 
     @property
@@ -72,14 +72,14 @@ class ClosedForm(ElementType):
     coefficients : callable
         Coefficients of the beam's energy from its constants, see `beam.Coefficients`.
     contact : ContactLaw
-        What a contact inside the element does.
+        Law of a contact inside the element.
     order : int
         Order of the errors of forces and shapes in the element's length.
     bearable_turn : float
-        Angle between its ends up to which the element is an approximation [rad]: there its first neglected term leaves a fifth of the
+        Largest bend between the ends for which the element is an approximation [rad]. The first neglected term is then a fifth of the
         force.
     shear_floor : (float, int)
-        Factor and power of the shear strain F/GA that give the error that no number of elements removes. Measured on KS, F/GA 1e-3 to
+        Factor and power of the shear strain F/GA in the error that no number of elements removes, measured on KS for F/GA from 1e-3 to
         3e-2.
     """
 

@@ -1,7 +1,7 @@
-"""Contact with the force as an unknown: no division by a distance to a node, so no critical area.
+"""Contact law with the force as an unknown. It does not divide by a distance to a node, so it has no critical area.
 
-A contact adds to the energy of the touched element, with the unknown force F on the beam and the unknown
-material position xi in [0, 1] of the contact on the element, the Lagrangian ::
+The unknowns are the force F on the beam and the material position xi in [0, 1] of the contact on the element. The contact adds to the
+energy of the touched element the Lagrangian ::
 
     L = -F . (p(xi) - x_c) - C(xi) F.F/2
 
@@ -12,11 +12,15 @@ material position xi in [0, 1] of the contact on the element, the Lagrangian ::
     sigma = -side: -1 for a node from the right (side 1), +1 for one from the left (side -1)
     C(xi) = l0^3/(3 EI (1 + Phi)) (z^3 + Phi/4 z^2 + Phi (1 + Phi)/4 z),  z = xi (1 - xi)
 
-p is the centre line (or surface) without the deflection that F itself adds, ``C F``. Where L is stationary the node lies on the
-centre line that F deflects as well, ``p + C F = x_c``; the force is
-normal to the mean of the two tangents at the contact, ``F . p' + C' F.F/2 = 0``; and the beam carries the load
-that is equivalent to F. `C` and `w` vanish at both ends, so a node of the beam is a point like any other. The
-tangents of `s_i` make the curve continuous in slope from element to element (up to the true shear kink).
+p is a point of the centre line or surface, without the deflection ``C F`` by the contact force itself. Three conditions hold where L is
+stationary:
+
+- the node lies on the deflected centre line, ``p + C F = x_c``;
+- the force is normal to the mean of the two tangents at the contact, ``F . p' + C' F.F/2 = 0``;
+- the beam carries the nodal loads that are equivalent to F.
+
+C and w vanish at both ends of the element, so a beam node is a point like any other. The functions ``tan s_i`` and ``tan s_j`` in w
+make the slope continuous from element to element, up to the true shear kink.
 """
 
 from __future__ import annotations
@@ -92,12 +96,12 @@ def response(
 
 
 def jet(p: Properties, x: Any, xi: Any, force: Any, side: Any, offset: Any) -> tuple[Array, Array]:
-    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in what it depends on.
+    """First and second derivatives of ``F . (p(xi) - x_i) + C(xi) F.F/2`` in chord, end rotations, force and xi.
 
     Parameters
     ----------
     p, x, xi, force, side, offset
-        As for `response`; or arrays over many contacts of what are plain numbers there, one entry per contact.
+        As for `response`, with numbers for one contact, or arrays with one entry per contact.
 
     Returns
     -------
@@ -188,7 +192,7 @@ def _surface(curve: Curve, xi: Any, force: Any, dC: tuple[Any, Any, Any], l0: An
 
 
 def crossing(p: Properties, xi: tuple[Any, Any], first: Any, second: Any) -> tuple[Array, Array]:
-    """Gradient and Hessian that two contacts on one element add to each other, of ``-C12 F_1 . F_2``.
+    """Gradient and Hessian of ``-C12 F_1 . F_2``, the coupling of two contacts on one element.
 
     Parameters
     ----------
@@ -253,7 +257,7 @@ def cross_compliance(p: Properties, xi: Any, eta: Any) -> tuple[Any, Any, Any, A
 
 
 def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, side: float, offset: float) -> float:
-    """Value of the Lagrangian: what the contact adds to the strain energy in equilibrium. Arguments as for `response`."""
+    """Value of the Lagrangian, the contribution of the contact to the strain energy in equilibrium. Arguments as for `response`."""
     curve = Curve(p, x)
     Fx, Fy = force
     w = curve.deflection(xi)[0]
@@ -288,4 +292,4 @@ def dent(p: Properties, xi: Any, eta: Any) -> Any:
 
 
 LAW = ContactLaw(response=response, energy=energy, coupling=Coupling(jet=jet, dent=dent, crossing=crossing))
-"""The contact whose force and place are unknowns."""
+"""The contact law whose force and arc position are unknowns."""

@@ -5,13 +5,16 @@ and across it, and ``g = 1/EA - 1/GA``::
 
     phi' = m / EI,   m' = f = -Q (1 + g N),   r' = (1 + N/EA) d_1 + (Q/GA) d_2
 
-The unknowns inside are the angles at p Gauss nodes, each with its equation; the ends are superconvergent, of order 2p. Nothing is
-divided by the length h, which may be zero, or negative.
+The inner unknowns are the angles at p Gauss nodes, with one equation each. The values at the ends are superconvergent, of order 2p. No
+equation is divided by the length h, which may be zero or negative.
 
-The equations inside are eliminated. Which data of the ends are held meanwhile is a choice: with the start's angle and moment the
-inner problem is an initial value problem, regular under compression but exponentially ill-conditioned under strong tension; with
-both angles a boundary value problem, regular under tension but singular at ``-N h^2/EI = pi^2``. Half way between, with
-``m_i h/EI + (phi_j - phi_i)`` held, its determinant is ``(1 + sinc k)/2``, ``k^2 = -N (1 + g N) h^2/EI`` (straight rod, Q = 0): regular at every axial force.
+The inner equations are eliminated while some data of the ends are held. The choice of these data decides the conditioning:
+
+- With the angle and the moment at the start, the inner problem is an initial value problem. It is regular under compression, but
+  exponentially ill-conditioned under strong tension.
+- With both angles it is a boundary value problem. It is regular under tension, but singular at ``-N h^2/EI = pi^2``.
+- With ``m_i h/EI + (phi_j - phi_i)``, as here, the determinant for a straight rod with Q = 0 is ``(1 + sinc k)/2``,
+  ``k^2 = -N (1 + g N) h^2/EI``. The inner problem is regular at every axial force.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array, cosine, sine
 
 INPUTS = 7
-"""Angle and moment at the start, angle at the end, force x and y, length; the last input is 1: the residual inside."""
+"""Number of inputs: angle and moment at the start, angle at the end, force x and y, length, and the constant 1 for the inner residual."""
 # the 13 entries of `_direct` in the transfer: rows end residual, moment, vector
 _PARTS = np.zeros((13, 4, 7))
 _PARTS[0, [0, 0, 1], [0, 2, 1]] = 1, -1, 1

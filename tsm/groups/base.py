@@ -1,4 +1,4 @@
-"""The interface of element groups: what the solver asks of elements, whatever their equations are."""
+"""The interface of element groups, through which the solver uses elements of every kind."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The element types, one family a file: each file states its types as ``ELEMENTS``, and a new file is found by itself."""
+"""The element types, one file for each family. A file lists its types in ``ELEMENTS``; the registry finds every file here."""
