@@ -40,7 +40,7 @@ class GroupTangent(Protocol):
 
     @property
     def condensed_residual(self) -> Array:
-        """What the residual inside adds to the residual once it is eliminated, shape (n, e)."""
+        """Contribution of the inner residual to the residual after the inner unknowns are eliminated, shape (n, e)."""
 
 
 class Change(NamedTuple):
@@ -65,7 +65,7 @@ class Change(NamedTuple):
 
 
 class ElementGroup(ABC):
-    """Elements of a model that are stated in the same way.
+    """Elements of a model with the same kind of equations.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class ElementGroup(ABC):
 
     @abstractmethod
     def with_touches(self, before: State, after: State) -> State:
-        """State `after`, which has other contacts than `before`, with the unknowns inside that belong to it."""
+        """State `after`, whose contacts differ from `before`, with inner unknowns that fit its contacts."""
 
     @abstractmethod
     def with_change(self, before: State, after: State, tangent: Any, change: Change) -> State:
@@ -132,7 +132,7 @@ class ElementGroup(ABC):
 
     @abstractmethod
     def refined(self, state: State, forces: Any, accuracy: float) -> State | None:
-        """State with a finer integration inside the elements, None where it is fine enough."""
+        """State with a finer integration inside the elements, None if the integration of `state` is fine enough."""
 
     @abstractmethod
     def inaccurate(self, forces: Any, accuracy: float) -> bool:

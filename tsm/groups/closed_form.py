@@ -61,7 +61,7 @@ class ClosedFormForces(NamedTuple):
 
     @property
     def condensed_residual(self) -> Array:
-        """What the residual inside adds to the residual: nothing."""
+        """Zero: there is no inner residual."""
         return np.zeros_like(self.nodal)
 
 
@@ -169,7 +169,7 @@ class ClosedFormGroup(ElementGroup):
         return 0.0
 
     def project(self, pair: PairModel, state: State) -> Projection:
-        """Closest point: the chords give the owner, Newton's method on the owner's curve the point."""
+        """Closest point. The chords give the owner, and Newton's method on the owner's curve gives the point."""
         target, q, model = pair.target, state.q, self.model
         node = model.node_position(pair, q, state.load_parameter)
         positions = model.coordinates[target.nodes] + q.reshape(-1, 3)[target.nodes, :2]

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from tsm.model import BeamModel, PairModel
 
 _SAMPLES = 33
-"""Points of an element among which the nearest is looked for."""
+"""Points of an element in the search for the nearest one."""
 _STEPS = 30
-"""Newton steps of a projection at most."""
+"""Largest number of Newton steps of a projection."""
 _POINTS, _LINES = 100, 60
 """Intervals in which a beam is drawn, and short lines along it, at least 10 and 4 for an element."""
 

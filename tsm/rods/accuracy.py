@@ -15,13 +15,13 @@ from tsm.rods.shape import RodShape, plain_shape
 from tsm.state import State
 
 MOST_NODES = 96
-"""Gauss nodes of a segment at most."""
+"""Largest number of Gauss nodes of a segment."""
 _AT_ONCE = 4
-"""Nodes added at least."""
+"""Least number of nodes that are added."""
 _FALL = 100.0
 """Expected ratio of the errors with two nodes more."""
 _SMOOTH = 1e-13
-"""Error of a polynomial inside that is round-off."""
+"""Error of an inner polynomial that counts as round-off."""
 
 
 def truncation(rods: Rods, entry: Entry) -> float:
@@ -56,7 +56,8 @@ def inaccurate(rods: Rods, balance: RodBalance, accuracy: float) -> bool:
 def deflected(rods: Rods, state: State) -> RodShape:
     """Deflected axis, as accurate between the Gauss nodes as at the ends of the segments.
 
-    Inside, a polynomial of p Gauss nodes has order p, at the ends 2p; so it is computed anew with 2p nodes between the same ends.
+    With p Gauss nodes the ends of a segment have order 2p, but the polynomial between them has order p. The polynomial is therefore
+    computed again with 2p nodes between the same ends.
     """
     if rods.memo is None or rods.memo.state is not state:
         entry = rods.enter(state)

@@ -57,7 +57,7 @@ class Entry(NamedTuple):
     Attributes
     ----------
     place : Layout
-        To which elements they belong.
+        Elements of the segments.
     segments : rod.Segments
         Force, length and angles inside.
     field : rod.Field
@@ -65,9 +65,9 @@ class Entry(NamedTuple):
     start, end, moment : ndarray, shape (s, 1)
         Angles at both ends, moment at the start.
     gain : ndarray, shape (s,)
-        Moment at the end less that at the start.
+        Moment at the end minus moment at the start.
     vector : ndarray, shape (2, s)
-        From start to end.
+        Vector from start to end.
     """
 
     place: Layout
@@ -123,7 +123,7 @@ class CutElement(NamedTuple):
     pairs : tuple of int
         Its contact pairs in order of arc position.
     tangent : ndarray, shape (9 + 4 k, 10 + 4 k)
-        Over the element's unknowns, then the contacts'; the last column is what the residual inside adds.
+        Tangent over the unknowns of the element, then of the contacts. The last column is the contribution of the inner residual.
     inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
         Inputs of the segments by the same unknowns.
     """
@@ -140,11 +140,11 @@ class RodTangent(NamedTuple):
     Attributes
     ----------
     condensed_residual : ndarray, shape (9, r)
-        What the residual inside adds to the residual once it is eliminated.
+        Contribution of the inner residual to the residual after the inner unknowns are eliminated.
     tangent : ndarray, shape (81, r)
         Derivative of the residual, row by row.
     cut : tuple of CutElement
-        Elements with contacts; what they have in common with the others is in the arrays above too.
+        Tangents of the elements with contacts. The part without contacts is in the arrays above too.
     inner : ndarray, shape (s, p, 7)
         Derivatives of the angles inside by the inputs of the segments.
     transfer : ndarray, shape (s, 4, 7)
@@ -159,7 +159,7 @@ class RodTangent(NamedTuple):
 
 
 class Memo(NamedTuple):
-    """The state whose deflected axis was asked for last: the axis, and the closest points found on it by pair."""
+    """Cache of the last deflected axis, with its state and the closest points by pair."""
 
     state: State
     shape: RodShape
@@ -313,7 +313,7 @@ class Rods:
         return CutElement(element, pairs, tangent, inputs)
 
     def inside(self, tangent: RodTangent, state: State, dq: Array, contacts: Array, constant: float) -> Array:
-        """Change of the angles inside that belongs to a change of everything else.
+        """Change of the inner angles that follows from a change of all other unknowns.
 
         Parameters
         ----------

@@ -23,11 +23,11 @@ def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> li
     Parameters
     ----------
     apart : tuple of 2 numbers
-        From the contacting node to the axis.
+        Vector from the contacting node to the axis.
     force : tuple of 2 numbers
         Force on the beam.
     tangents : tuple of rod.Tangent
-        Before and after the contact.
+        Tangent vectors before and after the contact.
     reach : float
         Offset of the surface, positive to the right.
     """
@@ -39,7 +39,7 @@ def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> li
 
 
 def differentiate(rows: Array, force: Point, tangents: Tangents, reach: float, selectors: Array) -> None:
-    """Enter into the rows (3, n) of position and direction how they change where the tangent vectors do.
+    """Add to the rows (3, n) of position and direction the derivatives through the tangent vectors.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Angles inside the exact elements as contacts move, open and close: the elements are cut anew, and the angles interpolated."""
+"""Inner angles of the exact elements. When contacts move, open or close, the elements are cut again and the angles interpolated."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def recut(rods: Rods, state: State, after: State) -> State:
 
 
 def _shift(rods: Rods, q: Array, before: int, touch: Touch) -> None:
-    """Add the force of a contact that passed to another element to the starts that now lie before it, or take it away."""
+    """Correct the element forces for a contact that passed to another element: add or subtract its force at the starts in between."""
     first, last = sorted((before, touch.element))
     sign = 1 if touch.element > before else -1
     for element in range(first + 1, last + 1):

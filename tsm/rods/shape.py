@@ -35,7 +35,7 @@ class Station(NamedTuple):
 
 
 class Stations(NamedTuple):
-    """Short lines along a beam, each with its own two ends: section forces may jump from one to the next.
+    """Short lines along a beam. Two neighbours do not share a point, because section forces may jump between them.
 
     Attributes
     ----------

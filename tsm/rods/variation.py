@@ -32,7 +32,7 @@ _PIECE = math.pi / 2
 _MOST = 300
 """Root of the same in the pieces of a divided segment."""
 _SHORT = 1e-4
-"""Segments shorter than this part of their element keep their moment as an unknown: nothing is divided by a length near zero or negative."""
+"""Length over the element's below which a segment keeps its moment as an unknown, to avoid a division by a length near zero or negative."""
 _PULL = np.zeros((OWN, OWN))
 """Derivatives of ``n . (r_j - r_i)``, and a unit for the moment, which has been eliminated."""
 _PULL[[3, 4, 6, 7], [6, 7, 3, 4]] = 1
@@ -48,7 +48,7 @@ class Bordered(NamedTuple):
     element : int
         Counted over the exact elements.
     matrix : ndarray, shape (9 + b, 9 + b)
-        Over the element's degrees of freedom, then what it has in the border.
+        Tangent over the element's degrees of freedom, then over the element's unknowns in the border.
     slots : list of int
         Positions of the latter among the contacts' unknowns, -1 for the angles and moments that are the element's own.
     moments : int
