@@ -27,7 +27,7 @@ class Message:
     base, change, append, encoding : str, (str, str), str, str
         The scene of `SCENES`, what is replaced in it and by what, what is added, and how the file is encoded.
     arguments, python : tuple of str, str
-        Of the command; of Python: what provokes it where no file does.
+        Arguments of the command; or Python code that provokes the message where no file does.
     """
 
     sentence: str

@@ -1,4 +1,4 @@
-"""The error that a model may have, fixed before anything is run: what "right" means in a cell."""
+"""The allowed error of a model in a cell, fixed before any run."""
 
 import numpy as np
 
@@ -10,11 +10,11 @@ from comparisons.response import Response
 from comparisons.scene import BeamSpec
 
 LARGEST = 0.2
-"""An answer further off is wrong, whatever the theory of its model says: it should have stopped."""
+"""Largest allowed error for any model; an answer with a larger error should have stopped."""
 
 
 def bending(beam: BeamSpec, exact: Response) -> Bending:
-    """Return how much the answer `exact` bends `beam`, clamped along +x."""
+    """Return the bending of `beam`, clamped along +x, in the answer `exact`."""
     if not len(exact.load_parameter):
         return Bending()
     force = -exact.supports[beam.name].force
@@ -36,7 +36,7 @@ def bending(beam: BeamSpec, exact: Response) -> Bending:
 def allowance(case: Case, bent: Bending) -> Allowance:
     """Return the error allowed to `case` against the Reissner rod that bends as `bent` says, `LARGEST` at most.
 
-    A model of another rod, as the elastica, may be further off: it is not the approximation of this one.
+    A model of another rod, as the elastica, is allowed a larger error, because it does not approximate this rod.
     """
     model = MODELS[case.model]
     parts = model.error_parts(case.scene, case.options, bent)

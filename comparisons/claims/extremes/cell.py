@@ -12,14 +12,14 @@ from comparisons.models.verify import CHECK_FAILED
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """A case at one place of the matrix and what it is compared with.
+    """A case at one position of the matrix, with its checks.
 
     Attributes
     ----------
     axis, row, column : str
-        Its place: what varies, the model, the value.
+        Position of the cell: the varied quantity, the model, the value.
     case : Case
-        What is solved.
+        The case that is solved.
     checks : tuple of Check
         All of them must hold.
     """
@@ -54,7 +54,7 @@ class Judgement:
     findings : tuple of Finding
         Findings of all checks over the load parameters that were reached; empty if none was.
     iterations, cutbacks : int
-        What it took.
+        Newton iterations and cut-backs.
     seconds : float
         Processor time, nan if nothing ran.
     """
@@ -71,13 +71,13 @@ class Judgement:
 
     @property
     def needless(self) -> bool:
-        """Whether an answer is withdrawn of which everything that was reached is within what is allowed."""
+        """Whether the answer is withdrawn although all its errors are within their allowances."""
         held = bool(self.findings) and all(finding.holds for finding in self.findings)
         return self.verdict is Verdict.WITHDRAWN and held
 
     @property
     def decisive(self) -> Finding | None:
-        """The finding that comes nearest to what is allowed, or exceeds it most."""
+        """The finding with the largest error over its allowance."""
         return max(self.findings, key=lambda finding: finding.share, default=None)
 
     @property

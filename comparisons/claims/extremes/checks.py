@@ -1,4 +1,4 @@
-"""What an answer is compared with: another answer, the energy of a rod in closed form, a circle."""
+"""Checks of an answer: against another answer, against the energy of a rod in closed form, against a circle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -22,10 +22,10 @@ COMPARED = ("force", "arc", "moment", "tip")
 """Quantities whose largest relative difference is the error."""
 INVARIANT = 1e-12
 NEXT_TERM = 1.05
-"""What the terms behind the first neglected one add to it in a roll-up."""
+"""Error of a roll-up over its first neglected term, with all further terms."""
 
 Results = Mapping[Case, Measurement]
-"""What was measured."""
+"""Measurements by case."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,9 +52,10 @@ class Against:
         return (self.case,)
 
     def finding(self, case: Case, own: Response, results: Results) -> Finding | None:
-        """Return the error of `own`, to `case`; infinite where it went further than its reference.
+        """Return the error of `own`, the response to `case`; infinite if it reached a larger load parameter than its reference.
 
-        A model of another rod, the elastica, may go further; None if the reference has nothing to compare it with, or is too soft to be.
+        The elastica, a model of another rod, may go further. The finding is None if the reference has no common load parameter, or is too
+        soft to be a reference.
         """
         other, beam = results[self.case].response, self.case.scene.beams[0]
         allowed = self.allowed or allowance(case, bending(beam, other))
@@ -76,7 +77,7 @@ class Against:
 
 @dataclass(frozen=True, kw_only=True)
 class Energy:
-    """Energy of the loaded part of a rod under a pin on its axis, which no quadrature enters.
+    """Energy of the loaded part of a rod under a pin on its axis, in closed form.
 
     With the force ``F (-sin b, cos b)`` at (x, y), ``c = 1/EA - 1/GA`` and ``S = (F/GA)/(1 + sqrt(1 - F^2 c/GA))``
 
@@ -120,8 +121,9 @@ def _violation(beam: BeamSpec, force: Array, place: Array, *, rigid: bool) -> fl
 class Circle:
     """A beam rolled up by a moment at its tip: an arc, whatever EA and GA.
 
-    Every element bends to the same arc of the angle t. One whose strain measures stop before a term makes its chord, and with it the whole circle,
-    too large by that term: the paper's by t^2/24, `mixed` by t^4/1920. The tip is off by the term times its distance from the clamp.
+    Every element bends to the same arc of the angle t. The first term that the strain measures neglect makes the chord of an element, and
+    with it the whole circle, too large: by t^2/24 with the paper's element, by t^4/1920 with `mixed`. The error of the tip is this term
+    times the distance of the tip from the clamp.
     """
 
     needs: tuple[Case, ...] = field(default=(), init=False)

@@ -12,7 +12,7 @@ from comparisons.claims.extremes.cell import Judgement
 from comparisons.show.pages import Section
 
 MARKS = {Verdict.RIGHT: "", Verdict.STOPPED: "■ ", Verdict.WITHDRAWN: "□ ", Verdict.WRONG: "✗ "}
-"""What tells the verdicts apart without colour."""
+"""Marks that distinguish the verdicts without colour."""
 STYLE = """
 <style>
 .map { overflow-x: auto; } .map table, .key { border-collapse: separate; border-spacing: 2px; }
@@ -67,7 +67,7 @@ def sections(axes: Iterable[Titled], judgements: Sequence[Judgement]) -> list[Se
 
 
 def counted(judgements: Sequence[Judgement]) -> str:
-    """Return how many cells there are, how many of each verdict, and how many are withdrawn although they are right."""
+    """Return the number of cells, their number by verdict, and the number of withdrawn cells that are right."""
     number = Counter(item.verdict for item in judgements)
     needless = sum(item.needless for item in judgements)
     counts = {verdict: f"{number[verdict]} {verdict}" for verdict in Verdict}

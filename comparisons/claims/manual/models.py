@@ -17,9 +17,9 @@ from tsm import elements as kinds
 FOURTH = "fourth order: half as many elements leave 16 times as much"
 SECOND = "second order: half as many elements leave 4 times as much"
 BREAK = np.full((1, 2), np.nan)
-"""Parts a curve into pieces."""
+"""Row of nan that separates two pieces of a curve."""
 ANSWER = "exact answer"
-"""Style of curves that no model of the case made."""
+"""Style of curves of the exact answer, which no model computed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +109,7 @@ def on_scene(
     Parameters
     ----------
     scene, model, tolerance, reason
-        What, with what, and how well.
+        Scene, model, allowed error and its reason.
     read : callable
         From the response to the values.
     shown : sequence of float

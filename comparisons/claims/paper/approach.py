@@ -1,9 +1,9 @@
-"""How near to a beam node Newton's method still finds equilibrium, at a fixed tolerance.
+"""The smallest distance from a beam node at which Newton's method still finds equilibrium, at a fixed tolerance.
 
-`tsm.solve` knows the round-off of a contact and accepts what it leaves. Here nothing is accepted but a stated tolerance, as in a
-program that knows only that. The contact is led towards the next beam node in steps that shrink with the distance, so that
-neither the step nor the start of the iteration stops it before round-off does: where no smaller step helps, the critical area of
-[P] section 4.1 begins. Behind it the march goes on from a state inside the next element.
+`tsm.solve` estimates the round-off of a contact and accepts a residual of this size. This study accepts only a residual below a stated
+tolerance, as a program without such an estimate does. The contact moves towards the next beam node in steps that shrink with the
+distance. Round-off therefore stops it before the step length or the start of the iteration does. The critical area of [P] section 4.1
+begins where no smaller step helps. Behind the node the march goes on from a state inside the next element.
 """
 
 from collections.abc import Iterator

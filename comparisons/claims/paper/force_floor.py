@@ -1,9 +1,9 @@
-"""How small the unbalanced force of a contact element can get beside a beam node: round-off against l_i/l.
+"""The least unbalanced force of a contact element beside a beam node: the effect of round-off, as a function of l_i/l.
 
-An element and the node that touches it are put into a state with a stated contact force in extended precision. The nodal
-forces there balance some outer load; rounding the state to double precision and evaluating the forces in
-double precision leaves the difference as unbalanced force, and no iteration in double precision can do better than hit it
-by luck. Newton's method, its tolerance and the load step play no part: this is the floor of the element alone.
+An element and the node that touches it are put into a state with a given contact force in extended precision. The nodal forces in this
+state balance an outer load. The state is then rounded to double precision, and the forces are evaluated in double precision. The
+difference is an unbalanced force, and an iteration in double precision goes below it only by chance. This floor belongs to the element
+alone; Newton's method, its tolerance and the load step have no effect on it.
 
 A contact stiffness ``K_cc`` times the last bit of a coordinate is what to expect: ``3 EI/b^3`` (Euler-Bernoulli) or ``GA/b``
 (Timoshenko, b below ``sqrt(Psi)``); with the force as an unknown nothing is multiplied. The reference has the same

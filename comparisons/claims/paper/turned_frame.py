@@ -6,7 +6,7 @@ with the directions t and n. With r from end i to the contacting node and d to e
 
     y_j = n . d,    y_c = n . r,    theta = theta_j - theta_i,    a = t . r
 
-and ``[Y_j, Y_c, M_j] = K(a) [y_j, y_c, theta]`` with the corrected matrix of (7). The elongation is that of the chord. Nodal forces are
+and ``[Y_j, Y_c, M_j] = K(a) [y_j, y_c, theta]`` with the corrected matrix of (7). The elongation is the elongation of the chord. Nodal forces are
 ``U = J S`` with J the transposed derivative of the deformations at constant a.
 """
 
