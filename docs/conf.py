@@ -51,6 +51,9 @@ autodoc_default_options = {"members": True, "no-value": True}
 numpydoc_show_class_members = False
 add_module_names = False
 toc_object_entries = False
+nitpick_ignore = [
+    ("py:class", "collections.abc.Mapping")
+]  # in the alias `Errors`; the standard library is not linked
 
 
 def _list_keys(
