@@ -135,8 +135,8 @@ def test_fig8(tmp_path):
     assert [one["status"] for one in paper] == ["COMPLETED"] * 3
     assert max(one["shape_difference"] for one in paper) < 1e-2
     assert runs["ks-cantilever", "solid"]["error_path_shape"] < 1e-3
-    assert runs["ks-cantilever", "TSM mixed, 20 elements"]["error_contact_force"] < 1e-5
-    assert runs["ks-printed-shear", "TSM mixed, 20 elements"]["error_contact_force"] < 1e-5
+    assert runs["ks-cantilever", "TSM mixed, 20 elements"]["error_path_force"] < 1e-5
+    assert runs["ks-printed-shear", "TSM mixed, 20 elements"]["error_path_force"] < 1e-5
     assert {reading for reading, _ in runs} == {"ks-cantilever", "ks-printed-shear", "ks-tied-tip"}
     assert runs["ks-tied-tip", "TSM mixed, 20 elements"]["error_path_shape"] < 1e-5
 
