@@ -9,13 +9,14 @@ from pathlib import Path
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.errors import errors
+from comparisons.errors import Errors, error_histories, errors, largest
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
-from comparisons.models.translate import to_rod
+from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import plain
+from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.to_json import as_dict
 from comparisons.scene import Scene, to_toml
@@ -95,9 +96,14 @@ class Comparison:
         ]
 
     @property
-    def stopped(self) -> list[Row]:
-        """The runs without a completed and checked solution."""
-        return [row for row in self.rows if not row.response.completed]
+    def wrong(self) -> list[Row]:
+        """The runs whose answers were refused by the checks or the referee, and the reference if it stopped."""
+        refused = {CHECK_FAILED, *Verdict.__members__}
+        return [
+            row
+            for row in self.rows
+            if not row.response.completed and (row.response.status in refused or row.label == ROD.label)
+        ]
 
 
 def _apart(row: Row) -> bool:
@@ -115,7 +121,7 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     Parameters
     ----------
     scene : Scene
-        A scene that the exact rod, the reference of the comparison, can state.
+        Any scene; the exact rods are the reference of the comparison.
     folder : Path
         Output folder; it is created if it does not exist.
     report : callable
@@ -125,12 +131,9 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
 
     Raises
     ------
-    ModelError
-        If the exact rod cannot state the scene.
     OutputError
         If `folder` cannot be written; nothing is computed.
     """
-    to_rod(scene)
     folder = writable_folder(folder)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
@@ -140,7 +143,7 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
         Row(
             label=label,
             response=response,
-            errors=None if response is reference else errors(response, reference, scene),
+            errors=None if response is reference else _errors(response, reference, scene),
         )
         for label, response in responses.items()
     ]
@@ -149,6 +152,15 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     report("writing files")
     with alone_in(folder):
         return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
+
+
+def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
+    """Return the errors of a run; over the path as far as the run came."""
+    found = errors(response, reference, scene)
+    if response.completed:
+        return found
+    _, reached = error_histories(response, reference, scene)
+    return {**found, "path": {name: largest(values) for name, values in reached.items()}}
 
 
 def _solve_all(scene: Scene, report: Report, watching: Watching) -> dict[str, Response]:

@@ -5,7 +5,8 @@ is the largest difference over all contacts, supports and beams. Forces, moments
 the reference, positions to the length of their beam.
 
 A value that is not a number has an infinite error. The arc position has an infinite error where its pair is open in one response
-and closed in the other. The error of the arc position is nan where the pair is open in both, and where the scene has no contact.
+and closed in the other. The error of the arc position is nan where the pair is open in both, and where the scene has no contact. The
+error of the moment is nan if no support has a moment.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.quantities import KEPT, QUANTITIES, SCOPES
-from comparisons.response import Array, Response
+from comparisons.response import Array, Response, SupportHistory
 from comparisons.response.axis import STATIONS, axes_at_stations
 from comparisons.scene import Scene
 
@@ -25,6 +26,8 @@ AWAY = 1.5
 Errors = Mapping[str, Mapping[str, float]]
 """Errors by scope and quantity."""
 Steps = NDArray[np.integer]
+Columns = dict[str, Array]
+"""Values over load parameters by pair, support or beam."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +41,7 @@ class Scales:
 def scales(reference: Response, steps: Steps | slice = slice(None)) -> Scales:
     """Return the scales of a reference over all its load parameters, or over the given ones."""
     force = [values[steps] for values in forces(reference).values()]
-    moment = [support.moment[steps] for support in reference.supports.values()]
+    moment = [values[steps] for values in moments(reference).values()]
     return Scales(force=_largest_size(force), moment=_largest_size(moment))
 
 
@@ -50,9 +53,17 @@ def forces(response: Response) -> dict[str, Array]:
     """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by beam and end."""
     if response.contacts:
         return {pair: contact.force for pair, contact in response.contacts.items()}
-    found = {beam: support.force for beam, support in response.supports.items()}
+    return {name: support.force for name, support in _all_supports(response).items()}
+
+
+def moments(response: Response) -> dict[str, Array]:
+    """Return the support moments, shape (s,) by beam and end."""
+    return {name: support.moment for name, support in _all_supports(response).items()}
+
+
+def _all_supports(response: Response) -> dict[str, SupportHistory]:
     ends = {f"{beam}.other_end": support.other_end for beam, support in response.supports.items()}
-    return found | {name: support.force for name, support in ends.items() if support is not None}
+    return dict(response.supports) | {name: end for name, end in ends.items() if end is not None}
 
 
 def size(values: Array) -> Array:
@@ -96,8 +107,8 @@ def errors(
     shared, found = error_histories(response, reference, scene, scale=scale, quantities=names)
     at_end = shared == (last[0] if end is None else end)
     return {
-        "end": {name: _largest(values[at_end]) for name, values in found.items()},
-        "path": {name: _largest(values) for name, values in found.items()},
+        "end": {name: largest(values[at_end]) for name, values in found.items()},
+        "path": {name: largest(values) for name, values in found.items()},
     }
 
 
@@ -113,7 +124,7 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     _, found = error_histories(
         response, reference, scene, scale=scales(reference, steps), quantities=[quantity]
     )
-    worst = _largest(found[quantity])
+    worst = largest(found[quantity])
     return 0.0 if np.isnan(worst) else worst
 
 
@@ -127,9 +138,17 @@ def error_histories(
 ) -> tuple[Array, dict[str, Array]]:
     """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
     shared, ours, theirs = _shared(response, reference)
-    scale = scale or scales(reference)
-    pair = _Pair(response, reference, ours, theirs, scene, scale)
-    return shared, {name: _MEASURES[name](pair) for name in quantities}
+    pair = _Pair(response, reference, ours, theirs, scene, scale or scales(reference))
+    none = np.full(len(shared), np.nan)
+    return shared, {
+        name: np.asarray(np.fmax.reduce([none, *_MEASURES[name](pair).values()])) for name in quantities
+    }
+
+
+def error_columns(response: Response, reference: Response, scene: Scene, quantity: str) -> Columns:
+    """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
+    _, ours, theirs = _shared(response, reference)
+    return _MEASURES[quantity](_Pair(response, reference, ours, theirs, scene, scales(reference)))
 
 
 def _shared(response: Response, reference: Response) -> tuple[Array, Steps, Steps]:
@@ -147,59 +166,57 @@ class _Pair:
     scene: Scene
     scale: Scales
 
-    def worst(self, columns: Iterable[Array]) -> Array:
-        """Return the largest of the columns that are numbers, shape (n,); nan where none is."""
-        none = np.full(len(self.ours), np.nan)
-        return np.asarray(np.fmax.reduce([none, *columns]))
 
-
-def _force(pair: _Pair) -> Array:
+def _force(pair: _Pair) -> Columns:
     ours, theirs = forces(pair.response), forces(pair.reference)
-    apart = (_distance(ours[name][pair.ours] - values[pair.theirs]) for name, values in theirs.items())
-    return pair.worst(apart) / pair.scale.force
+    return {
+        name: _distance(ours[name][pair.ours] - values[pair.theirs]) / pair.scale.force
+        for name, values in theirs.items()
+    }
 
 
-def _moment(pair: _Pair) -> Array:
-    ours, theirs = pair.response.supports, pair.reference.supports
-    apart = (
-        _distance(ours[name].moment[pair.ours] - one.moment[pair.theirs]) for name, one in theirs.items()
-    )
-    return pair.worst(apart) / pair.scale.moment
+def _moment(pair: _Pair) -> Columns:
+    ours, theirs = moments(pair.response), moments(pair.reference)
+    return {
+        name: _distance(ours[name][pair.ours] - values[pair.theirs]) / pair.scale.moment
+        for name, values in theirs.items()
+        if values.any() or ours[name].any()
+    }
 
 
-def _arc(pair: _Pair) -> Array:
-    columns = []
+def _arc(pair: _Pair) -> Columns:
+    columns = {}
     for contact in pair.scene.contacts:
         ours = pair.response.contacts[contact.pair].arc_position[pair.ours]
         theirs = pair.reference.contacts[contact.pair].arc_position[pair.theirs]
         apart = np.abs(ours - theirs) / pair.scene.beam(contact.beam).length
-        columns.append(np.where(np.isfinite(ours) == np.isfinite(theirs), apart, np.inf))
-    return pair.worst(columns)
+        columns[contact.pair] = np.where(np.isfinite(ours) == np.isfinite(theirs), apart, np.inf)
+    return columns
 
 
-def _tip(pair: _Pair) -> Array:
+def _tip(pair: _Pair) -> Columns:
     ours, theirs = pair.response.tips, pair.reference.tips
-    return pair.worst(
-        _distance(ours[beam.name][pair.ours] - theirs[beam.name][pair.theirs]) / beam.length
+    return {
+        beam.name: _distance(ours[beam.name][pair.ours] - theirs[beam.name][pair.theirs]) / beam.length
         for beam in pair.scene.beams
-    )
+    }
 
 
-def _shape(pair: _Pair, norm: Callable[..., Array]) -> Array:
-    columns = []
+def _shape(pair: _Pair, norm: Callable[..., Array]) -> Columns:
+    columns = {}
     for beam in pair.scene.beams:
         ours = axes_at_stations(pair.response, beam.name, pair.ours)
         theirs = axes_at_stations(pair.reference, beam.name, pair.theirs)
-        columns.append(norm(_distance(ours - theirs), axis=1) / beam.length)
-    return pair.worst(columns)
+        columns[beam.name] = norm(_distance(ours - theirs), axis=1) / beam.length
+    return columns
 
 
-def _stress(pair: _Pair) -> Array:
+def _stress(pair: _Pair) -> Columns:
     ours = np.array([_face_stress(pair.response, pair.scene, int(k)) for k in pair.ours])
     theirs = np.array([_face_stress(pair.reference, pair.scene, int(k)) for k in pair.theirs])
     both = np.isfinite(ours) & np.isfinite(theirs)
     apart = np.where(both, np.abs(ours - theirs), 0.0).max(axis=1, initial=0.0)
-    return np.asarray(apart / np.abs(theirs[both]).max(initial=1e-300))
+    return {pair.scene.beams[0].name: np.asarray(apart / np.abs(theirs[both]).max(initial=1e-300))}
 
 
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:
@@ -222,7 +239,7 @@ def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     return np.concatenate(found)
 
 
-_MEASURES: dict[str, Callable[[_Pair], Array]] = {
+_MEASURES: dict[str, Callable[[_Pair], Columns]] = {
     "force": _force,
     "arc": _arc,
     "moment": _moment,
@@ -234,6 +251,6 @@ _MEASURES: dict[str, Callable[[_Pair], Array]] = {
 assert set(_MEASURES) == set(QUANTITIES), "every quantity can be compared"
 
 
-def _largest(values: Array) -> float:
+def largest(values: Array) -> float:
     """Return the largest of the values that are numbers; nan if none is."""
     return float(np.fmax.reduce(values, initial=np.nan))

@@ -4,7 +4,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.outcome import EPILOG, STOPPED, exit_status, report
+from comparisons.cli.outcome import DONE, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.models.progress import Watch
 from comparisons.scene import load_scene
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     import argparse
 
     from comparisons.cli.outcome import Commands
+
+EPILOG = """exit status: 0 compared, 2 bad input, 3 the exact rods stopped, or an answer was refused by its checks or the referee.
+A model that stops with a named status is a row of the table."""
 
 
 def add_to(commands: "Commands") -> None:
@@ -40,7 +43,7 @@ def run(given: "argparse.Namespace") -> int:
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch)
     print(table_text(found.rows, ROD.label))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
-    status = exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
+    exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
     for row in found.apart:
         report(f"crossval: {row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}")
-    return STOPPED if found.apart else status
+    return STOPPED if found.apart or found.wrong else DONE

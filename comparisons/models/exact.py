@@ -48,9 +48,8 @@ STOPS = {
 """Reasons why an exact solution stops."""
 
 
-def solve_rod(scene: Scene, _: Options, _watch: Watch = unwatched) -> Response:
-    """Solve `scene` as a Reissner rod."""
-    local = to_rod(scene)
+def solve_rod(scene: Scene, local: RodScene) -> Response:
+    """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
     beam, hits = local.beam, local.hits
     stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
     path: TiedPath | RodPath

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Rod(Model):
-    """Reissner's rod, which stretches and shears, under one pin or with a tied tip."""
+    """Reissner's rods, which stretch and shear: one by quadrature under one pin or with a tied tip, any others by the referee."""
 
     name = "rod"
     label = "exact rod"
@@ -28,20 +28,22 @@ class Rod(Model):
         return Options()
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return why the exact models cannot state `scene`; None if they can."""
-        from comparisons.models.translate import to_rod
-
-        try:
-            to_rod(scene)
-        except ModelError as error:
-            return str(error)
+        """Return None: the rods state every scene."""
+        del scene
         return None
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
         from comparisons.models.exact import solve_rod
+        from comparisons.models.network import solve_network
+        from comparisons.models.translate import to_rod
 
-        return solve_rod(scene, options, watch)
+        del options
+        try:
+            local = to_rod(scene)
+        except ModelError:
+            return solve_network(scene, self.name, watch)
+        return solve_rod(scene, local)
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""

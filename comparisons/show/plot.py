@@ -116,8 +116,11 @@ def _elements(response: Response, scene: Scene, k: int) -> int:
 
 
 def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Response]) -> None:
-    """Show the surroundings of the last tip: the difference between the models is a fraction of the line width."""
-    exact = list(responses.values())[-1]
+    """Show the surroundings of the last tip of the last response: the models differ by a fraction of the line width."""
+    reached = [response for response in responses.values() if len(response.load_parameter)]
+    if not reached:
+        return
+    exact = reached[-1]
     beam = scene.beams[0]
     x, y = exact.tips[beam.name][-1]
     half = 0.02 * beam.length

@@ -24,7 +24,7 @@ HEADER = (
     "unknowns",
     "force",
     "arc position",
-    "clamp moment",
+    "moment",
     "tip",
     "stable",
     "iterations",
@@ -44,7 +44,7 @@ def table_text(rows: list[Row], reference: str) -> str:
         for line in lines
     )
     title = (
-        f"Largest error over all load parameters against the {reference}; forces and moments relative to their\n"
+        f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length; Newton iterations and seconds for the whole path"
     )
     return "\n".join([title, "", first, "-" * len(first), *rest])
@@ -52,11 +52,16 @@ def table_text(rows: list[Row], reference: str) -> str:
 
 def cells(row: Row) -> tuple[str, ...]:
     """Return a run as text under `HEADER`."""
-    shown = ["-" if row.errors is None else f"{row.errors['path'][name]:.1e}" for name in SHOWN]
+    shown = ["-" if row.errors is None else _error(row.errors["path"][name]) for name in SHOWN]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
     iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
     return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
+
+
+def _error(value: float) -> str:
+    """Return an error, or a dash where the run or the scene does not have the quantity."""
+    return "-" if np.isnan(value) else f"{value:.1e}"
 
 
 def _stable(response: Response) -> str:

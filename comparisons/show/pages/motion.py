@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.errors import error_histories, size
+from comparisons.errors import error_columns, forces, moments, size
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
@@ -46,7 +46,9 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return force, arc position and clamp moment of a scene of one beam, with the errors of `comparisons.errors`.
+    """Return forces and arc positions of all contact pairs and the moments of all supports, with the errors of `comparisons.errors`.
+
+    A scene without contact has the forces of its supports. Moments that vanish in all responses are left out.
 
     Parameters
     ----------
@@ -55,42 +57,52 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
     reference : str
         The label whose values the errors are against.
     scene : Scene
-        With one contact at most; without one the force on the tip is shown.
+        The scene of the responses.
     """
     force, length = _units(scene)
-    errors = {
-        label: error_histories(response, responses[reference], scene, quantities=("force", "arc", "moment"))[
-            1
+    shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
+    acting = "contact force" if scene.contacts else "support force"
+    quantities = {
+        "force": (acting, force, "the largest force", forces),
+        "arc": ("arc position", length, "the length", _arcs),
+        "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
+    }
+    found = []
+    for quantity, (title, unit, scale, read) in quantities.items():
+        values = {label: read(response) for label, response in shown.items()}
+        errors = {
+            label: error_columns(response, responses[reference], scene, quantity)
+            for label, response in shown.items()
+            if label != reference and reference in shown
+        }
+        names = list(dict.fromkeys(name for one in values.values() for name in one))
+        names = [name for name in names if any(one[name].any() for one in values.values())]
+        found += [
+            Track(
+                title=f"{title} {_node(name, scene)}" if len(names) > 1 else title,
+                unit=unit,
+                values={
+                    label: size(one[name]) if one[name].ndim > 1 else one[name]
+                    for label, one in values.items()
+                },
+                errors={label: one[name] for label, one in errors.items() if name in one},
+                error_title=f"error against the {reference}, over {scale}",
+            )
+            for name in names
         ]
-        for label, response in responses.items()
-        if label != reference
-    }
-    values = {label: _values(response, scene) for label, response in responses.items()}
-    named = {
-        "force": ("contact force" if scene.contacts else "force on the tip", force, "its largest value"),
-        "arc": ("arc position", length, "the length"),
-        "moment": ("clamp moment", f"{force} {length}", "its largest value"),
-    }
-    return [
-        Track(
-            title=title,
-            unit=unit,
-            values={label: one[name] for label, one in values.items()},
-            errors={label: one[name] for label, one in errors.items()},
-            error_title=f"error against the {reference}, over {scale}",
-        )
-        for name, (title, unit, scale) in named.items()
-        if name in values[reference]
-    ]
+    return found
 
 
-def _values(response: Response, scene: Scene) -> dict[str, Array]:
-    support = response.supports[scene.beams[0].name]
-    if scene.contacts:
-        contact = response.contacts[scene.contacts[0].pair]
-        return {"force": contact.force, "arc": contact.arc_position, "moment": support.moment}
-    assert support.other_end is not None, "a beam without contact is moved by its other end"
-    return {"force": size(support.other_end.force), "moment": support.moment}
+def _arcs(response: Response) -> dict[str, Array]:
+    return {pair: contact.arc_position for pair, contact in response.contacts.items()}
+
+
+def _node(name: str, scene: Scene) -> str:
+    """Return the supported end by the name of its column, which is the beam's or ``BEAM.other_end``; a pair keeps its name."""
+    beam, _, other = name.partition(".")
+    if name in {contact.pair for contact in scene.contacts}:
+        return name
+    return scene.supports_of(beam)[bool(other)].node
 
 
 def motion_section(

@@ -1,0 +1,121 @@
+"""The response of a scene's exact rods, from the equilibria that the referee finds with its own equations."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+
+from comparisons.models.progress import Watch, unwatched
+from comparisons.models.tsm import TSM
+from comparisons.referee import Equilibrium, Verdict, certify
+from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
+from comparisons.scene import Scene
+
+POINTS = 401
+"""Points of a deflected axis in pictures. The solution does not depend on this number."""
+States = Sequence[Equilibrium]
+
+
+def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Response:
+    """Return the exact equilibria of a scene's rods along the path that exact TSM elements follow.
+
+    The referee starts from the TSM answer at every load parameter, solves its own equations, and judges stability, admissibility
+    and the path in between. Load parameters, the gaps of open contacts and slip-offs are those of TSM; all other values are the
+    referee's. The response ends before the first load parameter at which the verdict is not `Verdict.CERTIFIED`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any scene.
+    model : str
+        Name of the model in the response.
+    watch : callable
+        Receives every accepted step of TSM.
+    """
+    began = perf_counter()
+    followed = TSM.solve(scene, TSM.reference, watch)
+    found = certify(followed, scene, at=range(len(followed.load_parameter)))
+    states: list[Equilibrium] = []
+    for item in found.judged:
+        if item.verdict is not Verdict.CERTIFIED or item.exact is None:
+            break
+        states.append(item.exact)
+    sound = found.verdict is Verdict.CERTIFIED or not found.judged
+    return replace(
+        followed,
+        model=model,
+        status=followed.status if sound else found.verdict.name,
+        message=followed.message if sound else found.reason,
+        completed=followed.completed and sound,
+        load_parameter=followed.load_parameter[: len(states)],
+        contacts={pair: _contact(pair, history, states) for pair, history in followed.contacts.items()},
+        supports=_supports(scene, states),
+        tips={
+            beam.name: _rows([state.ends[f"{beam.name}.{scene.tip(beam.name)}"] for state in states], 2)
+            for beam in scene.beams
+        },
+        newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
+        cutbacks=0,
+        unknowns=max((len(state.solution.z) for state in states), default=0),
+        axis_line=lambda beam, k: _axis(scene, beam, states[k]),
+        grid=lambda k: _grid(scene, states[k]),
+        events=None,
+        integration_error=0.0,
+        deformation=None,
+        index=np.array([state.index for state in states], dtype=np.int64),
+        wall_seconds=perf_counter() - began,
+    )
+
+
+def _rows(rows: Sequence[Array], width: int) -> Array:
+    return np.array(rows, dtype=np.float64).reshape(-1, width)
+
+
+def _contact(pair: str, followed: ContactHistory, states: States) -> ContactHistory:
+    closed = [state.contacts.get(pair) for state in states]
+    forces = _rows([np.zeros(2) if here is None else here.force for here in closed], 2)
+    return replace(
+        followed,
+        force=np.hypot(*forces.T),
+        arc_position=np.array([np.nan if here is None else here.arc_position for here in closed]),
+        gap=np.array([gap if here is None else 0.0 for gap, here in zip(followed.gap, closed, strict=False)]),
+        vector=forces,
+    )
+
+
+def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:
+    """Reactions by beam, in the order of `Scene.supports_of`."""
+    supports: dict[str, SupportHistory] = {}
+    for beam in scene.beams:
+        tables = [
+            _rows([state.reactions[support.node] for state in states], 3)
+            for support in scene.supports_of(beam.name)
+        ]
+        for table in reversed(tables):
+            supports[beam.name] = SupportHistory(
+                force=table[:, :2], moment=table[:, 2], other_end=supports.get(beam.name)
+            )
+    return supports
+
+
+def _axis(scene: Scene, beam: str, state: Equilibrium) -> tuple[Array, Array]:
+    arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
+    return arc, state.shape(beam, arc).position
+
+
+def _grid(scene: Scene, state: Equilibrium) -> Grid:
+    """Return the axes as lines."""
+    references, deformed, lines = [], [], []
+    for number, beam in enumerate(scene.beams):
+        arc, line = _axis(scene, beam.name, state)
+        references.append(np.array(beam.start) + np.outer(arc, beam.direction))
+        deformed.append(line)
+        first = number * POINTS + np.arange(POINTS - 1)
+        lines.append(np.stack([first, first + 1], axis=1))
+    points, places = np.concatenate(references), np.concatenate(deformed)
+    return Grid(
+        points=points,
+        cells={"line": np.concatenate(lines)},
+        point_data={"displacement": places - points, "deformed": places},
+    )
