@@ -222,8 +222,7 @@ def _stress(pair: _Pair) -> Columns:
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     """Principal stress of the larger magnitude along both faces of the only beam, nan near clamp, tip and contacts (`AWAY`)."""
     beam, grid = scene.beams[0], response.grid(k)
-    area, inertia, _ = beam.cross_section
-    (tx, ty), height = beam.direction, beam.height or (12.0 * inertia / area) ** 0.5
+    (tx, ty), height = beam.direction, beam.rectangle_height
     from_start = grid.points - np.array(beam.start)
     arc, across = from_start @ (tx, ty), from_start @ (-ty, tx)
     xx, yy, xy = grid.point_data["cauchy_stress"].T

@@ -93,7 +93,7 @@ class Newton:
         self.model = model
         self.assembler = Assembler(model)
         self.max_iterations = settings.max_iterations
-        self.accuracy = settings.accuracy
+        self.integration_tolerance = settings.integration_tolerance
         self.tolerance = settings.tolerance
         scales = scales_of(model, model.coordinates, model.properties, model.sizes)
         self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
@@ -215,7 +215,7 @@ class Newton:
         ):
             return None
         refined = (
-            group.refined(state, forces, self.accuracy)
+            group.refined(state, forces, self.integration_tolerance)
             for group, forces in zip(self.model.groups, system.groups, strict=True)
         )
         return next((finer for finer in refined if finer is not None), None)
@@ -223,7 +223,7 @@ class Newton:
     def verdict(self, system: Linearisation) -> Status:
         """Status of a small residual."""
         groups = zip(self.model.groups, system.groups, strict=True)
-        if any(group.inaccurate(forces, self.accuracy) for group, forces in groups):
+        if any(group.inaccurate(forces, self.integration_tolerance) for group, forces in groups):
             return Status.INACCURATE
         return Status.TWO_CONTACTS if system.crowded else Status.CONVERGED
 

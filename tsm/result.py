@@ -132,7 +132,7 @@ class Result:
 
     @cached_property
     def integration_error(self) -> float:
-        """Largest estimated error of the integration inside exact elements, see `Settings.accuracy`; 0 without such elements."""
+        """Largest estimated error of the integration inside exact elements, see `Settings.integration_tolerance`; 0 without such elements."""
         return max(
             (
                 group.integration_error(forces)

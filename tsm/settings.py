@@ -20,7 +20,7 @@ class Settings:
         Bound on the scaled residual, see `Newton`.
     max_iterations : int
         Newton iterations before a step is cut back.
-    accuracy : float
+    integration_tolerance : float
         Bound on the estimated integration error inside exact elements: the largest error of positions over the longest beam, of
         angles, and of forces over ``EI/L^2``.
     smallest_step : float
@@ -36,14 +36,14 @@ class Settings:
 
     tolerance: float = 1e-10
     max_iterations: int = 25
-    accuracy: float = 1e-9
+    integration_tolerance: float = 1e-9
     smallest_step: float = 1e-12
     max_attempts: int = 1000
     max_chatter: int = 6
     branch: Literal["stop", "stable", "primary"] = "stop"
 
     def __post_init__(self) -> None:
-        for field, least in (("tolerance", 0.0), ("accuracy", 1e-14), ("smallest_step", 0.0)):
+        for field, least in (("tolerance", 0.0), ("integration_tolerance", 1e-14), ("smallest_step", 0.0)):
             value = getattr(self, field)
             if not (math.isfinite(value) and least < value < 1):
                 raise ValueError(f"Settings.{field} = {value!r}: must lie between {least:g} and 1")

@@ -36,7 +36,7 @@ def exact_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
     """
     tolerance, said = 1e-9, []
     while True:
-        response = solve(scene, TSM.name, replace(TSM.reference, tolerance=tolerance))
+        response = solve(scene, TSM.name, replace(TSM.reference, integration_tolerance=tolerance))
         size = _size(response, scene, quantity)
         estimate = (response.integration_error + NEWTON) / size if size else np.inf
         said.append(

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from comparisons.models import MODELS, ROD, SOLID, TSM, Model
+from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import ModelError, Options
 from comparisons.scene import Scene
 
@@ -60,7 +60,7 @@ def required(
     if refused is not None:
         raise ModelError(refused)
     if quantity == "stress" and len(loaded.beams) > 1:
-        raise ModelError("quantity = stress: is that of one beam, the scene has more")
+        raise ModelError("quantity = stress: is defined for a scene with one beam, this one has more")
     options = Options(element=element) if element is not None else chosen.reference or Options()
     TSM.element(options)
     return Requirement(scene=loaded, model=chosen, options=options, decisions=said)
@@ -75,13 +75,8 @@ def _model(scene: Scene, quantity: str) -> tuple[str, str]:
         what = f'beam "{beam.name}" is stocky, h/L = {(beam.height or 0.0) / beam.length:.3g} > {STOCKY:g}'
         refused = SOLID.refusal(scene)
         return (SOLID.name, what) if refused is None else (TSM.name, f"{what}, but {refused}")
-    if ROD.refusal(scene) is not None:
-        count = len(scene.beams)
-        return (
-            TSM.name,
-            f"{count} slender beam{'s' if count > 1 else ''}, {len(scene.contacts)} contact pairs",
-        )
-    return TSM.name, "one clamped slender beam: the exact rod suffices, which one exact element is"
+    rods = "one slender beam" if len(scene.beams) == 1 else f"{len(scene.beams)} slender beams"
+    return TSM.name, f"{rods}: exact rods suffice, which one exact element a beam solves"
 
 
 def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:

@@ -169,7 +169,7 @@ def _element(value: object) -> str:
 OPTION_RULES: dict[str, Rule] = {
     "elements": rules.whole_number,
     "element": _element,
-    "tolerance": rules.fraction,
+    "integration_tolerance": rules.fraction,
     "mesh": rules.mesh_text,
     "branch": rules.choice(*BRANCHES),
 }

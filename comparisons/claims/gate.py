@@ -7,7 +7,7 @@ from functools import partial
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
 from comparisons.errors import difference
-from comparisons.models import MODELS, certified, references, solve
+from comparisons.models import MODELS, ROD, certified, solve
 from comparisons.models.options import Options
 from comparisons.models.registry import COARSE
 from comparisons.response import Response
@@ -63,7 +63,7 @@ def gate(
     bounds : mapping of float
         Largest errors allowed, by quantity.
     against : str, optional
-        Model to measure against; if not given the exact rod, or exact TSM elements where the rod cannot state the scene.
+        Model to measure against; the exact rods if not given.
 
     Raises
     ------
@@ -95,7 +95,5 @@ def gate(
 
 
 def _reference(scene: Scene, against: str | None) -> Response:
-    if against is not None:
-        return solve(scene, against, MODELS[against].reference or Options())
-    model, options = references(scene)[0]
-    return solve(scene, model.name, options)
+    name = ROD.name if against is None else against
+    return solve(scene, name, MODELS[name].reference or Options())

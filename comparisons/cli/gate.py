@@ -22,8 +22,8 @@ def add_to(commands: "Commands") -> None:
     gate = commands.add_parser(
         "gate",
         help="fail where errors lie beyond bounds",
-        description="Errors are relative and the largest over all load parameters, against the exact rod where it can state "
-        "the scene, else against exact TSM elements.",
+        description="Errors are relative and the largest over all load parameters, against the exact rods "
+        "or another model.",
         epilog=GATE_EPILOG,
     )
     gate.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")

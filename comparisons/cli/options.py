@@ -10,7 +10,7 @@ from comparisons.models.options import BRANCHES, Options
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
     "element": ({"metavar": "NAME"}, "type of the elements"),
-    "tolerance": (
+    "integration_tolerance": (
         {"type": values.part, "metavar": "X"},
         "error allowed to the integration inside exact elements (1e-9)",
     ),
@@ -23,12 +23,17 @@ ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
 """How each field of `Options` is read, and what it is."""
 
 
+def argument(name: str) -> str:
+    """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
+    return "--" + name.replace("_", "-")
+
+
 def add_options(parser: argparse.ArgumentParser, *names: str) -> None:
     """Add the named options to a command; their help says which models have them."""
     for name in names:
         how, what = ARGUMENTS[name]
         owners = ", ".join(model.name for model in MODELS.values() if name in model.options)
-        parser.add_argument(f"--{name}", help=f"{owners}: {what}", **how)
+        parser.add_argument(argument(name), help=f"{owners}: {what}", **how)
 
 
 def chosen(given: argparse.Namespace) -> Options:

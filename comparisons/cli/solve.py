@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
-from comparisons.cli.options import add_options, chosen
+from comparisons.cli.options import add_options, argument, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
@@ -40,7 +40,7 @@ def add_to(commands: "Commands") -> None:
         "--quantity", choices=QUANTITIES, help="the quantity whose error is meant: " + ", ".join(QUANTITIES)
     )
     solve.add_argument("--explain", action="store_true", help="with --accuracy: say what was decided and why")
-    add_options(solve, "elements", "element", "tolerance", "mesh", "branch")
+    add_options(solve, "elements", "element", "integration_tolerance", "mesh", "branch")
     solve.add_argument(
         "--certify",
         choices=("last", "all", "none"),
@@ -108,9 +108,9 @@ def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":
         if given.model is None:
             raise ModelError("--model: must be given without --accuracy")
         return None
-    for option in ("elements", "tolerance", "mesh", "branch"):
+    for option in ("elements", "integration_tolerance", "mesh", "branch"):
         if getattr(given, option) is not None:
-            raise ModelError(f"--{option}: is what --accuracy chooses, give one of the two")
+            raise ModelError(f"{argument(option)}: is what --accuracy chooses, give one of the two")
     from comparisons.accuracy import solve_to
 
     answer = solve_to(

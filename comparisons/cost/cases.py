@@ -89,7 +89,7 @@ def _line_stiffness(scene: Scene) -> float:
 
 
 def _beam(scene: Scene, kind: ElementType, elements: int, tolerance: float | None = None) -> Case:
-    options = Options(element=kind.name, elements=elements, tolerance=tolerance)
+    options = Options(element=kind.name, elements=elements, integration_tolerance=tolerance)
     return Case(scene=scene, model=TSM.name, options=options)
 
 

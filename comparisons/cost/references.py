@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from comparisons.cases import Case, Measurement
-from comparisons.cost.cases import family, limit_cases, refined, resolution
+from comparisons.cost.cases import family, limit_cases
 from comparisons.cost.limit import end_state, extrapolated
 from comparisons.errors import Errors, Scales, errors, scales
 from comparisons.models import ROD, TSM
 from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene
-from tsm.elements import EXACT, MIXED
+from tsm.elements import EXACT
 
 Measured = Mapping[Case, Measurement]
 
@@ -20,7 +20,7 @@ ROUND_OFF = 2.0**-52
 
 
 class NoReferenceError(ValueError):
-    """No exact answer of the scene, and none to extrapolate it from: one line."""
+    """The exact rods did not complete: one line."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,46 +57,35 @@ class Reference:
 
 
 def reference_cases(scene: Scene) -> list[Case]:
-    """Return the cases that the reference is chosen from: the rod where it can state the scene, and exact elements."""
-    rod = [Case(scene=scene, model=ROD.name)] if ROD.refusal(scene) is None else []
-    return [*rod, *(_exact(scene, elements) for elements in (1, 2))]
+    """Return the cases that the reference is chosen from: the exact rods, and exact elements."""
+    return [Case(scene=scene, model=ROD.name), _exact(scene)]
 
 
-def _exact(scene: Scene, elements: int) -> Case:
-    options = Options(element=EXACT.name, elements=elements, tolerance=1e-12)
+def _exact(scene: Scene) -> Case:
+    options = Options(element=EXACT.name, elements=1, integration_tolerance=1e-12)
     return Case(scene=scene, model=TSM.name, options=options)
 
 
 def best_reference(scene: Scene, measured: Measured) -> Reference:
-    """Return the best answer of the scene: the Reissner rod, else exact elements, else what `mixed` elements converge to.
+    """Return the answer of the exact rods, as uncertain as its difference from exact TSM elements.
 
-    The rod and not the elastica: every model of the sweep stretches and shears.
+    The rods and not the elastica: every model of the sweep stretches and shears.
 
     Raises
     ------
     NoReferenceError
-        If none of them completed.
+        If the exact rods did not complete.
     """
-    exact, finer = (measured[_exact(scene, elements)] for elements in (1, 2))
-    rod = measured.get(Case(scene=scene, model=ROD.name))
-    if rod is not None and rod.response.completed:
-        return _rod(scene, rod, exact)
-    if exact.response.completed and finer.response.completed:
-        told = (
-            "TSM exact elements, two a beam: they solve the rod's own equations but are not independent of the other TSM "
-            "elements; one a beam is within {:.1e} of the largest force"
-        )
-        return _by_difference(scene, finer, exact, "TSM exact, 2 elements", told)
-    return _of_mixed(scene, measured)
-
-
-def _rod(scene: Scene, rod: Measurement, exact: Measurement) -> Reference:
+    exact = measured[_exact(scene)]
+    rod = measured[Case(scene=scene, model=ROD.name)]
+    if not rod.response.completed:
+        raise NoReferenceError(f"{scene.name}: the exact rods stopped: {rod.response.message}")
     confirmed = (
-        "TSM exact, which shares nothing with it, agrees within {:.1e} of the largest force"
+        "TSM exact, which shares no code with them, agrees within {:.1e} of the largest force"
         if exact.response.completed
-        else "TSM exact, which would confirm it, did not complete"
+        else "TSM exact, which would confirm them, did not complete"
     )
-    told = f"the exact Reissner rod, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
+    told = f"the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
     return _by_difference(scene, rod, exact if exact.response.completed else rod, "exact rod", told)
 
 
@@ -113,19 +102,6 @@ def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: st
     return Reference(
         response=found, scene=scene, scale=scale, end=end, uncertainty=known, name=name, sentence=sentence
     )
-
-
-def _of_mixed(scene: Scene, measured: Measured) -> Reference:
-    sample = Case(scene=scene, model=TSM.name, options=Options(element=MIXED.name, elements=1))
-    completed = [case for case in refined(sample, measured) if measured[case].response.completed]
-    # a constant ratio of refinement: every mesh has twice the elements of the one before
-    halved = {resolution(completed[-1]) / 2**k for k in range(3)} if completed else set()
-    chain = [case for case in completed if resolution(case) in halved]
-    if len(chain) < 3:
-        raise NoReferenceError(
-            f"{scene.name}: no exact answer and fewer than three `mixed` solutions to extrapolate one from"
-        )
-    return _limit(scene, measured, chain, "TSM mixed, extrapolated")
 
 
 def solid_limit(scene: Scene, measured: Measured, *, quick: bool = False) -> Reference | None:

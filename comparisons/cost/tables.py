@@ -31,7 +31,7 @@ def _setting(point: Point) -> Row:
         "model": case.model,
         "elements": case.options.elements,
         "mesh": mesh and f"{mesh[0]}x{mesh[1]}",
-        "tolerance": case.options.tolerance,
+        "integration_tolerance": case.options.integration_tolerance,
         "penalty": contact and contact.penalty,
         "penetration": contact and contact.penetration,
         "load_steps": case.scene.load_parameters,

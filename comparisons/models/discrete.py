@@ -40,11 +40,13 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
 
     structure = to_structure(scene, elements=options.elements, element=kind.name)
     settings = tsm.Settings(branch=options.branch or "stop")
-    if options.tolerance is not None:
+    if options.integration_tolerance is not None:
         if kind.meshed:
             integrated = ", ".join(name for name, other in tsm.ELEMENTS.items() if not other.meshed)
-            raise ModelError(f"tolerance = {options.tolerance:g}: belongs to element = {integrated}")
-        settings = replace(settings, accuracy=options.tolerance)
+            raise ModelError(
+                f"integration_tolerance = {options.integration_tolerance:g}: belongs to element = {integrated}"
+            )
+        settings = replace(settings, integration_tolerance=options.integration_tolerance)
     try:
         result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
     except tsm.SolveError as error:

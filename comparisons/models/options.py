@@ -22,7 +22,7 @@ class Options:
         TSM elements of every beam.
     element : str, optional
         Type of the TSM elements.
-    tolerance : float, optional
+    integration_tolerance : float, optional
         Bound on the error of the integration inside exact TSM elements.
     mesh : (int, int), optional
         Elements of the solid along and across.
@@ -32,6 +32,6 @@ class Options:
 
     elements: int | None = None
     element: str | None = None
-    tolerance: float | None = None
+    integration_tolerance: float | None = None
     mesh: tuple[int, int] | None = None
     branch: Branch | None = None

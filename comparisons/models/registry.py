@@ -49,15 +49,6 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(f"{model}: {error}") from error
 
 
-def references(scene: Scene) -> tuple[tuple[Model, Options], ...]:
-    """Return the models that solve `scene` without a mesh error, with their options; the independent rod comes first."""
-    return tuple(
-        (model, model.reference)
-        for model in sorted(MODELS.values(), key=lambda model: model.meshed)
-        if model.reference is not None and model.refusal(scene) is None
-    )
-
-
 def certified(
     response: Response, scene: Scene, which: Certify = "last", *, allowance: float = COARSE
 ) -> Response:

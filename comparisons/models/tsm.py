@@ -23,7 +23,7 @@ class Tsm(Model):
 
     name = "tsm"
     label = "TSM"
-    options = ("elements", "element", "tolerance", "branch")
+    options = ("elements", "element", "integration_tolerance", "branch")
     libraries = ("tsm",)
     refinable = True
 
@@ -79,7 +79,9 @@ class Tsm(Model):
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
         kind = self.element(options)
         counts = {options.elements or (beam.elements if kind.meshed else 1) for beam in scene.beams}
-        tolerance = "" if options.tolerance is None else f" tolerance {options.tolerance:g}"
+        tolerance = (
+            "" if options.integration_tolerance is None else f" tolerance {options.integration_tolerance:g}"
+        )
         return f"{kind.name} {'+'.join(map(str, sorted(counts)))}{tolerance}"
 
     def family(self, scene: Scene, options: Options) -> str:

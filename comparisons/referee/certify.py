@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from math import sqrt
 from time import perf_counter
 
 import numpy as np
@@ -90,10 +89,7 @@ def default_allowance(response: Response, scene: Scene) -> float:
     """
     if not response.continuum:
         return ALLOWED
-    heights = [
-        sqrt(12.0 * beam.cross_section[1] / beam.cross_section[0]) / beam.length for beam in scene.beams
-    ]
-    return ALLOWED + max(heights)
+    return ALLOWED + max(beam.rectangle_height / beam.length for beam in scene.beams)
 
 
 def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:

@@ -147,6 +147,12 @@ class BeamSpec:
             A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
         return A, inertia, self.shear_area or kappa * A
 
+    @property
+    def rectangle_height(self) -> float:
+        """Height of the section, or ``sqrt(12 I/A)`` of the rectangle with its area and second moment."""
+        area, inertia, _ = self.cross_section
+        return self.height or math.sqrt(12.0 * inertia / area)
+
 
 def _cube(number: float) -> float:
     """Third power; infinite where Python's power raises OverflowError."""

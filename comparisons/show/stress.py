@@ -105,7 +105,7 @@ def solid_panel(response: Response, scene: Scene, ks: list[int], title: str) -> 
 
 
 def beam_panel(response: Response, scene: Scene, ks: list[int], title: str) -> Panel:
-    """Return the beams' deformed shapes at the load parameters numbered `ks`, as ribbons of the beams' heights.
+    """Return the beams' deformed shapes at the load parameters numbered `ks`, as ribbons of the beams' heights (`BeamSpec.rectangle_height`).
 
     ``sigma_x = N/A - M y/I``, ``tau = V/(2 I) (h^2/4 - y^2)``, ``sigma^2 = sigma_x^2 + 3 tau^2``.
     """
@@ -116,7 +116,7 @@ def beam_panel(response: Response, scene: Scene, ks: list[int], title: str) -> P
 def _ribbon(
     response: Response, scene: Scene, beam: BeamSpec, k: int
 ) -> tuple[Array, NDArray[np.int64], Array]:
-    height = beam.height or 0.0
+    height = beam.rectangle_height
     area, inertia, _ = beam.cross_section
     arc, line = response.axis_line(beam.name, k)
     tangent = np.gradient(line, axis=0)

@@ -124,7 +124,7 @@ def exact_element(gates: list[Gate], times: dict[str, float]) -> None:
     """
     ks, both = load_scene("ks-cantilever"), load_scene("double-beam")
     t, depths = np.arange(1, 51) / 50, np.arange(1, both.load_parameters + 1) / both.load_parameters
-    exact, loose = to_structure(ks, elements=1, element="exact"), tsm.Settings(accuracy=1e-6)
+    exact, loose = to_structure(ks, elements=1, element="exact"), tsm.Settings(integration_tolerance=1e-6)
     assert max(errors(tsm.solve(exact, t))) <= 1e-8
     assert max(errors(tsm.solve(exact, t, loose))) <= 1e-6
     elements = next(

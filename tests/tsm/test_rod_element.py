@@ -415,7 +415,7 @@ def test_energy_of_a_circle():
 def with_nodes(monkeypatch, order, t):
     """KS with a fixed number of Gauss nodes."""
     monkeypatch.setattr(profile, "START_ORDER", order)
-    result = tsm.solve(ks(), t, tsm.Settings(accuracy=0.5))
+    result = tsm.solve(ks(), t, tsm.Settings(integration_tolerance=0.5))
     assert {e.state.profile.angle.shape[1] for e in result.equilibria} == {order}
     contact = result.contacts["p->b"]
     found = [contact.force / KS.EI, contact.arc_position, *result.tips["b"].T]
@@ -443,7 +443,7 @@ def test_nodes_are_added_until_the_accuracy_is_reached(monkeypatch):
     monkeypatch.setattr(profile, "START_ORDER", 4)
     orders = []
     for asked in (1e-5, 1e-9, 1e-13):
-        result = tsm.solve(ks(), np.array([1.0]), tsm.Settings(accuracy=asked))
+        result = tsm.solve(ks(), np.array([1.0]), tsm.Settings(integration_tolerance=asked))
         state, rods = result.equilibria[-1].state, result.model.rods
         assert accuracy.truncation(rods, rods.enter(state)) <= asked
         orders.append(state.profile.angle.shape[1])

@@ -252,11 +252,13 @@ def test_roll_up(turns, elements):
         assert result.shape("b", -1)[-1, 2] == pytest.approx(2 * np.pi * turns, rel=1e-9)
 
 
-def limit_load(element, elements, accuracy=1e-9):
+def limit_load(element, elements, integration_tolerance=1e-9):
     """``P L^2/EI`` at the first limit point of Lee's frame."""
     count = 20 * (2 + elements) if element == "mixed" else 25
     structure = divided(lee_scene(), elements, element)
-    return limit_points(structure, 0.3, count, accuracy=accuracy)[0] * 0.1 * LEE_UNIT
+    return (
+        limit_points(structure, 0.3, count, integration_tolerance=integration_tolerance)[0] * 0.1 * LEE_UNIT
+    )
 
 
 def test_lees_frame():

@@ -131,16 +131,16 @@ class ElementGroup(ABC):
         """The latest states that can be extrapolated together."""
 
     @abstractmethod
-    def refined(self, state: State, forces: Any, accuracy: float) -> State | None:
+    def refined(self, state: State, forces: Any, tolerance: float) -> State | None:
         """State with a finer integration inside the elements, None if the integration of `state` is fine enough."""
 
     @abstractmethod
-    def inaccurate(self, forces: Any, accuracy: float) -> bool:
+    def inaccurate(self, forces: Any, tolerance: float) -> bool:
         """Whether the finest integration inside the elements does not suffice."""
 
     @abstractmethod
     def integration_error(self, forces: Any) -> float:
-        """Estimated error of the integration inside the elements, see `Settings.accuracy`."""
+        """Estimated error of the integration inside the elements, see `Settings.integration_tolerance`."""
 
     @abstractmethod
     def project(self, pair: PairModel, state: State) -> Projection:

@@ -157,10 +157,10 @@ class ClosedFormGroup(ElementGroup):
         """All states."""
         return history
 
-    def refined(self, _state: State, _forces: ClosedFormForces, _accuracy: float) -> None:
+    def refined(self, _state: State, _forces: ClosedFormForces, _tolerance: float) -> None:
         """Nothing is integrated."""
 
-    def inaccurate(self, _forces: ClosedFormForces, _accuracy: float) -> bool:
+    def inaccurate(self, _forces: ClosedFormForces, _tolerance: float) -> bool:
         """Nothing is integrated."""
         return False
 

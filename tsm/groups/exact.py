@@ -98,13 +98,13 @@ class ExactGroup(ElementGroup):
         """The latest states that are cut alike, with as many Gauss nodes as the last."""
         return alike(self.rods, history)
 
-    def refined(self, state: State, forces: RodBalance, accuracy: float) -> State | None:
+    def refined(self, state: State, forces: RodBalance, tolerance: float) -> State | None:
         """State with more Gauss nodes, None where they suffice."""
-        return finer(self.rods, state, forces, accuracy)
+        return finer(self.rods, state, forces, tolerance)
 
-    def inaccurate(self, forces: RodBalance, accuracy: float) -> bool:
+    def inaccurate(self, forces: RodBalance, tolerance: float) -> bool:
         """Whether the most Gauss nodes do not suffice."""
-        return inaccurate(self.rods, forces, accuracy)
+        return inaccurate(self.rods, forces, tolerance)
 
     def integration_error(self, forces: RodBalance) -> float:
         """Estimated error of the integration inside the elements."""

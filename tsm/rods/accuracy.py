@@ -39,18 +39,18 @@ def truncation(rods: Rods, entry: Entry) -> float:
     return float(largest / order) ** 2
 
 
-def finer(rods: Rods, state: State, balance: RodBalance, accuracy: float) -> State | None:
+def finer(rods: Rods, state: State, balance: RodBalance, tolerance: float) -> State | None:
     """State with more Gauss nodes, None where the error estimate of `truncation` is small enough."""
     order, error = profile_of(state).angle.shape[1], truncation(rods, balance.entry)
-    if error <= accuracy or order == MOST_NODES:
+    if error <= tolerance or order == MOST_NODES:
         return None
-    more = 2 * math.ceil(math.log(error / accuracy, _FALL)) if math.isfinite(error) else order
+    more = 2 * math.ceil(math.log(error / tolerance, _FALL)) if math.isfinite(error) else order
     return resampled(rods, state, min(order + max(more, _AT_ONCE), 2 * order, MOST_NODES))
 
 
-def inaccurate(rods: Rods, balance: RodBalance, accuracy: float) -> bool:
+def inaccurate(rods: Rods, balance: RodBalance, tolerance: float) -> bool:
     """Whether the most Gauss nodes do not suffice."""
-    return balance.arrival.bent.shape[1] == MOST_NODES and truncation(rods, balance.entry) > accuracy
+    return balance.arrival.bent.shape[1] == MOST_NODES and truncation(rods, balance.entry) > tolerance
 
 
 def deflected(rods: Rods, state: State) -> RodShape:

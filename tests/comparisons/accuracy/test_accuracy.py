@@ -127,7 +127,7 @@ def test_what_a_scene_requires():
     (beam,) = KS.beams
     stocky = replace(KS, beams=(replace(beam, height=0.2),), load_parameters=2)
     assert solve_to(KS, 1e-3).model == "tsm"
-    assert "exact rod suffices" in solve_to(KS, 1e-3).decisions[0]
+    assert "exact rods suffice" in solve_to(KS, 1e-3).decisions[0]
     solid = solve_to(stocky, 1e-2)
     assert solid.model == "solid"
     assert "stocky, h/L = 0.2" in solid.decisions[0]

@@ -55,7 +55,7 @@ def test_what_stops_or_is_refused_is_a_result(tmp_path: Path) -> None:
     leaves = replace(KS, pins=(pin,), contacts=(replace(KS.contacts[0], keep=True),))
     cases = [
         *CASES[:1],
-        Case(scene=KS, model="tsm", options=Options(tolerance=1e-9)),
+        Case(scene=KS, model="tsm", options=Options(integration_tolerance=1e-9)),
         Case(scene=leaves, model="tsm", options=Options(elements=4)),
     ]
     tally = done(tmp_path / "a.sqlite", cases)

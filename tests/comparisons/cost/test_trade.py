@@ -87,25 +87,15 @@ def test_the_rod_is_the_reference_and_exact_elements_agree(trade: Trade) -> None
     assert 1e-4 < elastica.errors["path"]["force"] < 2e-3
 
 
-def test_without_a_rod_exact_elements_are_the_reference_and_then_an_extrapolation() -> None:
+def test_two_beams_have_the_exact_rods_as_reference_and_none_if_these_stop() -> None:
     scene = replace(load_scene("double-beam"), load_parameters=4)
-    cases = [
-        *reference_cases(scene),
-        *(Case(scene=scene, model="tsm", options=Options(element="mixed", elements=n)) for n in (5, 10, 20)),
-    ]
-    found = {case: measured(case) for case in cases}
-    assert all(case.model == "tsm" for case in cases)
-    exact = best_reference(scene, found)
-    assert "not independent" in exact.sentence
-    without = {
-        case: changed(one, completed=case.options.element == "mixed" and one.response.completed)
-        for case, one in found.items()
-    }
-    by_mixed = best_reference(scene, without)
-    assert by_mixed.name == "TSM mixed, extrapolated"
-    apart = by_mixed.errors(found[cases[0]])["path"]["force"]
-    assert 0.0 < apart <= 3.0 * by_mixed.uncertainty["path"]["force"]
-    with pytest.raises(NoReferenceError, match="double-beam"):
+    mixed = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=10))
+    found = {case: measured(case) for case in (*reference_cases(scene), mixed)}
+    reference = best_reference(scene, found)
+    assert reference.name == "exact rod"
+    assert reference.uncertainty["path"]["force"] < 1e-10
+    assert 1e-9 < reference.errors(found[mixed])["path"]["force"] < 1e-6
+    with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped"):
         best_reference(scene, {case: changed(one, completed=False) for case, one in found.items()})
 
 
