@@ -13,7 +13,7 @@ from comparisons import models
 from comparisons.cli import main
 from comparisons.compare import PAPER, RUNS, compare
 from comparisons.errors import errors
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
 
@@ -83,11 +83,29 @@ def test_a_run_that_stops_is_named_and_the_rest_goes_on(
     assert (tmp_path / "out" / "summary.json").is_file()
 
 
-def test_without_the_reference_nothing_is_computed(tmp_path: Path) -> None:
-    both = replace(KS.beams[0], clamped=("start", "end"))
-    with pytest.raises(ModelError, match="have one support"):
-        compare(replace(KS, beams=(both,)), tmp_path / "out", print)
-    assert not (tmp_path / "out").exists()
+def test_a_run_that_stops_by_name_is_a_row_with_its_errors_so_far(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = tmp_path / "short.toml"
+    scene.write_text(to_toml(replace(KS, load_parameters=4)))
+
+    def stopping(scene: Scene, model: str, *more: Any) -> Response:
+        response = models.solve(scene, model, *more)
+        if model != "tsm":
+            return response
+        return replace(
+            response, load_parameter=response.load_parameter[:2], status="CUTBACK_FLOOR", completed=False
+        )
+
+    monkeypatch.setattr(compared, "solve", stopping)
+    monkeypatch.setattr(compared, "RUNS", (compared.MIXED, compared.ROD))
+    assert main(["compare", str(scene), "--out", str(tmp_path / "out")]) == 0
+    printed, progress = capsys.readouterr()
+    assert "TSM mixed, 20 elements (CUTBACK_FLOOR)" in printed
+    assert "crossval: TSM mixed, 20 elements: CUTBACK_FLOOR" in progress
+    found = json.loads((tmp_path / "out" / "summary.json").read_text())["runs"][0]["errors"]
+    assert 0.0 < found["path"]["force"] < 5e-6
+    assert found["end"]["force"] is None
 
 
 @pytest.mark.parametrize(

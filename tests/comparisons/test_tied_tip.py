@@ -158,7 +158,7 @@ CLAMP = SupportSpec(beam=BEAM, end="start", kind="clamped")
         ),
     ],
 )
-@pytest.mark.parametrize("model", ["rod", "elastica", "solid"])
+@pytest.mark.parametrize("model", ["elastica", "solid"])
 def test_scenes_that_the_cantilever_models_cannot_state(scene: Scene, reason: str, model: str) -> None:
     with pytest.raises(ModelError) as caught:
         solve(scene, model)

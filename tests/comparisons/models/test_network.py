@@ -1,0 +1,86 @@
+"""The exact rods of any scene, by the referee: against quadrature, coupled rods, and mixed elements."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
+from comparisons.errors import errors
+from comparisons.models import TSM, solve
+from comparisons.models.network import solve_network
+from comparisons.models.options import Options
+from comparisons.models.progress import unwatched
+from comparisons.quantities import KEPT
+from comparisons.scene import Scene, load_scene
+from comparisons.scene.conditions import LoadSpec, SupportSpec
+
+KS = replace(load_scene("ks-cantilever"), load_parameters=5)
+PAIR = "pin->cantilever"
+TIED = replace(load_scene("ks-tied-tip"), load_parameters=5)
+LENGTH = KS.beams[0].length
+TWO_SUPPORTS = replace(
+    KS,
+    supports=(SupportSpec(beam="cantilever", end="end", kind="pinned"),),
+    pins=(replace(KS.pins[0], start=(0.4 * LENGTH, 0.0), displacement=(0.0, 0.05 * LENGTH)),),
+)
+LOADED = replace(
+    TIED, supports=(), pins=(), loads=(LoadSpec(beam="cantilever", end="end", moment=KS.beams[0].EI / 500.0),)
+)
+
+
+@pytest.mark.parametrize("scene", [KS, TIED], ids=lambda scene: scene.name)
+def test_it_is_the_rod_of_quadrature(scene: Scene) -> None:
+    found = errors(solve_network(scene, "rod"), solve(scene, "rod"), scene)
+    assert max(found["path"][name] for name in KEPT if not np.isnan(found["path"][name])) < 1e-10
+
+
+@pytest.mark.parametrize("scene", [TWO_SUPPORTS, LOADED], ids=["two supports", "moment"])
+def test_mixed_elements_converge_to_it(scene: Scene) -> None:
+    rods = solve(scene, "rod")
+    assert rods.completed
+    coarse, fine = (
+        errors(solve(scene, "tsm", Options(element="mixed", elements=count)), rods, scene)["path"]["tip"]
+        for count in (10, 20)
+    )
+    assert fine < max(coarse / 10.0, 1e-10)
+
+
+def test_two_beams_in_contact_are_the_coupled_rods() -> None:
+    scene = replace(load_scene("double-beam"), load_parameters=8)
+    rods = solve(scene, "rod")
+    assert rods.completed
+    closed = np.flatnonzero((rods.contacts[UPPER].force > 0.0) & (rods.contacts[TIP].force > 0.0))
+    assert len(closed) >= 2
+    drop = abs(scene.pins[0].points[1][1] - scene.pins[0].points[0][1])
+    exact = coupled(scene, rods.load_parameter[closed] * drop)
+    np.testing.assert_allclose(rods.contacts[UPPER].force[closed], np.hypot(*exact.pin_force.T), rtol=1e-9)
+    np.testing.assert_allclose(rods.contacts[TIP].force[closed], np.hypot(*exact.tip_force.T), rtol=1e-9)
+    np.testing.assert_allclose(rods.contacts[UPPER].arc_position[closed], exact.pin_arc, rtol=1e-9)
+
+
+def test_it_ends_where_the_path_ends() -> None:
+    """A strut under twice Euler's load: the exact elements stop at the bifurcation below .5, and so do the rods."""
+    beam = KS.beams[0]
+    load = LoadSpec(
+        beam=beam.name, end="end", force=(-2.0 * np.pi**2 * beam.EI / (2.0 * beam.length) ** 2, 0.0)
+    )
+    scene = replace(KS, pins=(), contacts=(), loads=(load,), load_parameters=10)
+    rods = solve(scene, "rod")
+    assert (rods.status, rods.completed) == ("BIFURCATION", False)
+    assert len(rods.load_parameter) == 4
+    assert rods.index is not None
+    assert not rods.index.any()
+
+
+def test_an_answer_that_the_referee_refuses_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The forces of the third load parameter have the wrong sign: two equilibria are left."""
+    answer = TSM.solve(TWO_SUPPORTS, TSM.reference, unwatched)
+    contact = answer.contacts[PAIR]
+    assert contact.vector is not None
+    sign = np.array([1.0, 1.0, -1.0, 1.0, 1.0])
+    wrong = replace(contact, vector=contact.vector * sign[:, None])
+    monkeypatch.setattr(type(TSM), "solve", lambda *_: replace(answer, contacts={PAIR: wrong}))
+    rods = solve_network(TWO_SUPPORTS, "rod")
+    assert (rods.status, rods.completed, len(rods.load_parameter)) == ("NOT_AN_EQUILIBRIUM", False, 2)
+    assert len(rods.contacts[PAIR].force) == len(rods.tips["cantilever"]) == 2
