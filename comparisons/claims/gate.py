@@ -7,7 +7,7 @@ from functools import partial
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
 from comparisons.errors import difference
-from comparisons.models import MODELS, certified, references, solve
+from comparisons.models import certified, find, references, solve
 from comparisons.models.options import Options
 from comparisons.models.registry import COARSE
 from comparisons.response import Response
@@ -83,7 +83,7 @@ def gate(
     claims = (
         Claim(
             name=f"{quantity} <= {bound:g}",
-            statement=f"the error of {model} in {scene.name}",
+            statement=f"the error of {response.model} in {scene.name}",
             source=f"against {reference.model}",
             quantities=(Quantity(name=quantity, exact=0.0, scale=1.0),),
             allowance=Allowance(error=bound, why="asked for"),
@@ -96,6 +96,6 @@ def gate(
 
 def _reference(scene: Scene, against: str | None) -> Response:
     if against is not None:
-        return solve(scene, against, MODELS[against].reference or Options())
+        return solve(scene, against, find(against).reference or Options())
     model, options = references(scene)[0]
     return solve(scene, model.name, options)
