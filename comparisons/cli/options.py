@@ -1,11 +1,13 @@
 """The options of the models as arguments of commands."""
 
 import argparse
+from collections.abc import Iterator
 from typing import Any
 
 from comparisons.cli import values
 from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, Options
+from comparisons.models.outside.programs import known
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
@@ -21,6 +23,18 @@ ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     ),
 }
 """How each field of `Options` is read, and what it is."""
+
+
+class ModelNames:
+    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the models of this package."""
+        return iter(MODELS)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a name is known, or is the name of a file that may state a program."""
+        return name in MODELS or known(str(name))
 
 
 def argument(name: str) -> str:

@@ -39,8 +39,10 @@ def as_dict(response: Response) -> dict[str, Any]:
     return {
         "status": response.status,
         "message": response.message,
+        "reported_success": response.reported_success,
         "model": response.model,
         "continuum": response.continuum,
+        "outside": response.outside,
         "scene": response.scene,
         "load_parameter": response.load_parameter,
         "contacts": {
