@@ -2,10 +2,15 @@
 
 import json
 import statistics
-from dataclasses import dataclass, replace
+import subprocess
+import sys
+from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from os import times
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import process_time
+from typing import Any
 
 import numpy as np
 
@@ -14,13 +19,17 @@ from comparisons.cases.memory import with_peak_memory
 from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError
 from comparisons.output import plain
+from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.axis import storable
 from comparisons.response.from_json import restated
 from comparisons.response.record import unanswered
 from comparisons.response.to_json import as_dict
+from comparisons.scene import to_toml
 
 REFUSED = "REFUSED"
+REFUSALS = {verdict.name for verdict in Verdict} - {Verdict.CERTIFIED.name, Verdict.NOT_JUDGED.name}
+"""Verdicts by which the referee refuses an answer."""
 SLOW = 10.0
 """Time of a run [s] above which the first run is the measurement, without a warm-up."""
 
@@ -44,6 +53,10 @@ class Measurement:
     verdict : str
         Verdict of the certificate for the last load parameter and the neighbours of events, ``CERTIFIED`` or another. It is empty if no
         load parameter was reached or no run is timed.
+    friction : float
+        Largest spurious friction at these load parameters, see `comparisons.referee.material.friction`; nan where it is undefined.
+    process_seconds : float
+        Processor time of a whole process of ``crossval solve`` without certificate, imports included [s]; nan if it was not asked for.
     """
 
     response: Response
@@ -51,22 +64,33 @@ class Measurement:
     repeats: int = 0
     peak_memory: int = 0
     verdict: str = ""
+    friction: float = np.nan
+    process_seconds: float = np.nan
+
+    @property
+    def wrong(self) -> bool:
+        """Whether the model reported success and its answer was refused by the checks or the referee."""
+        refused = not self.response.completed or self.verdict in REFUSALS
+        return self.response.reported_success and refused
 
     def to_json(self) -> str:
         """Return the measurement as JSON text; a number that is not finite is null."""
-        cost = {name: getattr(self, name) for name in ("seconds", "repeats", "peak_memory", "verdict")}
-        return json.dumps(plain({**cost, "response": as_dict(self.response)}), allow_nan=False)
+        numbers = {item.name: getattr(self, item.name) for item in fields(self) if item.name != "response"}
+        return json.dumps(plain({**numbers, "response": as_dict(self.response)}), allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> "Measurement":
         """Return the measurement that `to_json` wrote, every number the same."""
-        data = json.loads(text)
-        seconds = np.nan if data["seconds"] is None else data["seconds"]
-        return cls(**{**data, "seconds": seconds, "response": restated(data["response"])})
+        data: dict[str, Any] = json.loads(text)
+        response = restated(data.pop("response"))
+        numbers: dict[str, Any] = {name: np.nan if value is None else value for name, value in data.items()}
+        return cls(response=response, **numbers)
 
 
-def measure(case: Case, *, repeats: int = 3) -> Measurement:
+def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measurement:
     """Solve `case` once to warm up, then `repeats` times with the clock on; if `repeats` is zero, the first time counts.
+
+    With `process` a whole process of ``crossval solve`` is timed in addition.
 
     A solution that stops is measured like any other. A scene that the model refuses has the status ``REFUSED``. Neither raises.
     """
@@ -77,18 +101,50 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
     except ModelError as error:
         return unmeasured(REFUSED, str(error))
     seconds = [first] if first > SLOW or not repeats else [_timed(case)[1] for _ in range(repeats)]
+    found = certified(response, case.scene).certificate if repeats else None
     return Measurement(
         response=storable(replace(response, wall_seconds=np.nan), axes=repeats > 0),
         seconds=statistics.median(seconds),
         repeats=len(seconds),
         peak_memory=peak,
-        verdict=_verdict(response, case) if repeats else "",
+        verdict="" if found is None else found.verdict.name,
+        friction=np.nan
+        if found is None
+        else float(np.fmax.reduce([np.nan, *(item.friction for item in found.judged)])),
+        process_seconds=_process_seconds(case) if process else np.nan,
     )
 
 
-def _verdict(response: Response, case: Case) -> str:
-    found = certified(response, case.scene).certificate
-    return "" if found is None else found.verdict.name
+def _process_seconds(case: Case) -> float:
+    """Processor time of ``crossval solve`` in a process of its own [s]; nan where the system does not count it."""
+    given = {name: value for name, value in vars(case.options).items() if value is not None}
+    arguments = [
+        word
+        for name, value in given.items()
+        for word in (
+            "--" + name.replace("_", "-"),
+            "x".join(map(str, value)) if isinstance(value, tuple) else str(value),
+        )
+    ]
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / f"{case.scene.name}.toml"
+        file.write_text(to_toml(case.scene), encoding="utf-8")
+        command = [
+            sys.executable,
+            "-c",
+            "from comparisons.cli import main; main()",
+            "solve",
+            str(file),
+            "--model",
+            case.model,
+        ]
+        before = times()
+        subprocess.run(  # noqa: S603 - this program
+            [*command, *arguments, "--certify", "none", "--quiet"], capture_output=True, check=False
+        )
+        after = times()
+    spent = after.children_user + after.children_system - before.children_user - before.children_system
+    return spent or np.nan
 
 
 def _timed(case: Case) -> tuple[Response, float]:

@@ -4,6 +4,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass
+from functools import partial
 from time import monotonic, sleep
 
 from comparisons.cases.case import Case
@@ -57,6 +58,7 @@ def run(
     repeats: int = 3,
     progress: Progress = lambda _: None,
     keep: bool = False,
+    process: bool = False,
 ) -> Tally:
     """Measure all `cases` without a result of this version in `store`; return when all are recorded.
 
@@ -78,6 +80,8 @@ def run(
         Receives the progress.
     keep : bool
         Whether results of other versions are accepted.
+    process : bool
+        Whether a whole process is timed too, see `measure`.
 
     Raises
     ------
@@ -86,7 +90,8 @@ def run(
     WorkersError
         If the cluster is gone.
     """
-    sweep = _Sweep({case.key: case for case in cases}, store, repeats, progress, keep=keep)
+    measuring = partial(solve, repeats=repeats, process=process)
+    sweep = _Sweep({case.key: case for case in cases}, store, measuring, progress, keep=keep)
     while sweep.unfinished:
         with workers.start() as executor:
             sweep.work(executor, workers)
@@ -97,14 +102,20 @@ class _Sweep:
     """The state of one run."""
 
     def __init__(
-        self, cases: dict[str, Case], store: Store, repeats: int, progress: Progress, *, keep: bool
+        self,
+        cases: dict[str, Case],
+        store: Store,
+        measuring: Callable[[str, Case], Measurement],
+        progress: Progress,
+        *,
+        keep: bool,
     ) -> None:
         recorded, older = store.statuses(), store.older(cases)
         older = {key: found for key, found in older.items() if recorded.get(key, ERROR) in UNSETTLED}
         self.older = dict(sorted(Counter(version for version, _ in older.values()).items()))
         if keep:
             recorded |= {key: status for key, (_, status) in older.items()}
-        self.cases, self.store, self.repeats, self.progress = cases, store, repeats, progress
+        self.cases, self.store, self.measuring, self.progress = cases, store, measuring, progress
         self.again = frozenset(key for key in cases if recorded.get(key) in UNSETTLED)
         self.statuses = {key: recorded[key] for key in cases if key in recorded and key not in self.again}
         self.counts = Counter(self.statuses.values())
@@ -138,7 +149,7 @@ class _Sweep:
         self.flying.update(dict.fromkeys(keys))
         for key in keys:
             with interrupts_held():
-                self.flying[key] = executor.submit(solve, key, self.cases[key], self.repeats)
+                self.flying[key] = executor.submit(self.measuring, key, self.cases[key])
 
     def claim(self, limit: int) -> list[str]:
         if limit == 0 or not self.open:
@@ -200,11 +211,11 @@ class _Sweep:
         )
 
 
-def solve(key: str, case: Case, repeats: int) -> Measurement:
+def solve(key: str, case: Case, *, repeats: int, process: bool) -> Measurement:
     """Measure `case` in a worker; raise if the worker has another version or other mesh files than the key."""
     if case.key != key:
         raise RuntimeError("the worker has another version of this package, or of a mesh file")
-    return measure(case, repeats=repeats)
+    return measure(case, repeats=repeats, process=process)
 
 
 def outcome(future: Future[Measurement], lost: tuple[type[BaseException], ...]) -> Measurement:

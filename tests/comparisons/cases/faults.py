@@ -3,6 +3,7 @@
 import os
 import signal
 from pathlib import Path
+from typing import Any
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, unmeasured
@@ -14,24 +15,24 @@ FATAL = 3
 """Elements of the case that meets its fate."""
 
 
-def killed(key: str, case: Case, repeats: int) -> Measurement:
+def killed(key: str, case: Case, **how: Any) -> Measurement:
     if case.options.elements == FATAL:
         os.kill(os.getpid(), signal.SIGKILL)
-    return solve(key, case, repeats)
+    return solve(key, case, **how)
 
 
-def killed_once(key: str, case: Case, repeats: int) -> Measurement:
+def killed_once(key: str, case: Case, **how: Any) -> Measurement:
     marker = Path(os.environ["CROSSVAL_TEST_MARKER"])
     if case.options.elements == FATAL and not marker.exists():
         marker.touch()
         os.kill(os.getpid(), signal.SIGKILL)
-    return solve(key, case, repeats)
+    return solve(key, case, **how)
 
 
-def raising(key: str, case: Case, repeats: int) -> Measurement:
+def raising(key: str, case: Case, **how: Any) -> Measurement:
     if case.options.elements == FATAL:
         raise ZeroDivisionError("a bug\nin two lines")
-    return solve(key, case, repeats)
+    return solve(key, case, **how)
 
 
 def write_many(path: str, keys: int) -> list[str]:
