@@ -48,9 +48,9 @@ def turned_pins(h: float) -> Scene:
 
 
 def pushed_between(h: float) -> Scene:
-    """Three-point bending between a clamp and a roller."""
-    pin = PinSpec(name="pin", start=(0.4, -h / 2), displacement=(0.0, 0.1))
-    contact = ContactSpec(node="pin", beam="a", side="right", surface="face")
+    """A pin presses the axis between a clamp and a roller; on a face two differences of the order h^2 nearly cancel."""
+    pin = PinSpec(name="pin", start=(0.4, 0.0), displacement=(0.0, 0.1))
+    contact = ContactSpec(node="pin", beam="a", side="right")
     roller = hold("a", "end", "roller", free="x")
     return scene(beam(height=h, clamped=("start",)), supports=(roller,), pins=(pin,), contacts=(contact,))
 
