@@ -1,9 +1,10 @@
 """2D solid elements with unilateral contact: the finite-element reference for beam contact."""
 
+from fem_reference.conditions import EndLoad, Joint, Support
 from fem_reference.critical import CriticalPoint
 from fem_reference.material import MATERIALS, PLANES
 from fem_reference.observe import axis_line, axis_stations, energy, fibre_stress, nodal_stress
-from fem_reference.problem import Contact, EndLoad, Pin, SolidProblem, default_penalty
+from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.sections import SectionForces, face_strains, section_forces
 from fem_reference.settings import Settings
@@ -19,6 +20,7 @@ __all__ = [
     "ContactHistory",
     "CriticalPoint",
     "EndLoad",
+    "Joint",
     "Pin",
     "Result",
     "SectionForces",
@@ -27,6 +29,7 @@ __all__ = [
     "SolveError",
     "Status",
     "Strip",
+    "Support",
     "SupportHistory",
     "axis_line",
     "axis_stations",

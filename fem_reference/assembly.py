@@ -34,23 +34,38 @@ class Pattern:
         m = self.indptr.size - 1
         return csc_matrix((self.scatter @ elements.ravel(), self.indices, self.indptr), shape=(m, m))
 
+    def entries(self, matrix: csr_matrix) -> Floats:
+        """Entries of a matrix ``(m, m)`` whose pattern lies in this one, in the order of ``indices``."""
+        m = self.indptr.size - 1
+        keys = np.repeat(np.arange(m, dtype=np.int64), np.diff(self.indptr)) * m + self.indices
+        given = matrix.tocoo()
+        entries = np.zeros(keys.size)
+        entries[np.searchsorted(keys, given.col.astype(np.int64) * m + given.row)] = given.data
+        return entries
 
-def pattern(mesh: Discretisation, expansion: csr_matrix) -> Pattern:
-    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``.
+
+def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | None = None) -> Pattern:
+    """Build the pattern of the stiffness over the unknowns of ``expansion`` ``(2 n, m)``, and of a matrix ``added`` ``(m, m)``.
 
     A row of the expansion has at most one entry: a displacement is a multiple of one unknown, or zero.
     """
     size = expansion.shape[1]
-    entries = expansion.tocoo()
+    given = expansion.tocoo()
     position, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
-    position[entries.row], factor[entries.row] = entries.col, entries.data
+    position[given.row], factor[given.row] = given.col, given.data
     dofs = element_dofs(mesh)
     local, sign = position[dofs], factor[dofs]
     shape = (*local.shape, local.shape[1])
     row = np.broadcast_to(local[:, :, None], shape).ravel()
     column = np.broadcast_to(local[:, None, :], shape).ravel()
     kept = np.flatnonzero((row >= 0) & (column >= 0))
-    keys, slot = np.unique(column[kept] * size + row[kept], return_inverse=True)
+    entries = column[kept] * size + row[kept]
+    more = np.zeros(0, dtype=entries.dtype)
+    if added is not None:
+        rows, columns = added.nonzero()
+        more = columns.astype(entries.dtype) * size + rows
+    keys, slot = np.unique(np.concatenate([entries, more]), return_inverse=True)
+    slot = slot[: kept.size]
     signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
     indices: Ints = (keys % size).astype(np.int32)  # SuperLU takes 32 bits
     indptr: Ints = np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(

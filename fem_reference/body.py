@@ -1,11 +1,11 @@
-"""A strip as a discrete solid in the strip's frame: elements, material law and clamp."""
+"""A strip as a discrete solid in the strip's frame: elements, material law and clamps."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
-from fem_reference.arrays import Array, Floats, Ints
+from fem_reference.arrays import Array, Floats
 from fem_reference.assembly import (
     Pattern,
     batches,
@@ -14,9 +14,13 @@ from fem_reference.assembly import (
     internal_force,
     pattern,
 )
+from fem_reference.end_section import anchor
 from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
+
+ANCHORED = "start"
+"""End of a strip without a clamp at which its anchor is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +41,9 @@ class Body:
         Matrix ``(2 n, m)`` from the unknowns to the displacements, see `clamp`.
     stiffness
         Sparsity pattern of the stiffness over the unknowns.
+    anchor
+        Entries in this pattern of springs on the start's section, which make a strip without a clamp regular. They are
+        part of the factorised matrix only: `fem_reference.tangent` subtracts them again. None for a clamped strip.
     round_off
         Round-off of a nodal force [N], see `force_round_off`.
     """
@@ -47,6 +54,7 @@ class Body:
     law: Law
     expansion: csr_matrix
     stiffness: Pattern
+    anchor: Floats | None
     round_off: float
 
     @property
@@ -54,20 +62,9 @@ class Body:
         """Scale ``E I / L^2`` of a bending force, independent of the load [N]."""
         return self.strip.bending_stiffness / self.strip.length**2
 
-    @property
-    def clamped_edge(self) -> Ints:
-        """Nodes of the clamped edge."""
-        return self.mesh.edges[self.strip.clamped[0]]
-
-    @property
-    def free_end(self) -> int:
-        """Index of the free end's section: -1 or 0."""
-        return -1 if self.strip.clamped == ("start",) else 0
-
-    @property
-    def clamped_point(self) -> Floats:
-        """Middle of the clamped edge, ``(2,)`` [m]."""
-        ends = self.mesh.nodes[self.clamped_edge[[0, -1]]]
+    def middle(self, end: str) -> Floats:
+        """Middle of the edge of an end, ``(2,)`` [m]."""
+        ends = self.mesh.nodes[self.mesh.edges[end][[0, -1]]]
         return np.asarray(ends.mean(axis=0))
 
     def internal_force(self, u: Array) -> Array:
@@ -100,9 +97,11 @@ def discretise(strip: Strip) -> Discretisation:
 
 
 def build_body(strip: Strip) -> Body:
-    """Discretise a strip and its clamp."""
+    """Discretise a strip and its clamps."""
     mesh = discretise(strip)
     expansion = clamp(strip, mesh)
+    springs = None if strip.clamped else anchor(strip, mesh, expansion, ANCHORED)
+    stiffness = pattern(mesh, expansion, springs)
     law = elastic_law(strip.material, strip.youngs_modulus, strip.poissons_ratio, strip.plane)
     return Body(
         strip=strip,
@@ -110,7 +109,8 @@ def build_body(strip: Strip) -> Body:
         batches=batches(mesh),
         law=law,
         expansion=expansion,
-        stiffness=pattern(mesh, expansion),
+        stiffness=stiffness,
+        anchor=None if springs is None else stiffness.entries(springs),
         round_off=force_round_off(strip, mesh, law),
     )
 
@@ -129,24 +129,25 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
-    """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamp admits.
+    """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
     If the edge has no node at its middle, the rod's clamp sets the transverse displacement interpolated there from the
     two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite.
     """
-    n, edge = len(mesh.nodes), mesh.edges[strip.clamped[0]]
-    y = mesh.nodes[edge, 1] - mesh.nodes[edge[[0, -1]], 1].mean()
+    n = len(mesh.nodes)
     factor = np.ones(2 * n)
     master = np.arange(2 * n)
-    factor[2 * edge] = 0
-    if strip.clamp == "full":
-        factor[2 * edge + 1] = 0
-    elif np.abs(y).min() < 1e-9 * strip.height:
-        factor[2 * edge[np.argmin(np.abs(y))] + 1] = 0
-    else:
-        k = int(np.searchsorted(y, 0.0))
-        below, above = 2 * edge[k - 1] + 1, 2 * edge[k] + 1
-        master[above], factor[above] = below, y[k] / y[k - 1]
+    for edge in (mesh.edges[end] for end in strip.clamped):
+        y = mesh.nodes[edge, 1] - mesh.nodes[edge[[0, -1]], 1].mean()
+        factor[2 * edge] = 0
+        if strip.clamp == "full":
+            factor[2 * edge + 1] = 0
+        elif np.abs(y).min() < 1e-9 * strip.height:
+            factor[2 * edge[np.argmin(np.abs(y))] + 1] = 0
+        else:
+            k = int(np.searchsorted(y, 0.0))
+            below, above = 2 * edge[k - 1] + 1, 2 * edge[k] + 1
+            master[above], factor[above] = below, y[k] / y[k - 1]
     order = np.lexsort(
         (np.round(mesh.nodes[:, 1] / strip.height, 9), np.round(mesh.nodes[:, 0] / strip.height, 9))
     )

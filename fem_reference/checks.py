@@ -1,5 +1,6 @@
 """Checks of input data. An error message is one line with owner, field, value and rule."""
 
+from collections.abc import Iterable
 from math import isfinite
 
 Point = tuple[float, float]
@@ -24,3 +25,11 @@ def require_point(owner: str, field: str, value: Point) -> None:
 def require_choice(owner: str, field: str, value: object, options: tuple[object, ...]) -> None:
     """Require one of ``options``."""
     require(value in options, owner, field, value, f"must be one of {', '.join(map(repr, options))}")
+
+
+def require_distinct(owner: str, field: str, names: Iterable[object]) -> None:
+    """Require that no name appears twice."""
+    seen: set[object] = set()
+    for name in names:
+        require(name not in seen, owner, field, name, "must not appear twice")
+        seen.add(name)

@@ -163,7 +163,8 @@ def opening_limit(model: Model, a: Accepted, settings: Settings) -> CriticalPoin
             continue
         conditions = list(a.state.conditions)
         conditions[number] = touch.condition.opened(armed=True)
-        free = accept(model, build_state(model, a.state.u, a.state.t, tuple(conditions)), settings)
+        opened = build_state(model, a.state.u, a.state.t, tuple(conditions), a.state.tie_forces)
+        free = accept(model, opened, settings)
         if free is not None and free.index > max(a.index, 0):
             return _point(model, LIMIT, a.state.t, smallest_eigenpair(model, free.tangent)[1])
     return None
@@ -279,7 +280,7 @@ def stable_branch(model: Model, located: Located, limit: float, settings: Settin
     if len(entries) == 2:
         common = max(entry.state.t for entry in entries)
         entries = [accepted_state(model, (entry,), common, settings) or entry for entry in entries]
-        energies = [potential(model, entry.state) for entry in entries]
+        energies = [potential(model, entry.state, located.near.state) for entry in entries]
         margin = settings.tolerance * max(map(abs, energies))
         return entries[1] if energies[1] < energies[0] - margin else entries[0]
     return entries[0] if entries else None
@@ -289,13 +290,19 @@ def _on_branch(model: Model, located: Located, offset: Floats, settings: Setting
     """Equilibrium whose displacement from the bifurcation along ``offset`` ``(n, 2)`` is its norm; None without one."""
     near = located.near.state
     c = offset / np.linalg.norm(offset)
-    guess = build_state(model, near.u + offset, near.t, near.conditions)
+    guess = build_state(model, near.u + offset, near.t, near.conditions, near.tie_forces)
     state = _displacement_controlled(model, guess, near.u, c, float(np.linalg.norm(offset)), settings)
     return None if state is None else accept(model, state, settings)
 
 
-def potential(model: Model, state: State) -> float:
-    """Total potential energy: strain energy and contact energy minus the work of the end loads [J]."""
-    return (
-        model.strain_energy(state.u) + contact_energy(state) - state.t * float(np.sum(model.load * state.u))
-    )
+def potential(model: Model, state: State, near: State) -> float:
+    """Total potential energy: strain energy and contact energy minus the work of the dead loads [J].
+
+    Dead moments do work on the rotation from the state ``near``, which is less than half a turn away.
+    """
+    turns = [
+        float(np.remainder(pose.rotation - other.rotation + np.pi, 2 * np.pi) - np.pi)
+        for pose, other in zip(state.poses, near.poses, strict=True)
+    ]
+    work = float(np.sum(model.load * state.u)) + float(model.moments @ turns)
+    return model.strain_energy(state.u) + contact_energy(state) - state.t * work

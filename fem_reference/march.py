@@ -100,7 +100,7 @@ class _Progress:
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
     """Yield a step to every load parameter; a step with another status than ``CONVERGED`` is the last."""
     start = accept(model, at_rest(model), settings)
-    assert start is not None, "the undeformed stiffness is regular"
+    assert start is not None, "the undeformed stiffness is regular, since no strip can move without strain"
     track: tuple[Accepted, ...] = (start,)
     trial = settings.first_step
     for target in map(float, load_parameters):
@@ -274,8 +274,8 @@ def _after_slip(
 ) -> Attempt | None:
     """Equilibrium after a slip-off without the lost contact; None without slip-off, or if the contact must be kept.
 
-    A strip without another closed contact springs back to rest, and all its contacts open. Every other contact whose
-    gap is smaller than the strip's height is closed in the initial guess.
+    A clamped strip without another closed contact, support or joint springs back to rest, and all its contacts open. Every
+    other contact whose gap is smaller than the strip's height is closed in the initial guess.
     """
     if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
         return None
@@ -283,7 +283,10 @@ def _after_slip(
     if lost.contact.keep or not before.touches[attempt.pair].closed:
         return None
     strip = lost.strips[0]
-    free = not any(touch.pair.strips[0] == strip and touch.pair is not lost for touch in before.closed)
+    name = model.problem.strips[strip].name
+    tied = any(model.sections[tie.section].node.split(".")[0] == name for tie in model.ties)
+    held = any(touch.pair.strips[0] == strip and touch.pair is not lost for touch in before.closed)
+    free = not (held or tied)
     u = before.u.copy()
     if free:
         u[model.parts[strip]] = 0
@@ -291,7 +294,7 @@ def _after_slip(
         _condition_after(model, touch, strip if free else None, number == attempt.pair)
         for number, touch in enumerate(before.touches)
     ]
-    return equilibrium(model, build_state(model, u, goal, tuple(conditions)), settings)
+    return equilibrium(model, build_state(model, u, goal, tuple(conditions), before.tie_forces), settings)
 
 
 def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost: bool) -> Condition:

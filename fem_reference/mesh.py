@@ -130,6 +130,17 @@ def edge_weights(element: str, along: Floats) -> Floats:
     return np.asarray(weights / (along[-1] - along[0]))
 
 
+def edge_moments(element: str, along: Floats) -> Floats:
+    """Nodal shares ``integral N s ds / length`` ``(r,)`` of a traction proportional to the edge's coordinate s, ``along``."""
+    pattern, step = ((1 / 2, 1 / 2), 1) if element == "Q1" else ((1 / 6, 4 / 6, 1 / 6), 2)
+    moments = np.zeros(along.size)
+    for j in range(0, along.size - step, step):
+        side, middle = along[j + step] - along[j], (along[j + step] + along[j]) / 2
+        moments[j : j + step + 1] += np.array(pattern) * side * middle
+        moments[[j, j + step]] += np.array([-1, 1]) * side**2 / 12
+    return np.asarray(moments / (along[-1] - along[0]))
+
+
 def _gradients(basis: Any) -> Floats:
     """Arrange scikit-fem's gradients, ``(2, e, q)`` per shape function, as ``(e, 2 q, k)``."""
     stacked = np.stack([field[0].grad for field in basis])

@@ -1,4 +1,4 @@
-"""The discrete model: bodies with consecutive node numbers, and the contact pairs that couple them."""
+"""The discrete model: bodies with consecutive node numbers, and the contact pairs and ties that couple them."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -7,9 +7,11 @@ import numpy as np
 from scipy.sparse import block_diag, csr_matrix
 
 from fem_reference.arrays import Array, Floats
-from fem_reference.body import Body, build_body
+from fem_reference.body import ANCHORED, Body, build_body
+from fem_reference.conditions import ENDS
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
+from fem_reference.end_section import EndSection, Tie, anchor_stiffness, end_rows
 from fem_reference.mesh import edge_weights
 from fem_reference.problem import Contact, Pin, SolidProblem
 
@@ -31,7 +33,13 @@ class Model:
     expansion
         Matrix ``(2 n, m)`` from the unknowns to the displacements.
     load
-        Nodal forces ``(n, 2)`` of the end loads at the load parameter 1, each in the frame of its strip [N].
+        Nodal forces ``(n, 2)`` of the dead forces at the load parameter 1, each in the frame of its strip [N].
+    sections, columns
+        End sections that are supported, joined, anchored or loaded by a moment, and their columns ``(2 n, 4 e)``.
+    ties
+        Ties of these sections: components of supports, then of joints.
+    moments
+        Dead moments on the sections at the load parameter 1, ``(e,)`` [N m].
     """
 
     problem: SolidProblem
@@ -40,6 +48,10 @@ class Model:
     pairs: tuple[Pair, ...]
     expansion: csr_matrix
     load: Floats
+    sections: tuple[EndSection, ...]
+    columns: Floats
+    ties: tuple[Tie, ...]
+    moments: Floats
 
     @property
     def nodes(self) -> int:
@@ -58,8 +70,16 @@ class Model:
 
     @property
     def largest_load(self) -> float:
-        """Largest end load at the load parameter 1 [N]."""
-        return max((float(np.hypot(*load.force)) for load in self.problem.loads), default=0.0)
+        """Largest dead force, or moment over the longest strip, at the load parameter 1 [N]."""
+        forces = [float(np.hypot(*load.force)) for load in self.problem.loads]
+        return max([*forces, *(abs(load.moment) / self.length for load in self.problem.loads)], default=0.0)
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Largest ``E A / L`` of the strips [N/m]."""
+        return max(
+            strip.youngs_modulus * strip.width * strip.height / strip.length for strip in self.problem.strips
+        )
 
     @property
     def length(self) -> float:
@@ -101,25 +121,87 @@ def build(problem: SolidProblem) -> Model:
     bodies = tuple(build_body(strip) for strip in problem.strips)
     ends = np.cumsum([0, *(len(body.mesh.nodes) for body in bodies)])
     parts = tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+    sections = _sections(problem, bodies, parts)
+    columns = [section.columns for section in sections]
+    numbers = {section.node: number for number, section in enumerate(sections)}
+    moments = np.zeros(len(sections))
+    for load in problem.loads:
+        if load.moment:
+            moments[numbers[load.node]] += load.moment
     return Model(
         problem=problem,
         bodies=bodies,
         parts=parts,
         pairs=tuple(_pair(problem, contact, bodies, parts) for contact in problem.contacts),
         expansion=block_diag([body.expansion for body in bodies], format="csr"),
-        load=np.concatenate([_end_load(problem, body) for body in bodies]),
+        load=np.concatenate([_end_forces(problem, body) for body in bodies]),
+        sections=sections,
+        columns=np.hstack(columns) if columns else np.zeros((2 * parts[-1].stop, 0)),
+        ties=_ties(problem, numbers),
+        moments=moments,
     )
 
 
-def _end_load(problem: SolidProblem, body: Body) -> Floats:
-    """Nodal forces ``(n, 2)`` of the loads on a body's free end, in the strip's frame [N]."""
+def _end_forces(problem: SolidProblem, body: Body) -> Floats:
+    """Nodal forces ``(n, 2)`` of the dead forces on a body's ends, in the strip's frame [N]."""
     forces = np.zeros((len(body.mesh.nodes), 2))
-    edge = body.mesh.edges["end" if body.free_end else "start"]
-    share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
     for load in problem.loads:
         if load.strip == body.strip.name:
+            edge = body.mesh.edges[load.end]
+            share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
             forces[edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
     return forces
+
+
+def _sections(
+    problem: SolidProblem, bodies: tuple[Body, ...], parts: tuple[slice, ...]
+) -> tuple[EndSection, ...]:
+    """End sections that are supported, joined, anchored or loaded by a moment."""
+    needed = {support.node for support in problem.supports}
+    needed |= {end for joint in problem.joints for end in joint.ends}
+    needed |= {load.node for load in problem.loads if load.moment}
+    anchored = {f"{body.strip.name}.{ANCHORED}" for body in bodies if body.anchor is not None}
+    return tuple(
+        _section(problem, body, part, parts[-1].stop, end, f"{body.strip.name}.{end}" in anchored)
+        for body, part in zip(bodies, parts, strict=True)
+        for end in ENDS
+        if f"{body.strip.name}.{end}" in needed | anchored
+    )
+
+
+def _section(
+    problem: SolidProblem, body: Body, part: slice, nodes: int, end: str, anchored: bool
+) -> EndSection:
+    """Build the end section of a body among all ``nodes`` of the model."""
+    strip = body.strip
+    rows, height = end_rows(strip, body.mesh, end)
+    mean, first_moment = (rows @ body.mesh.nodes) @ strip.frame.T
+    return EndSection(
+        node=f"{strip.name}.{end}",
+        position=mean + (np.array(strip.start) - np.array(problem.strips[0].start)),
+        rows=_among_all(rows, part, nodes),
+        first_moment=first_moment,
+        frame=strip.frame,
+        height=height,
+        anchor_stiffness=anchor_stiffness(strip) if anchored else 0.0,
+    )
+
+
+def _ties(problem: SolidProblem, numbers: dict[str, int]) -> tuple[Tie, ...]:
+    """Ties of supports and joints between the sections with the given ``numbers``."""
+    supports = [
+        Tie(section=numbers[support.node], component=component, rate=rate)
+        for support in problem.supports
+        for component, rate in enumerate(support.motion)
+        if rate is not None
+    ]
+    joints = [
+        Tie(section=numbers[end], component=component, other=numbers[joint.ends[0]])
+        for joint in problem.joints
+        for end in joint.ends[1:]
+        for component in range(3)
+    ]
+    return (*supports, *joints)
 
 
 def _pair(
@@ -153,6 +235,10 @@ def _pair(
 def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix, origin: Floats) -> Carrier:
     """Points with the weights ``rows`` of a body's nodes, among all ``nodes`` of the model."""
     reference: Floats = (rows @ body.mesh.nodes) @ body.strip.frame.T + (np.array(body.strip.start) - origin)
+    return Carrier(reference=reference, rows=_among_all(rows, part, nodes), frame=body.strip.frame)
+
+
+def _among_all(rows: csr_matrix, part: slice, nodes: int) -> csr_matrix:
+    """Weights of a body's nodes as weights of all ``nodes`` of the model."""
     placed = rows.tocoo()
-    wide = csr_matrix((placed.data, (placed.row, placed.col + part.start)), shape=(rows.shape[0], nodes))
-    return Carrier(reference=reference, rows=wide, frame=body.strip.frame)
+    return csr_matrix((placed.data, (placed.row, placed.col + part.start)), shape=(rows.shape[0], nodes))

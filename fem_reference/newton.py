@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.arrays import Floats
+from fem_reference.end_section import ROTATION
 from fem_reference.model import Model
 from fem_reference.settings import Settings
-from fem_reference.state import State, build_state, residual
+from fem_reference.state import State, build_state, residual, tie_residuals
 from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
 
@@ -64,31 +65,53 @@ def check_convergence(model: Model, state: State, R: Floats, settings: Settings)
     """
     error = float(np.abs(R).max())
     gap_residuals = [abs(touch.gap_residual) for touch in state.touches]
-    if not np.isfinite(error + sum(gap_residuals)):
+    tie_residual = largest_tie_residual(model, state)
+    if not np.isfinite(error + sum(gap_residuals) + tie_residual):
         return Status.NOT_FINITE, None
     for number, touch in enumerate(state.touches):
         if touch.closed and not touch.projection.stationary:
             return Status.LOST_CONTACT, number
     allowed = settings.tolerance * force_scale(model, state)
-    converged = error <= allowed + model.round_off and all(
-        gap_residual <= allowed / touch.pair.penalty + model.length_round_off
-        for gap_residual, touch in zip(gap_residuals, state.touches, strict=True)
+    tied = tie_residual <= allowed / model.axial_stiffness + model.length_round_off
+    converged = (
+        tied
+        and error <= allowed + model.round_off
+        and all(
+            gap_residual <= allowed / touch.pair.penalty + model.length_round_off
+            for gap_residual, touch in zip(gap_residuals, state.touches, strict=True)
+        )
     )
     return (Status.CONVERGED if converged else Status.ITERATION_LIMIT), None
 
 
 def force_scale(model: Model, state: State) -> float:
-    """Force that tolerances refer to: the largest of contact forces, end loads and ``E I / L^2`` [N]."""
-    return max(
-        model.force_scale, state.t * model.largest_load, *(abs(touch.force) for touch in state.touches)
-    )
+    """Force that tolerances refer to: the largest of contact and tie forces, dead loads and ``E I / L^2`` [N].
+
+    Moments count over the length of the longest strip.
+    """
+    ties = [
+        abs(float(force)) / (model.length if tie.component == ROTATION else 1.0)
+        for tie, force in zip(model.ties, state.tie_forces, strict=True)
+    ]
+    contacts = [abs(touch.force) for touch in state.touches]
+    return max(model.force_scale, state.t * model.largest_load, *contacts, *ties)
+
+
+def largest_tie_residual(model: Model, state: State) -> float:
+    """Largest residual of the ties; an angle counts times half the section's height [m]."""
+    arms = [
+        model.sections[tie.section].height / 2 if tie.component == ROTATION else 1.0 for tie in model.ties
+    ]
+    return float(np.abs(tie_residuals(model, state) * arms).max(initial=0.0))
 
 
 def updated(model: Model, state: State, correction: Correction, damping: float) -> State:
     """Return the state after ``damping`` times a correction."""
-    forces = iter(damping * correction.forces)
+    changes = damping * correction.forces
+    forces = iter(changes)
     conditions = tuple(
         replace(condition, force=condition.force + float(next(forces))) if condition.closed else condition
         for condition in state.conditions
     )
-    return build_state(model, state.u + damping * correction.u, state.t, conditions)
+    ties = state.tie_forces + changes[changes.size - state.tie_forces.size :]
+    return build_state(model, state.u + damping * correction.u, state.t, conditions, ties)

@@ -1,6 +1,5 @@
-"""Problem data: clamped strips, rigid pins on paths, contacts and end loads."""
+"""Problem data: strips, rigid pins on paths, contacts, and the conditions of the strips' ends."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
@@ -8,7 +7,15 @@ from math import isfinite
 import numpy as np
 
 from fem_reference.arrays import Floats
-from fem_reference.checks import Point, require, require_choice, require_point, require_positive
+from fem_reference.checks import (
+    Point,
+    require,
+    require_choice,
+    require_distinct,
+    require_point,
+    require_positive,
+)
+from fem_reference.conditions import EndLoad, Joint, Support, require_held
 from fem_reference.strip import Strip
 
 TURN = 0.5
@@ -144,56 +151,30 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EndLoad:
-    """A dead force on the free end of a strip, distributed evenly over the undeformed section.
-
-    Parameters
-    ----------
-    strip
-        Name of the strip.
-    force
-        Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
-
-    Raises
-    ------
-    ValueError
-        If the force is not finite or vanishes.
-    """
-
-    strip: str
-    force: Point
-
-    def __post_init__(self) -> None:
-        owner = f"EndLoad({self.strip!r})"
-        require_point(owner, "force", self.force)
-        require(any(self.force), owner, "force", self.force, "must not be zero")
-
-
-@dataclass(frozen=True, kw_only=True)
 class SolidProblem:
-    """Strips, pins and their contacts, and loads on free ends.
+    """Strips, pins and their contacts, and supports, joints and loads of ends.
 
     Raises
     ------
     ValueError
-        If a name appears twice, a contact or a load refers to an unknown name, or a node starts on the wrong side of a
-        strip.
+        If a name appears twice, a contact, support, joint or load refers to an unknown name, an end has two supports, a
+        joint's ends are apart, strips can move without strain, or a node starts on the wrong side of a strip.
     """
 
     strips: tuple[Strip, ...]
     pins: tuple[Pin, ...] = ()
     contacts: tuple[Contact, ...] = ()
+    supports: tuple[Support, ...] = ()
+    joints: tuple[Joint, ...] = ()
     loads: tuple[EndLoad, ...] = ()
 
     def __post_init__(self) -> None:
         require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
-        _require_distinct("strips", [strip.name for strip in self.strips])
-        _require_distinct("pins", [pin.name for pin in self.pins])
-        _require_distinct("contacts", [contact.name for contact in self.contacts])
+        require_distinct("SolidProblem", "strips", [strip.name for strip in self.strips])
+        require_distinct("SolidProblem", "pins", [pin.name for pin in self.pins])
+        require_distinct("SolidProblem", "contacts", [contact.name for contact in self.contacts])
+        require_held(self.strips, self.supports, self.joints, self.loads)
         names = [strip.name for strip in self.strips]
-        for load in self.loads:
-            owner = f"EndLoad({load.strip!r})"
-            require(load.strip in names, owner, "strip", load.strip, f"must name a strip: {names}")
         for contact in self.contacts:
             owner = f"Contact({contact.name!r})"
             nodes = [pin.name for pin in self.pins]
@@ -243,13 +224,6 @@ class SolidProblem:
             start,
             f"must not start beyond the {contact.side} {contact.surface} of the strip (gap {gap:.3g})",
         )
-
-
-def _require_distinct(field: str, names: Iterable[str]) -> None:
-    seen: set[str] = set()
-    for name in names:
-        require(name not in seen, "SolidProblem", field, name, "must not appear twice")
-        seen.add(name)
 
 
 def default_penalty(strip: Strip) -> float:

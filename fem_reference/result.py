@@ -36,14 +36,14 @@ class ContactHistory:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportHistory:
-    """History of the reaction of one clamp on its strip.
+    """History of the reaction of one clamp or support on its strip.
 
     Parameters
     ----------
     force
         Reaction force in the global frame, ``(s, 2)`` [N].
     moment
-        Reaction moment about the middle of the clamped edge, anticlockwise positive, ``(s,)`` [N m].
+        Reaction moment, anticlockwise positive, about the middle of the clamped edge or the section's mean, ``(s,)`` [N m].
     """
 
     force: Floats
@@ -65,8 +65,8 @@ class Result:
     reached
         Load parameter of the last accepted state, including sub-steps, or of the event that ends the path.
     contacts, supports, tips
-        Contact histories by pair ``"pin->strip"``, clamp reactions by strip, and positions ``(s, 2)`` of the free ends'
-        section means by strip [m].
+        Contact histories by pair ``"pin->strip"``, reactions by supported end ``"strip.start"``, and positions ``(s, 2)`` of
+        section means by strip: of the end, or of the start where only the end is clamped [m].
     newton_iterations
         Number of linear solutions for each load parameter, including sub-steps and rejected attempts, ``(s,)``.
     cutbacks

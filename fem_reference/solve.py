@@ -12,7 +12,7 @@ from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import State, clamp_reactions, contact_force
+from fem_reference.state import State, contact_force, reactions
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
@@ -31,7 +31,7 @@ def solve(
     Parameters
     ----------
     problem
-        Strips, pins, contacts and end loads.
+        Strips, pins, contacts, and supports, joints and loads of ends.
     load_parameters
         Increasing values in (0, 1], ``(n,)``. Each is reached exactly.
     settings
@@ -138,19 +138,20 @@ def _contact_history(states: tuple[State, ...], number: int, slip_off: float) ->
 
 
 def _supports(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
-    reactions = [clamp_reactions(model, state) for state in states]
+    rows = [reactions(model, state) for state in states]
+    clamps = [f"{strip.name}.{end}" for strip in model.problem.strips for end in strip.clamped]
     return {
-        body.strip.name: SupportHistory(
-            force=np.array([row[number][0] for row in reactions]).reshape(-1, 2),
-            moment=np.array([row[number][1] for row in reactions]),
+        node: SupportHistory(
+            force=np.array([row[node][0] for row in rows]).reshape(-1, 2),
+            moment=np.array([row[node][1] for row in rows]),
         )
-        for number, body in enumerate(model.bodies)
+        for node in (*clamps, *(support.node for support in model.problem.supports))
     }
 
 
 def _tips(model: Model, strip: str, states: tuple[State, ...]) -> Floats:
-    body, _ = model.body(strip)
-    return np.array([section_means(model, state, strip)[body.free_end] for state in states]).reshape(-1, 2)
+    end = 0 if model.problem.strip(strip).clamped == ("end",) else -1
+    return np.array([section_means(model, state, strip)[end] for state in states]).reshape(-1, 2)
 
 
 def _cells(model: Model) -> dict[str, Ints]:

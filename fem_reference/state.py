@@ -7,6 +7,7 @@ import numpy as np
 from fem_reference.arrays import Floats
 from fem_reference.contact import Pair
 from fem_reference.curve import Projection
+from fem_reference.end_section import ROTATION, Pose
 from fem_reference.model import Model
 
 
@@ -97,11 +98,17 @@ class State:
         Load parameter.
     touches
         Contacts, in the order of the model's pairs.
+    poses
+        Motions of the model's end sections.
+    tie_forces
+        Forces and moments of the model's ties on their ends ``(c,)`` [N or N m].
     """
 
     u: Floats
     t: float
     touches: tuple[Touch, ...]
+    poses: tuple[Pose, ...]
+    tie_forces: Floats
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -119,15 +126,23 @@ class State:
         return tuple(touch.closed for touch in self.touches)
 
 
-def build_state(model: Model, u: Floats, t: float, conditions: tuple[Condition, ...]) -> State:
-    """Build the state at given displacements: project the nodes and differentiate the gaps."""
+def build_state(
+    model: Model, u: Floats, t: float, conditions: tuple[Condition, ...], tie_forces: Floats | None = None
+) -> State:
+    """Build the state at given displacements: project the nodes and differentiate the gaps. Ties are without force by default."""
     touches = []
     for pair, condition in zip(model.pairs, conditions, strict=True):
         projection = pair.project(u, t)
         U, H = pair.gap_derivatives(projection)
         consistent = condition if condition.closed else condition.opened(armed=condition.armed)
         touches.append(Touch(pair=pair, condition=consistent, projection=projection, slopes=U, curvature=H))
-    return State(u=u, t=t, touches=tuple(touches))
+    return State(
+        u=u,
+        t=t,
+        touches=tuple(touches),
+        poses=tuple(section.pose(u) for section in model.sections),
+        tie_forces=np.zeros(len(model.ties)) if tie_forces is None else tie_forces,
+    )
 
 
 def at_rest(model: Model, t: float = 0.0) -> State:
@@ -142,11 +157,35 @@ def with_conditions(state: State, conditions: tuple[Condition, ...]) -> State:
 
 
 def residual(model: Model, state: State) -> Floats:
-    """Internal forces minus end loads and contact forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
+    """Internal forces minus dead loads, contact and tie forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
     R = model.internal_force(state.u) - state.t * model.load
     for touch in state.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
+    if model.sections:
+        R -= section_forces(model, state, section_actions(model, state))
     return R
+
+
+def section_actions(model: Model, state: State) -> Floats:
+    """Forces x, y and moment of ties and dead moments on every end section, ``(e, 3)`` [N, N m]."""
+    actions = np.zeros((len(model.sections), 3), dtype=state.tie_forces.dtype)
+    actions[:, ROTATION] = state.t * model.moments
+    for tie, force in zip(model.ties, state.tie_forces, strict=True):
+        actions[tie.section, tie.component] += force
+        if tie.other is not None:
+            actions[tie.other, tie.component] -= force
+    return actions
+
+
+def section_forces(model: Model, state: State, actions: Floats) -> Floats:
+    """Nodal forces ``(n, 2)`` of ``actions`` ``(e, 3)`` on the end sections [N]."""
+    along = [pose.gradient @ action for pose, action in zip(state.poses, actions, strict=True)]
+    return np.asarray(model.columns @ np.concatenate(along)).reshape(-1, 2)
+
+
+def tie_residuals(model: Model, state: State) -> Floats:
+    """Residuals ``(c,)`` of the ties [m or rad]."""
+    return np.array([tie.residual(state.poses, state.t) for tie in model.ties])
 
 
 def contact_force(touch: Touch) -> Floats:
@@ -154,34 +193,54 @@ def contact_force(touch: Touch) -> Floats:
     return np.asarray(-touch.pair.contact.sign * touch.force * touch.projection.normal)
 
 
-def clamp_reactions(model: Model, state: State) -> list[tuple[Floats, float]]:
-    """Force ``(2,)`` of each clamp on its strip, in the global frame [N], and moment about the clamped point [N m]."""
-    R, reactions = residual(model, state), []
+Reaction = tuple[Floats, float]
+"""Force ``(2,)`` on a strip in the global frame [N], and moment about the supported point [N m]."""
+
+
+def reactions(model: Model, state: State) -> dict[str, Reaction]:
+    """Reactions of clamps and supports by end. The point is the middle of a clamped edge, or the mean of a section."""
+    R, found = residual(model, state), dict[str, Reaction]()
     for body, part in model.bodies_and_nodes():
-        edge = body.clamped_edge
-        forces = R[part][edge]
-        arm = body.mesh.nodes[edge] + state.u[part][edge] - body.clamped_point
-        reactions.append((np.asarray(body.strip.frame @ forces.sum(axis=0)), _moment(arm, forces)))
-    return reactions
+        for end in body.strip.clamped:
+            edge = body.mesh.edges[end]
+            forces = R[part][edge]
+            arm = body.mesh.nodes[edge] + state.u[part][edge] - body.middle(end)
+            moment = _moment(arm, forces)
+            found[f"{body.strip.name}.{end}"] = (np.asarray(body.strip.frame @ forces.sum(axis=0)), moment)
+    for support in model.problem.supports:
+        found[support.node] = (np.zeros(2), 0.0)
+    for tie, value in zip(model.ties, state.tie_forces, strict=True):
+        if tie.other is None:
+            force, moment = found[model.sections[tie.section].node]
+            values = np.append(force, moment)
+            values[tie.component] = value
+            found[model.sections[tie.section].node] = (values[:2], float(values[ROTATION]))
+    return found
 
 
 def imbalance(model: Model, state: State) -> float:
     """Largest component of the sum of all external forces and moments [N].
 
-    External are the clamp reactions, the forces of the pins and the end loads. Moments refer to the start of the first
-    strip and are divided by the length of the longest one.
+    External are the reactions of clamps and supports, the forces of the pins and the dead loads. Moments refer to the start
+    of the first strip and are divided by the length of the longest one.
     """
     origin = np.array(model.problem.strips[0].start)
-    total, moment = np.zeros(2), 0.0
-    for (force, clamp_moment), (body, part) in zip(
-        clamp_reactions(model, state), model.bodies_and_nodes(), strict=True
-    ):
+    total, moment = np.zeros(2), state.t * float(model.moments.sum())
+    places = {
+        section.node: section.position + pose.displacement
+        for section, pose in zip(model.sections, state.poses, strict=True)
+    }
+    for body, part in model.bodies_and_nodes():
         start = np.array(body.strip.start) - origin
         points = start + (body.mesh.nodes + state.u[part]) @ body.strip.frame.T
         loads = state.t * model.load[part] @ body.strip.frame.T
-        total += force + loads.sum(axis=0)
-        moment += clamp_moment + _moment(start + body.strip.frame @ body.clamped_point, force)
+        total += loads.sum(axis=0)
         moment += _moment(points, loads)
+        for end in body.strip.clamped:
+            places[f"{body.strip.name}.{end}"] = start + body.strip.frame @ body.middle(end)
+    for node, (force, free_moment) in reactions(model, state).items():
+        total += force
+        moment += free_moment + _moment(places[node], force)
     for touch in state.closed:
         if len(touch.pair.strips) == 1:
             total += contact_force(touch)

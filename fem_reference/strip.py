@@ -1,4 +1,4 @@
-"""A strip: geometry, section, material, clamp and mesh."""
+"""A strip: geometry, section, material, clamps and mesh."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -33,7 +33,7 @@ def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
-    """A straight strip, clamped at one end.
+    """A straight strip.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ class Strip:
     youngs_modulus, poissons_ratio
         Elastic constants [Pa, -].
     clamped
-        The clamped end, ``("start",)`` or ``("end",)``.
+        The ends clamped at rest, none, one or both of ``"start"`` and ``"end"``.
     clamp
-        ``"rod"``: the edge has no axial displacement and its middle no transverse displacement, as a clamped rod with
-        free lateral contraction. ``"full"``: both displacements vanish on the edge.
+        ``"rod"``: the clamped edge has no axial displacement and its middle no transverse displacement, as a clamped rod
+        with free lateral contraction. ``"full"``: both displacements vanish on the edge.
     mesh
         Numbers of elements along the axis (at least 2) and over the height.
     element
@@ -96,7 +96,7 @@ class Strip:
             require_positive(owner, field, getattr(self, field))
         nu = self.poissons_ratio
         require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
-        require_choice(owner, "clamped", self.clamped, (("start",), ("end",)))
+        require_choice(owner, "clamped", self.clamped, ((), ("start",), ("end",), ("start", "end")))
         whole = len(self.mesh) == 2 and all(isinstance(n, int) and n < 10**15 for n in self.mesh)
         require(
             whole and self.mesh[0] >= 2 and self.mesh[1] >= 1,

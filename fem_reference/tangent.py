@@ -1,12 +1,15 @@
 r"""Equilibrium linearised about a state: Newton corrections, rates, and the index.
 
-The unknowns are displacements and contact forces. U and H are the factors of the gaps' derivatives, see
-`fem_reference.contact`; ``C = 1 / eps`` is the flexibility of a contact, or zero where augmented Lagrangian steps remove the
-penetration. The motion of the pin alone changes ``U^T u`` by p. With the gap residual r,
+The unknowns are displacements, contact forces and tie forces. U has the columns of closed contacts and end sections, see
+`fem_reference.contact` and `fem_reference.end_section`. In these columns the curvature of a gap times its force, and of a
+rotation times its moment, is a block of A, and the gradient of a constraint is a column of N. The flexibility C of a
+contact is ``1 / eps``, or zero where augmented Lagrangian steps remove the penetration; a tie has none. The motion of the
+pin alone changes ``U^T u`` by p. With the constraint residual r,
 
-    K du - sum U (lam H (U^T du + p) + e_1 dlam) = -R,     e_1 . (U^T du + p) + C dlam = -r.
+    K du - U A (U^T du + p) - U N dlam = -R,     N^T (U^T du + p) + C dlam = -r.
 
-Only the stiffness K of the bodies is factorised; a contact adds the three columns of U.
+Only the stiffness K of the bodies is factorised. A strip without a clamp has an anchor in K, four springs on its start's
+section, whose stiffness in A cancels it.
 """
 
 from dataclasses import dataclass
@@ -15,18 +18,17 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from fem_reference.arrays import Floats
-from fem_reference.contact import Pair
+from fem_reference.border import Border, build_border
+from fem_reference.end_section import ROTATION
 from fem_reference.factor import Factor, factorise
 from fem_reference.model import Model
 from fem_reference.problem import Pin
-from fem_reference.state import State, Touch
-
-_FIRST = np.array([1.0, 0.0, 0.0])
+from fem_reference.state import State, Touch, section_forces, tie_residuals
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Correction:
-    """Changes of the displacements ``(n, 2)`` and of the forces of the closed contacts ``(c,)``."""
+    """Changes of the displacements ``(n, 2)`` and of the forces ``(c,)`` of the closed contacts, then of the ties."""
 
     u: Floats
     forces: Floats
@@ -39,7 +41,7 @@ class Correction:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Tangent:
-    """Factorised stiffness of the bodies at a state, with the columns of the closed contacts.
+    """Factorised stiffness of the bodies at a state, with the columns of closed contacts and end sections.
 
     Parameters
     ----------
@@ -48,7 +50,9 @@ class Tangent:
     factors
         Factorised stiffness of every body.
     U, Y
-        Columns ``(m, 3 c)`` of the closed contacts over the unknowns, and ``K^-1 U``.
+        Columns ``(m, k)`` of the closed contacts and end sections over the unknowns, and ``K^-1 U``.
+    border
+        Curvatures and constraints over the columns.
     """
 
     model: Model
@@ -56,47 +60,59 @@ class Tangent:
     factors: tuple[Factor, ...]
     U: Floats
     Y: Floats
+    border: Border
 
     def correction(self, R: Floats) -> Correction | None:
-        """Newton correction for the residual ``R`` ``(m,)``; None if the contact equations are singular."""
-        r = np.concatenate([touch.gap_residual * _FIRST for touch in self.state.closed] or [np.zeros(0)])
-        return self._correction(self._respond(R, np.zeros_like(r), r, augmented=False))
+        """Newton correction for the residual ``R`` ``(m,)``; None if the constraint equations are singular."""
+        r = np.concatenate(
+            [[touch.gap_residual for touch in self.state.closed], tie_residuals(self.model, self.state)]
+        )
+        return self._correction(self._respond(R, np.zeros(self.U.shape[1]), r, augmented=False))
 
     def rate(self, before: float, after: float) -> Correction | None:
         """Change per load parameter with the mean velocity of the pins between two load parameters."""
+        model, closed = self.model, self.state.closed
         p = np.concatenate(
-            [_pin_motion(touch, before, after) for touch in self.state.closed] or [np.zeros(0)]
+            [*(_pin_motion(touch, before, after) for touch in closed), np.zeros(model.columns.shape[1])]
         )
-        R = -self.model.expansion.T @ self.model.load.ravel()
-        return self._correction(self._respond(R, p, np.zeros_like(p), augmented=True))
+        r = np.array([*(0.0 for _ in closed), *(-tie.rate for tie in model.ties)])
+        load = model.load
+        if model.sections:
+            actions = np.outer(model.moments, np.eye(3)[ROTATION])
+            load = load + section_forces(model, self.state, actions)
+        return self._correction(self._respond(-model.expansion.T @ load.ravel(), p, r, augmented=True))
 
     def inverse(self, right: Floats) -> Floats | None:
         """Product ``(m,)`` of the inverse Hessian and ``right``; None if the Hessian is singular."""
-        zero = np.zeros(self.U.shape[1])
-        response = self._respond(-right, zero, zero, augmented=True)
+        border = self.border
+        response = self._respond(-right, np.zeros(len(border.A)), np.zeros(border.N.shape[1]), augmented=True)
         return None if response is None else response[0]
 
     def solve(self, right: Floats) -> Floats:
-        """Solve ``K x = right`` without the contacts; ``right`` is ``(m,)`` or ``(m, c)``."""
+        """Solve ``K x = right`` without contacts and ties; ``right`` is ``(m,)`` or ``(m, c)``."""
         return _solve(self.model, self.factors, right)
 
     def _respond(self, R: Floats, p: Floats, r: Floats, *, augmented: bool) -> tuple[Floats, Floats] | None:
-        """Changes ``Y z - K^-1 R`` of the unknowns and dlam of the contact forces; None if singular.
+        """Changes ``Y z - K^-1 R`` of the unknowns and dlam of the constraint forces; None if singular.
 
-        z holds dlam and the two other components of ``lam H (U^T du + p)`` of each contact.
+        With ``z = A (U^T du + p) + N dlam`` and ``W = U^T Y`` the remaining equations are
+        ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``N^T W z + C dlam = -r - N^T (p - U^T K^-1 R)``.
         """
-        y, closed = self.solve(R) if R.any() else R, self.state.closed
-        if not closed:
+        y, border = self.solve(R) if R.any() else R, self.border
+        k = len(border.A)
+        if not k:
             return -y, np.zeros(0)
-        A = block_diag(*(touch.force * touch.curvature - np.outer(_FIRST, _FIRST) for touch in closed))
-        C = [0.0 if augmented and _removed(touch.pair) else 1 / touch.pair.penalty for touch in closed]
-        flexibility = np.concatenate([[c, 1.0, 1.0] for c in C])
-        matrix = np.diag(flexibility) - A @ (self.U.T @ self.Y)
+        A, N, W = border.A, border.N, self.U.T @ self.Y
+        C = np.where(border.removed, 0.0, border.C) if augmented else border.C
+        matrix = np.block([[np.eye(k) - A @ W, -N], [N.T @ W, np.diag(C)]])
+        known = p - self.U.T @ y
+        right = np.concatenate([A @ known, -r - N.T @ known])
+        scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
         try:
-            z = np.linalg.solve(matrix, A @ (p - self.U.T @ y) - r)
+            z = np.linalg.solve(scale[:, None] * matrix, scale * right)
         except np.linalg.LinAlgError:
             return None
-        return self.Y @ z - y, z[::3]
+        return self.Y @ z[:k] - y, z[k:]
 
     def _correction(self, response: tuple[Floats, Floats] | None) -> Correction | None:
         return None if response is None else Correction(u=self.expanded(response[0]), forces=response[1])
@@ -120,47 +136,24 @@ class Tangent:
         """Index with a subset of the closed contacts.
 
         The Hessian is the Schur complement of a bordered matrix with K in the upper left and a diagonal D in the lower right.
-        With the spectral decomposition ``-lam H = sum m v v^T`` of a contact, each term borders K by the column
-        ``sqrt |m| U v`` with the diagonal entry ``-sign m``. The gap's column has the diagonal entry -C. By Haynsworth's
-        theorem the index is ``negatives(K) + negatives(D - U^T K^-1 U) - negatives(D)``, where -C counts as negative even
-        if it is zero.
+        With the spectral decomposition ``-A = sum m v v^T``, each term borders K by the column ``sqrt |m| U v`` with the
+        diagonal entry ``-sign m``. A constraint's column has the diagonal entry -C. By Haynsworth's theorem the index is
+        ``negatives(K) + negatives(D - U^T K^-1 U) - negatives(D)``, where -C counts as negative even if it is zero.
         """
         negatives = sum(factor.negatives() for factor in self.factors)
-        blocks, D = [], list[float]()
-        for touch, included in zip(self.state.closed, chosen, strict=True):
-            columns, signs = _bordering_columns(touch)
-            blocks.append(columns if included else columns[:, :0])
-            D += signs if included else []
-        if not D:
+        border = self.border.of_contacts(chosen)
+        if not border.blocks:
             return negatives
-        T = block_diag(*blocks)
-        S = (
-            np.diag(np.where(np.isneginf(D), _flexibilities(self.state, chosen), D))
-            - T.T @ (self.U.T @ self.Y) @ T
-        )
+        spectra = [np.linalg.eigh(-block) for block in border.blocks]
+        columns = block_diag(*(vectors * np.sqrt(np.abs(values)) for values, vectors in spectra))
+        signs = np.where(np.concatenate([values for values, _ in spectra]) > 0, -1.0, 1.0)
+        T = np.hstack([border.N, columns])
+        D = np.concatenate([np.where(border.removed, 0.0, -border.C), signs])
+        S = np.diag(D) - T.T @ (self.U.T @ self.Y) @ T
         scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0), np.finfo(float).tiny))
-        values = np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale)
-        return negatives + int((values < 0).sum()) - int((np.array(D) < 0).sum())
-
-
-def _bordering_columns(touch: Touch) -> tuple[Floats, list[float]]:
-    """Bordering columns ``(3, k)`` in the basis of U, and the signs of their diagonal entries; -inf for the gap."""
-    values, vectors = np.linalg.eigh(-touch.force * touch.curvature[1:, 1:])
-    columns = np.zeros((3, 3))
-    columns[0, 0] = 1.0
-    columns[1:, 1:] = vectors * np.sqrt(np.abs(values))
-    return columns, [-np.inf, *(-1.0 if value > 0 else 1.0 for value in values)]
-
-
-def _flexibilities(state: State, chosen: list[bool]) -> Floats:
-    """Diagonal entries -C of the gaps' columns of the chosen contacts, each followed by two zeros, ``(3 k,)``."""
-    pairs = [touch.pair for touch, included in zip(state.closed, chosen, strict=True) if included]
-    return np.concatenate([[0.0 if _removed(pair) else -1 / pair.penalty, 0.0, 0.0] for pair in pairs])
-
-
-def _removed(pair: Pair) -> bool:
-    """Whether augmented Lagrangian steps remove the penetration."""
-    return pair.contact.penetration is not None
+        eigenvalues = np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale)
+        negatives += int((eigenvalues < 0).sum())
+        return negatives - len(border.C) - int((signs < 0).sum())
 
 
 def _pin_motion(touch: Touch, before: float, after: float) -> Floats:
@@ -177,18 +170,19 @@ def linearise(model: Model, state: State) -> Tangent | None:
     factors = []
     for body, part in model.bodies_and_nodes():
         K = body.tangent(state.u[part])
+        if body.anchor is not None:
+            K.data += body.anchor
         factor = factorise(K, body.stiffness.band) if np.all(np.isfinite(K.data)) else None
         if factor is None:
             return None
         factors.append(factor)
-    closed = state.closed
-    U = np.zeros((model.unknowns, 0))
-    if closed:
-        U = np.asarray(model.expansion.T @ np.hstack([touch.slopes for touch in closed]))
-    Y = _solve(model, tuple(factors), U) if closed else U
-    if not np.all(np.isfinite(Y)):
+    columns = np.hstack([*(touch.slopes for touch in state.closed), model.columns])
+    U = np.asarray(model.expansion.T @ columns)
+    Y = _solve(model, tuple(factors), U) if U.size else U
+    border = build_border(model, state)
+    if not (np.all(np.isfinite(Y)) and np.all(np.isfinite(border.A)) and np.all(np.isfinite(border.N))):
         return None
-    return Tangent(model=model, state=state, factors=tuple(factors), U=U, Y=Y)
+    return Tangent(model=model, state=state, factors=tuple(factors), U=U, Y=Y, border=border)
 
 
 def _solve(model: Model, factors: tuple[Factor, ...], right: Floats) -> Floats:

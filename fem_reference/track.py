@@ -39,9 +39,8 @@ class Accepted:
         """Change per load parameter with the mean velocity of the pins between two load parameters; nan if singular."""
         rate = self.tangent.rate(before, after)
         if rate is None:
-            return Correction(
-                u=np.full_like(self.state.u, np.nan), forces=np.full(len(self.state.closed), np.nan)
-            )
+            count = len(self.state.closed) + self.state.tie_forces.size
+            return Correction(u=np.full_like(self.state.u, np.nan), forces=np.full(count, np.nan))
         return rate
 
 
@@ -100,13 +99,14 @@ def predict(model: Model, states: tuple[Accepted, ...], t: float, degree: int) -
         if accepted.state.contact_set == last.state.contact_set
     ]
     if degree == 0:
-        return build_state(model, last.state.u, t, last.state.conditions)
+        return build_state(model, last.state.u, t, last.state.conditions, last.state.tie_forces)
     nodes, values, rates = [], [], []
     following = [*(accepted.state.t for accepted in same[1:]), t]
     for accepted, after in zip(same, following, strict=True):
         rate = accepted.rate(accepted.state.t, after)
         nodes.append(accepted.state.t)
-        values.append(np.append(accepted.state.u.ravel(), [touch.force for touch in accepted.state.closed]))
+        contact_forces = [touch.force for touch in accepted.state.closed]
+        values.append(np.concatenate([accepted.state.u.ravel(), contact_forces, accepted.state.tie_forces]))
         rates.append(np.append(rate.u.ravel(), rate.forces))
     extrapolated = hermite(nodes[::-1], values[::-1], rates[::-1], t, degree)
     u = extrapolated[: last.state.u.size].reshape(-1, 2)
@@ -116,7 +116,8 @@ def predict(model: Model, states: tuple[Accepted, ...], t: float, degree: int) -
         force = float(next(forces)) if touch.closed else 0.0
         augmented = touch.closed and touch.pair.contact.penetration is not None
         conditions.append(replace(touch.condition, force=force, multiplier=force if augmented else 0.0))
-    return build_state(model, u, t, tuple(conditions))
+    ties = extrapolated[extrapolated.size - last.state.tie_forces.size :]
+    return build_state(model, u, t, tuple(conditions), ties)
 
 
 def hermite(nodes: list[float], values: list[Array], rates: list[Array], t: float, degree: int) -> Array:

@@ -58,8 +58,8 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     response = _response(TSM, scene, result, result.axis_line, grid)
     return replace(
         response,
-        tips={beam.name: _tip(scene, result, beam.name) for beam in scene.beams},
-        supports=_beam_supports(scene, result),
+        tips=_tips(scene, response, lambda beam, k: result.shape(beam, k)[:, :2]),
+        supports=_by_beam(scene, lambda support: _reaction(support, result)),
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
@@ -113,10 +113,11 @@ def _beam_contacts(response: Response, result: Any) -> dict[str, ContactHistory]
     }
 
 
-def _beam_supports(scene: Scene, result: Any) -> dict[str, SupportHistory]:
+def _by_beam(scene: Scene, reaction: Callable[[SupportSpec], SupportHistory]) -> dict[str, SupportHistory]:
+    """Return the reactions of the supports by beam."""
     supports: dict[str, SupportHistory] = {}
     for beam in scene.beams:
-        own = [_reaction(support, result) for support in scene.supports_of(beam.name)]
+        own = [reaction(support) for support in scene.supports_of(beam.name)]
         if own:
             supports[beam.name] = replace(own[0], other_end=own[1]) if len(own) > 1 else own[0]
     return supports
@@ -177,11 +178,20 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         )
         for contact in problem.contacts
     }
+    supports = {
+        node: SupportHistory(force=one.force, moment=one.moment) for node, one in result.supports.items()
+    }
     turn = 2 * np.max([_half_turns(response, beam.name) for beam in scene.beams], axis=0)
     deformation = Deformation(
         load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
     )
-    return replace(response, contacts=contacts, deformation=deformation)
+    return replace(
+        response,
+        contacts=contacts,
+        tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
+        supports=_by_beam(scene, lambda support: supports[support.node]),
+        deformation=deformation,
+    )
 
 
 def _half_turns(response: Response, beam: str) -> Array:
@@ -198,7 +208,7 @@ def _response(
     axis_line: Callable[[str, int], tuple[Array, Array]],
     grid: Callable[[int], Grid],
 ) -> Response:
-    """Return the response with the fields that the results of both solvers share."""
+    """Return the response with the fields that the results of both solvers share; it has no supports and tips."""
     contacts = {
         pair: ContactHistory(
             force=history.force,
@@ -216,11 +226,8 @@ def _response(
         completed=result.status.name == "COMPLETED",
         load_parameter=result.load_parameter,
         contacts=contacts,
-        supports={
-            beam: SupportHistory(force=support.force, moment=support.moment)
-            for beam, support in result.supports.items()
-        },
-        tips=dict(result.tips),
+        supports={},
+        tips={},
         newton_iterations=result.newton_iterations,
         cutbacks=result.cutbacks,
         unknowns=result.unknowns,
@@ -272,7 +279,8 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
     }
 
 
-def _tip(scene: Scene, result: Any, beam: str) -> Array:
-    """Deformed positions (s, 2) of the tip, the end of a beam with fewer held components."""
-    node = 0 if scene.tip(beam) == "start" else -1
-    return _rows([result.shape(beam, k)[node, :2] for k in range(len(result.load_parameter))], 2)
+def _tips(scene: Scene, response: Response, line: Callable[[str, int], Array]) -> dict[str, Array]:
+    """Deformed positions (s, 2) of the tips, the ends of beams with fewer held components, from the points of every axis."""
+    steps = range(len(response.load_parameter))
+    tips = {beam.name: 0 if scene.tip(beam.name) == "start" else -1 for beam in scene.beams}
+    return {beam: _rows([line(beam, k)[end] for k in steps], 2) for beam, end in tips.items()}

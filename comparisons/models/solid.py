@@ -6,7 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
-from comparisons.models.options import ModelError, Options
+from comparisons.models.options import Options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +37,7 @@ class Solid(Model):
 
         try:
             to_solid(scene)
-        except ModelError as error:
+        except ValueError as error:
             return str(error)
         return None
 

@@ -83,7 +83,7 @@ def write_systems(mesh: tuple[int, int], loads: list[float], folder: str) -> Non
             _vectors(folder, load),
             b=model.expansion.T @ slopes[:, 0],
             modes=model.expansion.T @ modes.reshape(-1, 3),
-            ordering="NATURAL" if body.clamped_edge.size < 16 else "MMD_AT_PLUS_A",
+            ordering="NATURAL" if body.mesh.edges["start"].size < 16 else "MMD_AT_PLUS_A",
         )
 
 

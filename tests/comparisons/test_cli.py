@@ -159,7 +159,7 @@ def test_model_that_cannot_state_the_scene(tmp_path: Path, capsys: pytest.Captur
     assert (
         capsys.readouterr().err
         == 'crossval: solid: the solid model needs the width and height of beam "cantilever": the rectangle of its area '
-        "and second moment is 0.2 high, more than a tenth of the length\n"
+        "and second moment is 0.2 high, more than an eighth of the length\n"
     )
     assert run("solve", str(path), "--model", "tsm") == 0
 

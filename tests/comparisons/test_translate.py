@@ -1,12 +1,13 @@
 """What each model is given, and what it refuses to state."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import tsm
-from comparisons.models import solve
+from comparisons.models import MODELS, solve
 from comparisons.models.options import ModelError
 from comparisons.models.translate import to_rod, to_solid, to_structure
 from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
@@ -47,7 +48,6 @@ def test_solid_finds_nu_from_the_shear_modulus() -> None:
     ("changes", "reason"),
     [
         ({"width": None, "height": None, "area": 1.0, "second_moment": 1.0}, "needs the width and height"),
-        ({"clamped": ("start", "end")}, "the solid model has one support, beam .* has two"),
         ({"poissons_ratio": None, "shear_modulus": 1e3}, "needs a Poisson's ratio between"),
         ({"mesh": (1, 1)}, "needs at least 2 elements along"),
     ],
@@ -82,12 +82,44 @@ def test_solid_takes_the_rectangle_of_area_and_second_moment() -> None:
         assert strip.poissons_ratio == pytest.approx(0.4, abs=2e-4)
 
 
-def test_solid_refuses_joints_and_loads() -> None:
-    lower = replace(KS.beams[0], name="lower", start=(1.0, 0.0), end=(2.0, 0.0), clamped=("end",))
-    with pytest.raises(ModelError, match="no joints"):
-        to_solid(replace(KS, beams=(*KS.beams, lower)))
-    with pytest.raises(ModelError, match=r'no dead moments, the scene loads "cantilever\.end"'):
-        to_solid(replace(KS, loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)))
+def test_solid_takes_joints_supports_and_moments() -> None:
+    other = replace(KS.beams[0], name="other", start=(1.0, 0.0), end=(2.0, 0.0), clamped=("end",))
+    roller = SupportSpec(beam="other", end="start", kind="roller", free="x", displacement=(0.0, 0.1))
+    load = LoadSpec(beam="cantilever", end="end", force=(1.0, 0.0), moment=2.0)
+    problem = to_solid(replace(KS, beams=(*KS.beams, other), supports=(roller,), loads=(load,)))
+    assert [strip.clamped for strip in problem.strips] == [("start",), ("end",)]
+    assert [joint.ends for joint in problem.joints] == [("cantilever.end", "other.start")]
+    assert [(item.node, item.motion) for item in problem.supports] == [("other.start", (None, 0.1, None))]
+    assert [(item.node, item.force, item.moment) for item in problem.loads] == [
+        ("cantilever.end", (1.0, 0.0), 2.0)
+    ]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"supports": (SupportSpec(beam="cantilever", end="start", kind="clamped", rotation=0.1),)},
+        {
+            "supports": (SupportSpec(beam="cantilever", end="start", kind="clamped"),),
+            "loads": (LoadSpec(beam="cantilever", end="start", moment=1.0),),
+        },
+    ],
+)
+def test_solid_holds_the_section_where_a_clamp_moves_or_is_loaded(changes: dict[str, Any]) -> None:
+    scene = replace(KS, beams=(replace(KS.beams[0], clamped=()),), **changes)
+    problem = to_solid(scene)
+    assert problem.strips[0].clamped == ()
+    assert [item.node for item in problem.supports] == ["cantilever.start"]
+    with pytest.raises(ModelError, match=r'full clamp at rest .*, "cantilever\.start" is another'):
+        to_solid(replace(scene, beams=(replace(scene.beams[0], solid_clamp="full"),)))
+
+
+def test_solid_refuses_a_beam_that_only_contact_holds() -> None:
+    pinned = SupportSpec(beam="cantilever", end="start", kind="pinned")
+    scene = replace(KS, beams=(replace(KS.beams[0], clamped=()),), supports=(pinned,))
+    with pytest.raises(ModelError, match='needs supports that hold "cantilever" also without contact'):
+        to_solid(scene)
+    assert "also without contact" in str(MODELS["solid"].refusal(scene))
 
 
 def test_solid_takes_dead_forces_on_free_ends() -> None:

@@ -279,7 +279,7 @@ def test_clamp_without_a_node_at_the_middle_holds_what_its_neighbours_interpolat
     body = build_body(
         strip(mesh_file=write(tmp_path / "a.msh", points, quads, lines), element="Q1", height=0.3)
     )
-    edge = body.clamped_edge
+    edge = body.mesh.edges["start"]
     y = body.mesh.nodes[edge, 1]
     middle = y[[0, -1]].mean()
     assert np.abs(y - middle).min() > 1e-3

@@ -10,10 +10,10 @@ from fem_reference.material import Law
 from fem_reference.model import build
 from fem_reference.newton import updated
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, at_rest, build_state, imbalance, residual
+from fem_reference.state import Condition, at_rest, build_state, imbalance, residual, tie_residuals
 from fem_reference.status import Status
 from fem_reference.tangent import linearise
-from tests.fem_reference.conftest import dense_hessian, make_problem, make_strip, place_pin
+from tests.fem_reference.conftest import dense_hessian, make_portal, make_problem, make_strip, place_pin
 
 
 @pytest.fixture(scope="module")
@@ -56,16 +56,26 @@ def two_strips(_):
     return model, build_state(model, last.u, 0.62, conditions)
 
 
-@pytest.mark.parametrize(("case", "tolerance"), [(one_strip, 1e-9), (two_strips, 1e-8)])
+def portal(_):
+    """A frame without clamps under a moment and a pin, away from equilibrium: supports, joints, dead load and contact."""
+    model = build(make_portal(fr.Pin(name="pin", path=((0.5, 0.83), (0.5, 0.7)))))
+    last = fr.solve(model.problem, np.array([0.5, 1.0])).states[-1]
+    conditions = tuple(replace(condition, force=1.1 * condition.force) for condition in last.conditions)
+    return model, build_state(model, 1.01 * last.u, 0.9, conditions, 1.05 * last.tie_forces)
+
+
+@pytest.mark.parametrize(("case", "tolerance"), [(one_strip, 1e-9), (two_strips, 1e-8), (portal, 1e-8)])
 def test_correction_solves_the_full_saddle_point_system(place, case, tolerance):
-    """The solution by three columns per contact against the assembled matrix of displacements and contact forces."""
+    """The solution by columns of contacts and end sections against the assembled matrix of displacements and forces."""
     model, state = case(place)
     assert len(state.closed) == len(model.pairs)
     T, (K, gradients) = model.expansion, dense_hessian(model, state)
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
-    G, C = np.stack(gradients, 1), np.diag([1 / touch.pair.penalty for touch in state.closed])
+    ties = tie_residuals(model, state)
+    C = np.diag([*(1 / touch.pair.penalty for touch in state.closed), *(0 * ties)])
+    G = np.stack(gradients, 1)
     R = T.T @ residual(model, state).ravel()
-    right = -np.append(R, [touch.gap_residual for touch in state.closed])
+    right = -np.concatenate([R, [touch.gap_residual for touch in state.closed], ties])
     expected = np.linalg.solve(np.block([[K, -G], [G.T, C]]), right)
     step = linearise(model, state).correction(R)
     found, expected = np.append(step.u, step.forces), np.append(T @ expected[: len(R)], expected[len(R) :])

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from tests.fem_reference.conftest import PAIR, STRIP, rotation
+from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, rotation
 
 
 def test_axis_line_runs_from_the_clamp_to_the_tip(ks_axis):
     line, stations = fr.axis_line(ks_axis, STRIP, -1), fr.axis_stations(ks_axis, STRIP)
     # By Poisson's effect of the curvature the mean lies up to nu kappa h^2 / 24 above the clamped middle.
-    kappa = -ks_axis.supports[STRIP].moment[-1] / ks_axis.model.problem.strips[0].bending_stiffness
+    kappa = -ks_axis.supports[CLAMP].moment[-1] / ks_axis.model.problem.strips[0].bending_stiffness
     assert line[0, 0] == pytest.approx(0, abs=1e-12)
     assert 0.4 < line[0, 1] / (0.3 * kappa * 0.02**2 / 24) < 1.0
     np.testing.assert_allclose(line[-1], ks_axis.tips[STRIP][-1], atol=1e-15)

@@ -27,7 +27,7 @@ REFUSED = {
         "poissons_ratio": [0.5, -1.0],
         "start": [(NAN, 0.0)],
         "end": [(0.0, 0.0)],
-        "clamped": [("start", "end"), ()],
+        "clamped": [("middle",), ("end", "start")],
         "clamp": ["hinge"],
         "mesh": [(1, 1), (4, 0), (4.5, 1)],
         "material": ["rubber"],

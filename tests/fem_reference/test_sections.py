@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from tests.fem_reference.conftest import PAIR, STRIP, loads, rotation
+from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, loads, rotation
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.9])
@@ -52,7 +52,7 @@ def test_moment_is_the_bending_stiffness_times_the_curvature(turned):
 
 def test_clamp_reaction_is_the_force_on_the_first_sections(turned):
     """The mean over an element's two Gauss stations; the moment extrapolated from them to the clamp."""
-    support, k = turned.supports[STRIP], -1
+    support, k = turned.supports[CLAMP], -1
     forces = fr.section_forces(turned, STRIP, k)
     np.testing.assert_allclose(
         forces.force[2:4].mean(axis=0), -support.force[k], atol=3e-4 * np.hypot(*support.force[k])

@@ -4,7 +4,7 @@ from scipy.integrate import simpson
 
 import fem_reference as fr
 from fem_reference.state import contact_force
-from tests.fem_reference.conftest import PAIR, STRIP, B, E, loads, rotation, surfaces
+from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, B, E, loads, rotation, surfaces
 
 EI, GA = E * B**4 / 12, E / 2.6 * B**2 * 5 / 6
 # The Reissner rod on the KS path: force [N] and arc position [m] by load parameter (theory, section 7).
@@ -119,7 +119,7 @@ def test_pose_does_not_matter(problem, ks_face, case):
     scene = problem(path=tuple(path), contact={"side": side, "surface": "face"}, **ends)
     result = fr.solve(scene, ks_face.load_parameter[:10])
     contact, original = result.contacts[PAIR], ks_face.contacts[PAIR]
-    support, reference = result.supports[STRIP], ks_face.supports[STRIP]
+    (support,), reference = result.supports.values(), ks_face.supports[CLAMP]
     arc = 1 - contact.arc_position if case == "reversed" else contact.arc_position
     np.testing.assert_allclose(contact.force, original.force[:10], rtol=1e-8)
     np.testing.assert_allclose(arc, original.arc_position[:10], rtol=1e-8)
@@ -158,12 +158,12 @@ def test_small_deflection_is_the_timoshenko_beams(problem):
     result = fr.solve(problem(path=((0.8, 0.0), (0.8, 1e-4))), loads(1))
     expected = 1e-4 / (0.8**3 / (3 * EI) + 0.8 / GA)
     assert result.contacts[PAIR].force[0] == pytest.approx(expected, rel=1e-4)
-    assert result.supports[STRIP].moment[0] == pytest.approx(-0.8 * expected, rel=1e-4)
+    assert result.supports[CLAMP].moment[0] == pytest.approx(-0.8 * expected, rel=1e-4)
 
 
 def test_reaction_balances_the_contact_force(ks_face):
     model = ks_face.model
-    support = ks_face.supports[STRIP]
+    support = ks_face.supports[CLAMP]
     for state, force, moment in zip(ks_face.states, support.force, support.moment, strict=True):
         touch, pin = state.touches[0], model.problem.pins[0].position(state.t)
         p = contact_force(touch)
@@ -179,7 +179,7 @@ def test_gap_is_minus_the_penetration(ks_axis):
 def test_work_of_the_pin_is_the_stored_energy(ks_axis):
     """Integrate the pin's force along its path; Simpson's rule over 50 intervals is accurate to about 1e-5."""
     velocity = np.array([-1.0, 2 / np.pi])
-    power = np.append(0.0, -ks_axis.supports[STRIP].force @ velocity)
+    power = np.append(0.0, -ks_axis.supports[CLAMP].force @ velocity)
     work = simpson(power, x=np.append(0.0, ks_axis.load_parameter))
     assert work == pytest.approx(sum(fr.energy(ks_axis, -1)), rel=2e-5)
 

@@ -66,7 +66,7 @@ def dead_load(strip: "Strip", force: float, steps: int = 10) -> tuple[Array, Arr
     from fem_reference.body import build_body
 
     body = build_body(strip)
-    end = body.mesh.sections[[body.free_end]].toarray()[0]
+    end = body.mesh.sections[[-1]].toarray()[0]
     u = np.zeros_like(body.mesh.nodes)
     loads = np.multiply.outer(end, [0.0, force])
     for part in np.arange(1, steps + 1) / steps:
@@ -78,7 +78,7 @@ def dead_load(strip: "Strip", force: float, steps: int = 10) -> tuple[Array, Arr
                 break
         else:
             raise ArithmeticError(f"no equilibrium under {part:g} of the tip load")
-    reaction: Array = body.internal_force(u)[body.clamped_edge].sum(axis=0)
+    reaction: Array = body.internal_force(u)[body.mesh.edges["start"]].sum(axis=0)
     return end @ u, reaction
 
 

@@ -1,15 +1,21 @@
 """A scene as solid strips: plane stress, thickness equal to the width, unilateral contact."""
 
+from collections import defaultdict
 from math import sqrt
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, Scene
+from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.joints import rigid, structures
+from comparisons.scene.rules import Point
 
 if TYPE_CHECKING:
     from fem_reference import SolidProblem, Strip
 
-SLENDER = 0.1
+ENDS = ("start", "end")
+
+SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
 
@@ -19,7 +25,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     Parameters
     ----------
     scene : Scene
-        Beams, each clamped at one end and free at the other, with pins and contacts.
+        Any scene whose supports hold every structure also without contact.
     mesh : (int, int), optional
         Elements along and across of every beam, in place of the scene's.
 
@@ -28,16 +34,26 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     ModelError
         If the solid cannot state the scene.
     """
-    from fem_reference import Contact, EndLoad, Pin, SolidProblem
+    from fem_reference import Contact, EndLoad, Joint, Pin, SolidProblem, Support
 
-    if not scene.pins and not scene.loads:
-        raise ModelError("the solid model has a pin that moves or a dead load, the scene has none")
-    for load in scene.loads:
-        if load.moment:
-            raise ModelError(f'the solid model has no dead moments, the scene loads "{load.node}"')
+    for structure in structures(scene):
+        if not rigid(scene, structure):
+            names = ", ".join(f'"{beam.name}"' for beam in structure)
+            raise ModelError(f"the solid model needs supports that hold {names} also without contact")
+    joints = tuple(Joint(ends=ends) for ends in _joints(scene))
+    clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec)}
     return SolidProblem(
-        strips=tuple(_strip(beam, _clamp(scene, beam), mesh) for beam in scene.beams),
-        loads=tuple(EndLoad(strip=load.beam, force=load.force) for load in scene.loads),
+        strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
+        supports=tuple(
+            Support(strip=spec.beam, end=spec.end, motion=spec.motion)
+            for spec in scene.all_supports
+            if spec.node not in clamps
+        ),
+        joints=joints,
+        loads=tuple(
+            EndLoad(strip=load.beam, end=load.end, force=load.force, moment=load.moment)
+            for load in scene.loads
+        ),
         pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
             Contact(
@@ -54,20 +70,36 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     )
 
 
-def _clamp(scene: Scene, beam: BeamSpec) -> str:
-    """Return the clamped end of a beam that is held nowhere else."""
-    supports = scene.supports_of(beam.name)
-    if not supports or len(supports[0].held) < 3:
-        raise ModelError(f'the solid model has one end clamped, none of beam "{beam.name}" is')
-    clamp, *others = supports
-    if others:
-        raise ModelError(f'the solid model has one support, beam "{beam.name}" has two')
-    if clamp.moves:
-        raise ModelError(f'the solid model has the clamp at rest, "{clamp.node}" moves')
-    others_ends = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
-    if others_ends & {beam.start, beam.end}:
-        raise ModelError(f'the solid model has no joints, beam "{beam.name}" is joined to another')
-    return clamp.end
+def _joints(scene: Scene) -> list[tuple[str, ...]]:
+    """Return the ends that meet, joint by joint."""
+    meeting: dict[Point, list[str]] = defaultdict(list)
+    for beam in scene.beams:
+        for end in ENDS:
+            meeting[scene.place(f"{beam.name}.{end}")].append(f"{beam.name}.{end}")
+    return [tuple(ends) for ends in meeting.values() if len(ends) > 1]
+
+
+def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
+    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load.
+
+    Any other support holds the mean displacement and rotation of the end's section.
+
+    Raises
+    ------
+    ModelError
+        If the beam asks for a full clamp where its section is held.
+    """
+    if len(spec.held) < len(COMPONENTS):
+        return False
+    joined = any(spec.node in ends for ends in _joints(scene))
+    loaded = any(load.node == spec.node for load in scene.loads)
+    if not (spec.moves or joined or loaded):
+        return True
+    if scene.beam(spec.beam).solid_clamp == "full":
+        raise ModelError(
+            f'the solid model has a full clamp at rest without joint and load, "{spec.node}" is another'
+        )
+    return False
 
 
 def rectangle(beam: BeamSpec) -> tuple[float, float]:
@@ -87,12 +119,12 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     if height > SLENDER * beam.length:
         raise ModelError(
             f'the solid model needs the width and height of beam "{beam.name}": the rectangle of its area and second '
-            f"moment is {height:.3g} high, more than a tenth of the length"
+            f"moment is {height:.3g} high, more than an eighth of the length"
         )
     return area / height, height
 
 
-def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip":
+def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "Strip":
     from fem_reference import Strip
 
     width, height = rectangle(beam)
@@ -113,7 +145,7 @@ def _strip(beam: BeamSpec, clamped: str, mesh: tuple[int, int] | None) -> "Strip
         width=width,
         youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
-        clamped=(clamped,),
+        clamped=tuple(end for end in ENDS if f"{beam.name}.{end}" in clamps),
         clamp=beam.solid_clamp,
         element=beam.solid_element,
         mesh_file=beam.solid_mesh_file if mesh is None else None,

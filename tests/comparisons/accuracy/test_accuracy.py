@@ -132,10 +132,13 @@ def test_what_a_scene_requires():
     assert solid.model == "solid"
     assert "stocky, h/L = 0.2" in solid.decisions[0]
     assert solid.theory is None
-    joint = replace(stocky, pins=(), contacts=(), loads=(LoadSpec(beam=beam.name, end="end", moment=1e-5),))
-    loaded = solve_to(joint, 1e-2)
-    assert loaded.model == "tsm"
-    assert "but the solid model has no dead moments" in loaded.decisions[0]
+    load = LoadSpec(beam=beam.name, end="end", moment=1e-5)
+    loaded = replace(stocky, pins=(), contacts=(), loads=(load,))
+    assert solve_to(loaded, 1e-2).model == "solid"
+    full = replace(loaded.beams[0], solid_clamp="full")
+    other = solve_to(replace(loaded, beams=(full,), loads=(load, replace(load, end="start"))), 1e-2)
+    assert other.model == "tsm"
+    assert "but the solid model has a full clamp at rest" in other.decisions[0]
 
 
 def test_stress_is_the_solids():
