@@ -2,17 +2,29 @@
 
 from collections.abc import Callable
 
-from comparisons.claims.manual import convergence, elastica, frames, invariance, loads, rods
+from comparisons.claims.manual import (
+    columns,
+    contacts,
+    convergence,
+    elastica,
+    frames,
+    invariance,
+    loads,
+    rods,
+)
 from comparisons.claims.manual.record import Problem
 
 PROBLEMS: tuple[Callable[[], Problem], ...] = (
     loads.dead_load,
     loads.roll_up,
-    loads.euler,
-    loads.haringx,
-    loads.post_buckling,
+    columns.euler,
+    columns.haringx,
+    columns.post_buckling,
+    columns.clamped_column,
+    columns.pinned_column,
     frames.lee,
     frames.toggle,
+    frames.portal,
     rods.short_cantilever,
     elastica.ks_elastica,
     elastica.identity,
@@ -25,6 +37,9 @@ PROBLEMS: tuple[Callable[[], Problem], ...] = (
     rods.ks_tied,
     rods.slip_off_41,
     rods.double_beam,
+    contacts.two_pins,
+    contacts.crossed_beams,
+    contacts.touch_again,
     convergence.mixed_order,
     convergence.paper_order,
     convergence.thin_strips,

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -14,8 +15,10 @@ from comparisons.claims.claim import Allowance, Quantity, StoppedError, Verdict
 from comparisons.claims.junit import JUnitCase, junit_text
 from comparisons.claims.manual import Case, Problem, Trial, write_manual
 from comparisons.claims.manual import write as manual_write
-from comparisons.claims.manual.elastica import identity, slip_off
-from comparisons.claims.manual.frames import toggle
+from comparisons.claims.manual.columns import clamped_column, pinned_column
+from comparisons.claims.manual.contacts import crossed_beams, touch_again, two_pins
+from comparisons.claims.manual.elastica import identity, slip_off, three_point_bending
+from comparisons.claims.manual.frames import portal, toggle
 from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.loads import dead_load, roll_up
 from comparisons.claims.manual.pictures import STYLES
@@ -26,13 +29,14 @@ from comparisons.claims.manual.text import junit_cases, markdown
 from comparisons.cli import main
 from comparisons.files import OutputError
 from comparisons.models import solve
+from comparisons.scene import Scene, load_scene
 
 
 def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.01) -> Problem:
     """A problem with the exact values 2 and 0, and models that answer so."""
 
     def trial(answer: "tuple[float, ...] | StoppedError") -> Trial:
-        def measure() -> Measured:
+        def measure(_: Scene) -> Measured:
             if isinstance(answer, StoppedError):
                 raise answer
             return Measured(values=answer, curves=(Curve(style="rod", points=np.eye(2)),))
@@ -43,6 +47,9 @@ def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.0
     return Problem(
         name="made-up",
         title="Made | up",
+        purpose="None.",
+        uncertainty=0.0,
+        scene=load_scene("tip-load"),
         statement="Nothing.",
         source="nowhere",
         quantities=(Quantity(name="a", exact=2.0), Quantity(name="|b|", exact=0.0, scale=4.0)),
@@ -250,13 +257,31 @@ def test_problems_state_what_they_must():
             assert trial.allowance.why
 
 
+BUILT_IN = (
+    clamped_column,
+    pinned_column,
+    portal,
+    three_point_bending,
+    two_pins,
+    crossed_beams,
+    touch_again,
+)
+"""Problems of the built-in scenes without a test of their own in `tests/verification`."""
+
+
+@pytest.mark.parametrize("state", BUILT_IN, ids=lambda state: str(state.__name__))
+def test_a_problem_of_a_built_in_scene_passes(state: Callable[[], Problem]):
+    case, _ = answered(state(), "p.svg")
+    assert [item.failure for item in case.judgements if not item.passed] == []
+
+
 @pytest.mark.slow
 def test_the_whole_manual_passes(tmp_path: Path):
     manual = write_manual(tmp_path, lambda _: None)
     items = [item for case in manual.cases for item in case.judgements]
     wrong = [item.failure for item in items if not item.passed]
     assert wrong == []
-    assert len(manual.cases) == len(PROBLEMS) == len({case.problem.name for case in manual.cases}) == 28
+    assert len(manual.cases) == len(PROBLEMS) == len({case.problem.name for case in manual.cases}) == 34
     assert all(item.claim.allowance.why and item.claim.allowance.error <= 0.3 for item in items)
     assert {trial.model for case in manual.cases for trial in case.problem.trials} >= {
         "tsm exact",
