@@ -1,6 +1,7 @@
 """Cases of contact with several pins or beams, or with several touches."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from comparisons.claims.claim import Quantity
 from comparisons.claims.manual.models import (
     EXACT,
     FOURTH,
+    ROD,
     SECOND,
     answered,
     mixed,
@@ -19,7 +21,6 @@ from comparisons.claims.manual.models import (
 from comparisons.claims.manual.record import Picture, Problem, Trial
 from comparisons.claims.manual.scenes import MM, PAIR
 from comparisons.exact.rod import rod_under_pin
-from comparisons.referee import SearchStatus, answer_state, equilibrium
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
 
@@ -31,22 +32,20 @@ REFEREE = (
 
 
 def _at_the_end(scene: Scene) -> tuple[Quantity, ...]:
-    """Return forces and arc positions of all contacts at the whole load, by the referee."""
-    response = answered(scene, EXACT)
-    exact = equilibrium(scene, answer_state(response, scene, len(response.load_parameter) - 1))
-    assert exact.status is SearchStatus.FOUND, exact.message
+    """Return forces and arc positions of all contacts at the whole load, by exact rods."""
+    values = _read_at_the_end(answered(replace(scene, load_parameters=2), ROD))
     force, length = (unit.strip() for unit in scene.units.split(","))
-    return tuple(
-        quantity
-        for pair, contact in exact.contacts.items()
-        for quantity in (
-            Quantity(name=f"F of {pair} [{force}]", exact=contact.push),
-            Quantity(
-                name=f"s of {pair} [{length}]",
-                exact=contact.arc_position,
-                scale=scene.beam(pair.partition("->")[2]).length,
-            ),
+    named = [
+        one
+        for contact in scene.contacts
+        for one in (
+            (f"F of {contact.pair} [{force}]", None),
+            (f"s of {contact.pair} [{length}]", scene.beam(contact.beam).length),
         )
+    ]
+    return tuple(
+        Quantity(name=name, exact=value, scale=scale)
+        for (name, scale), value in zip(named, values, strict=True)
     )
 
 
