@@ -38,17 +38,21 @@ def add_to(commands: "Commands") -> None:
         metavar="DIR",
         help="write every problem as a JSON file with its scene, values and source, and solve nothing",
     )
+    manual.add_argument("--only", nargs="+", metavar="NAME", help="these problems only")
     manual.add_argument("--quiet", action="store_true", help="no line for each case")
     manual.set_defaults(run=run)
 
 
 def run(given: "argparse.Namespace") -> int:
     """Solve, write, name what failed; or write the cards."""
+    from comparisons.claims.manual.problems import named
+
     watch: Report = (lambda _: None) if given.quiet else report
+    problems = named(given.only)
     if given.cards is not None:
         from comparisons.claims.manual.cards import write_cards
 
-        cards = write_cards(given.cards, watch)
+        cards = write_cards(given.cards, watch, problems)
         print(f"{len(cards) - 1} cards and their schema in {given.cards}")
         return DONE
     writable_folder(given.out)
@@ -57,7 +61,7 @@ def run(given: "argparse.Namespace") -> int:
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.text import junit_cases
 
-    manual = write_manual(given.out, watch)
+    manual = write_manual(given.out, watch, problems)
     if file is not None:
         write_text(file, junit_text("crossval manual", junit_cases(manual.cases)))
     answers = [(case, one) for case in manual.cases for one in case.judgements]

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.claims.claim import Quantity
-from comparisons.claims.manual.problems import PROBLEMS
 from comparisons.claims.manual.record import Problem
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, plain
@@ -118,9 +117,7 @@ def _record(properties: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def write_cards(
-    folder: Path, report: Report, problems: Sequence[Callable[[], Problem]] | None = None
-) -> tuple[Path, ...]:
+def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Problem]]) -> tuple[Path, ...]:
     """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``.
 
     Parameters
@@ -129,8 +126,8 @@ def write_cards(
         Made if it is not there.
     report : callable
         Takes a line for each card.
-    problems : sequence of callable, optional
-        All problems of the manual if not given.
+    problems : sequence of callable
+        Of `comparisons.claims.manual.problems.named`.
 
     Returns
     -------
@@ -144,7 +141,7 @@ def write_cards(
     """
     writable_folder(folder)
     files = []
-    for state in PROBLEMS if problems is None else problems:
+    for state in problems:
         problem = state()
         files.append(_written(folder / f"{problem.name}.json", card(problem)))
         report(f"{problem.name}: {len(problem.quantities)} quantities")
