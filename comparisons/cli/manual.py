@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     import argparse
 
     from comparisons.cli.outcome import Commands
+    from comparisons.output import Report
 
 MANUAL_EPILOG = """exit status: 0 every answer is within its tolerance, 1 one is not (named, with its numbers) or a solution stopped,
 2 bad input or a place that cannot be written in, 130 interrupted"""
@@ -31,19 +32,36 @@ def add_to(commands: "Commands") -> None:
         help="folder of the manual (out/manual)",
     )
     manual.add_argument("--junit", type=Path, metavar="FILE", help="write every case and model as JUnit XML")
+    manual.add_argument(
+        "--cards",
+        type=Path,
+        metavar="DIR",
+        help="write every problem as a JSON file with its scene, values and source, and solve nothing",
+    )
+    manual.add_argument("--only", nargs="+", metavar="NAME", help="these problems only")
     manual.add_argument("--quiet", action="store_true", help="no line for each case")
     manual.set_defaults(run=run)
 
 
 def run(given: "argparse.Namespace") -> int:
-    """Solve, write, name what failed."""
+    """Solve, write, name what failed; or write the cards."""
+    from comparisons.claims.manual.problems import named
+
+    watch: Report = (lambda _: None) if given.quiet else report
+    problems = named(given.only)
+    if given.cards is not None:
+        from comparisons.claims.manual.cards import write_cards
+
+        cards = write_cards(given.cards, watch, problems)
+        print(f"{len(cards) - 1} cards and their schema in {given.cards}")
+        return DONE
     writable_folder(given.out)
     file = None if given.junit is None else writable_file(given.junit)
     from comparisons.claims.junit import junit_text
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.text import junit_cases
 
-    manual = write_manual(given.out, (lambda _: None) if given.quiet else report)
+    manual = write_manual(given.out, watch, problems)
     if file is not None:
         write_text(file, junit_text("crossval manual", junit_cases(manual.cases)))
     answers = [(case, one) for case in manual.cases for one in case.judgements]

@@ -5,12 +5,13 @@ All rods have the same section. A rod has the angle `a` of its undeformed axis, 
 
     theta' = m/EI,   r' = (1 + n.d1/EA) d1 + (n.d2/GA) d2,   m' = -r' x n
 
-n is constant, except that it changes by `(0, P)` at the joint with the load `(0, -P)`. The equations are solved by shooting. They
+n is constant, except that it changes by `-P d` at the joint with the load `P d`, d a unit vector. The equations are solved by shooting. They
 are integrated from the first support to the last by spectral collocation. The four unknowns are n and the moment (at a hinge the
 rotation) at the first support, and P. The four equations prescribe the position of the last support, its rotation (at a hinge
-the moment) and the deflection of the loaded joint. With a prescribed deflection, limit points of the load are regular points.
+the moment) and the deflection of the loaded joint along d. With a prescribed deflection, limit points of the load are regular points.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,6 +35,8 @@ class Chain:
         Positions from the first support to the last.
     loaded : int
         Index of the loaded joint.
+    direction : (float, float)
+        Unit vector d of the load, downwards by default.
     clamped : bool
         Whether both supports are clamped; otherwise they are hinges.
     EA, GA, EI : float
@@ -42,7 +45,7 @@ class Chain:
     Raises
     ------
     ValueError
-        If a stiffness is not positive, or the loaded joint is a support.
+        If a stiffness is not positive, the loaded joint is a support, or the direction is no unit vector.
     """
 
     joints: tuple[tuple[float, float], ...]
@@ -51,12 +54,15 @@ class Chain:
     EA: float
     GA: float
     EI: float
+    direction: tuple[float, float] = (0.0, -1.0)
 
     def __post_init__(self) -> None:
         require_positive(EI=self.EI)
         require_stiffness(EA=self.EA, GA=self.GA)
         if not 0 < self.loaded < len(self.joints) - 1:
             raise ValueError(f"loaded = {self.loaded}: must be a joint between the supports")
+        if abs(math.hypot(*self.direction) - 1.0) > 1e-12:
+            raise ValueError(f"direction = {self.direction}: must be a unit vector")
 
     @property
     def size(self) -> float:
@@ -65,7 +71,7 @@ class Chain:
 
 
 def load_path(chain: Chain, deflections: ArrayLike) -> NDArray[np.float64]:
-    """Return the load P at increasing deflections of the loaded joint, shape (s,).
+    """Return the load P at increasing deflections of the loaded joint along the load, shape (s,).
 
     Raises
     ------
@@ -118,7 +124,9 @@ def _end_residual(chain: Chain, unknowns: Array, deflection: float) -> Array:
         section = integrate(start_of_rod, (nx, ny), np.hypot(*rod) + zero, flexibility)
         section = section._replace(theta=section.theta - angle)
         if k + 1 == chain.loaded:
-            excess = section.y - joints[k + 1, 1] + deflection
-            ny = ny + load
+            dx, dy = chain.direction
+            x, y = joints[k + 1]
+            excess = (section.x - x) * dx + (section.y - y) * dy - deflection
+            nx, ny = nx - load * dx, ny - load * dy
     last = section.theta if chain.clamped else section.moment
     return np.stack([section.x - joints[-1, 0], section.y - joints[-1, 1], last, excess])

@@ -6,7 +6,7 @@ from comparisons.scene.read import built_in_scenes, load_scene, read_scene
 from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import InputError, SceneError
-from comparisons.scene.toml import to_toml
+from comparisons.scene.toml import to_tables, to_toml
 
 __all__ = [
     "BeamSpec",
@@ -21,5 +21,6 @@ __all__ = [
     "built_in_scenes",
     "load_scene",
     "read_scene",
+    "to_tables",
     "to_toml",
 ]

@@ -1,4 +1,4 @@
-"""A scene as TOML text."""
+"""A scene as tables and as TOML text."""
 
 from dataclasses import fields
 from typing import Any
@@ -6,12 +6,22 @@ from typing import Any
 from comparisons.scene.records import Scene
 from comparisons.scene.values import toml_value
 
+Table = dict[str, Any]
 
-def _table(header: str, record: Any, leave: tuple[str, ...] = ()) -> str:
+
+def _table(record: Any, leave: tuple[str, ...] = ()) -> Table:
     given = ((item.name, getattr(record, item.name)) for item in fields(record) if item.name not in leave)
-    return "\n".join(
-        [header, *(f"{name} = {toml_value(value)}" for name, value in given if value is not None)]
-    )
+    return {name: value for name, value in given if value is not None}
+
+
+def to_tables(scene: Scene) -> dict[str, Table | list[Table]]:
+    """Return the tables of a scene file that states `scene`, every key written out: ``scene``, and a list for each kind of record."""
+    lists = {f"{kind}s": kind for kind in ("beam", "support", "load", "pin", "contact")}
+    tables: dict[str, Table | list[Table]] = {"scene": _table(scene, leave=tuple(lists))}
+    for name, kind in lists.items():
+        if records := getattr(scene, name):
+            tables[kind] = [_table(record) for record in records]
+    return tables
 
 
 def to_toml(scene: Scene) -> str:
@@ -24,9 +34,11 @@ def to_toml(scene: Scene) -> str:
     >>> read_scene(to_toml(scene), "copy") == scene
     True
     """
-    lists = {f"{kind}s": kind for kind in ("beam", "support", "load", "pin", "contact")}
-    tables = [_table("[scene]", scene, leave=tuple(lists))]
-    tables += [
-        _table(f"[[{kind}]]", record) for name, kind in lists.items() for record in getattr(scene, name)
-    ]
-    return "\n\n".join(tables) + "\n"
+    texts = []
+    for kind, tables in to_tables(scene).items():
+        header, rows = (f"[[{kind}]]", tables) if isinstance(tables, list) else (f"[{kind}]", [tables])
+        texts += [
+            "\n".join([header, *(f"{key} = {toml_value(value)}" for key, value in row.items())])
+            for row in rows
+        ]
+    return "\n\n".join(texts) + "\n"

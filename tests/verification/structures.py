@@ -11,14 +11,12 @@ from comparisons.scene import load_scene
 
 PINS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 """Places of the pin in [P] 4.1."""
-KS = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
-SECTIONS = {
-    "4.1": (tsm.Section(EA=2.1e11 * 0.005, GA=7.5e10 * 0.005, EI=2.1e11 * 0.001), 4.5),
-    "4.2": (KS, 1.0),
-    "4.3": (tsm.Section(EA=2e7 * 3e-4, GA=7.142e6 * 3e-4, EI=2e7 * 2.2e-8), 1.0),
-}
+EXAMPLES = {"4.1": "cantilever-critical-area", "4.2": "ks-cantilever", "4.3": "double-beam"}
+BEAMS = {example: to_structure(load_scene(scene)).beams[0] for example, scene in EXAMPLES.items()}
+SECTIONS = {example: (beam.section, beam.length) for example, beam in BEAMS.items()}
 """Sections and lengths of the beams of [P]."""
-KS_PATH = ((1.0, 0.0), (0.0, 2 / np.pi))
+KS = BEAMS["4.2"].section
+KS_PATH = load_scene("ks-cantilever").pins[0].points
 
 
 def steps(count):

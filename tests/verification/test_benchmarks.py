@@ -8,6 +8,7 @@ import pytest
 import tsm
 from comparisons.claims.problems.frames import LEE_UNIT, lee_limit, lee_scene, toggle_limits, toggle_scene
 from comparisons.exact.elastica import three_point_bending_limit
+from comparisons.scene import load_scene
 from tests.verification.structures import cantilever, divided, limit_points, moved, raised, swapped
 
 STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)
@@ -85,15 +86,10 @@ def test_williams_toggle():
 
 def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
     """Pushing the apex down and reading the reaction gives the same two limits."""
-    structure = divided(toggle_scene(), 16)
-    pushed = tsm.Structure(
-        beams=structure.beams,
-        supports=(*structure.supports, tsm.Support(beam="left", end="end", ux=None, uy=-0.6, rotation=None)),
-    )
-    result = tsm.solve(pushed, np.arange(1, 601) / 600)
+    result = tsm.solve(divided(load_scene("williams-toggle"), 16), np.arange(1, 601) / 600)
     force = 2 * result.supports["right"].force[:, 1]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(force)))) + 1
-    assert force[turns] == pytest.approx(limit_points(structure, 0.01, 60), rel=1e-4)
+    assert force[turns] == pytest.approx(limit_points(divided(toggle_scene(), 16), 0.01, 60), rel=1e-4)
 
 
 def test_three_point_bending_has_its_limit():

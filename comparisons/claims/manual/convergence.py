@@ -43,8 +43,8 @@ def _force_error(scene: Scene, model: Model, exact: Array) -> float:
     return float(np.abs(force - exact).max() / exact.max())
 
 
-def _orders(model: Model, tolerance: float, scene: Scene, exact: Array) -> Trial:
-    def measure() -> Measured:
+def _orders(model: Model, tolerance: float, exact: Array) -> Trial:
+    def measure(scene: Scene) -> Measured:
         errors = np.array(
             [
                 _force_error(scene, replace(model, options=replace(model.options, elements=n)), exact)
@@ -76,13 +76,16 @@ def _element_order(name: str, title: str, order: int, model: Model, tolerance: f
     return Problem(
         name=name,
         title=title,
+        purpose="The order in which an element converges in contact.",
+        uncertainty=0.0,
+        scene=scene,
         statement=f"The main scene on {counts} elements: the largest error of the contact force over 20 load parameters, over the largest force.",
         source={
             4: "the error of a cubic element's strains, of fourth order in the energy",
             2: "chords in place of arcs: the error of the bow that is left out, of second order",
         }[order],
         quantities=(Quantity(name="order", exact=float(order), scale=1.0),),
-        trials=(_orders(replace(model, setting=f"{counts} elements"), tolerance, scene, exact),),
+        trials=(_orders(replace(model, setting=f"{counts} elements"), tolerance, exact),),
         picture=Picture(
             axes=("elements", "error of the contact force"),
             curves=(_guide(ELEMENTS, -float(order), {4: 1e-4, 2: 2e-2}[order]),),
@@ -97,13 +100,13 @@ HEIGHTS = (0.02, 0.01, 0.005)
 
 def thin_strips() -> Problem:
     """The solid becomes the rod as the square of the height."""
-    model = solid(50, 2)
+    scene, model = half_way(ks(material="biot-linear"), penetration=1e-10), solid(50, 2)
 
-    def measure() -> Measured:
+    def measure(scene: Scene) -> Measured:
         found = []
         for height in HEIGHTS:
-            scene = half_way(ks(height=height, material="biot-linear"), penetration=1e-10)
-            found.append(_force_error(scene, model, answered(scene, ROD).contacts[PAIR].force))
+            strip = replace(scene, beams=(replace(scene.beams[0], height=height),))
+            found.append(_force_error(strip, model, answered(strip, ROD).contacts[PAIR].force))
         errors = np.array(found)
         curve = Curve(style=model.name, points=np.stack([np.array(HEIGHTS), errors], axis=1))
         return Measured(values=(_slope(HEIGHTS, errors),), curves=(curve,))
@@ -111,6 +114,9 @@ def thin_strips() -> Problem:
     return Problem(
         name="thin-strips",
         title="The solid becomes the rod as the strip gets thin",
+        purpose="Agreement of the solid with rod theory in the limit.",
+        uncertainty=0.0,
+        scene=scene,
         statement="The first half of the main scene with h/L = .02, .01 and .005, the solid of the rod's own law (stress linear in Biot's strain): the largest "
         "difference of the contact force from the exact rod's, over the largest force.",
         source="a rod is what is left of a strip for h -> 0, the next term is of the order h^2",
@@ -137,19 +143,22 @@ PENALTIES = (1e2, 1e4, 1e6, 1e8, 1e10)
 
 def penalty() -> Problem:
     """The penetration falls as the inverse of the penalty."""
-    model = solid(25, 2)
+    scene, model = half_way(ks(load_parameters=10)), solid(25, 2)
 
-    def measure() -> Measured:
+    def measure(scene: Scene) -> Measured:
         depths = []
         for value in PENALTIES:
-            scene = half_way(ks(load_parameters=10), penalty=value)
-            depths.append(-answered(scene, model).contacts[PAIR].gap[-1])
+            sprung = replace(scene, contacts=(replace(scene.contacts[0], penalty=value),))
+            depths.append(-answered(sprung, model).contacts[PAIR].gap[-1])
         curve = Curve(style=model.name, points=np.stack([np.array(PENALTIES), np.array(depths)], axis=1))
         return Measured(values=(_slope(PENALTIES, np.array(depths)),), curves=(curve,))
 
     return Problem(
         name="penalty-slope",
         title="The penetration falls as the inverse of the penalty",
+        purpose="The effect of a penalty on the penetration.",
+        uncertainty=0.0,
+        scene=scene,
         statement="The main scene half way, the solid with contact stiffnesses of 1e2 to 1e10 N/m: the depth by which the pin enters the axis.",
         source="a penalty eps is a spring: depth = F/eps, and F has a limit",
         quantities=(Quantity(name="slope", exact=-1.0),),
@@ -178,7 +187,7 @@ def locking() -> Problem:
     rod = answered(rod_scene, ROD)
     model = solid(50, 2)
 
-    def measure() -> Measured:
+    def measure(scene: Scene) -> Measured:
         import fem_reference
 
         problem = to_solid(scene, mesh=model.options.mesh)
@@ -186,7 +195,7 @@ def locking() -> Problem:
         result = fem_reference.solve(problem, np.array(scene.times), throw=False)
         if result.status is not fem_reference.Status.COMPLETED:
             raise StoppedError(f"{result.status.name}: {result.message}")
-        contact, name = result.contacts[PAIR], beam.name
+        contact, name = result.contacts[PAIR], scene.beams[0].name
         line = Curve(style=model.name, points=fem_reference.axis_line(result, name, -1))
         return Measured(values=(float(contact.force[-1]), float(contact.arc_position[-1])), curves=(line,))
 
@@ -194,6 +203,9 @@ def locking() -> Problem:
     return Problem(
         name="locking",
         title="A thin, nearly incompressible strip does not lock",
+        purpose="Volumetric locking of the solid.",
+        uncertainty=1e-5,
+        scene=scene,
         statement=f"The main scene half way in plane strain, h/L = {height}, nu = {nu}, the solid of the rod's own law. Elements that lock are too stiff by hundreds "
         "of per cent here.",
         source="Reissner's rod by quadratures (comparisons.exact.rod) with E/(1 - nu^2) in place of E, which is plane strain",

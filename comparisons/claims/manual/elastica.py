@@ -1,6 +1,6 @@
 """Cases of the elastica under a pin: an inextensible, shear-rigid cantilever, in closed form."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +23,7 @@ from comparisons.claims.manual.models import (
     undeformed,
 )
 from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
-from comparisons.claims.manual.scenes import ELASTICA_TEXT, PAIR, cantilever, ks, under_pin
+from comparisons.claims.manual.scenes import ELASTICA_TEXT, INFINITE, PAIR, cantilever, ks, rigid, under_pin
 from comparisons.claims.problems.peaks import summit
 from comparisons.exact.elastica import (
     contact_force_limit,
@@ -31,7 +31,8 @@ from comparisons.exact.elastica import (
     slip_off_displacement,
     three_point_bending_limit,
 )
-from comparisons.response import Response
+from comparisons.response import Array, Response
+from comparisons.scene import Scene, load_scene
 
 KS_END = (0.0, 2.0 / np.pi)
 TIMES = (0.25, 0.5, 0.75, 1.0)
@@ -60,15 +61,18 @@ def ks_elastica() -> Problem:
     return Problem(
         name="ks-elastica",
         title="Pin that slides along a cantilever, elastica",
+        purpose="Sliding contact against a closed form, without stretch and shear.",
+        uncertainty=1e-12,
+        scene=scene,
         statement=f"A cantilever, {ELASTICA_TEXT}; a frictionless pin starts at its tip (1, 0), moves straight to (0, 2/pi) and bends it by "
         "143 degrees: the path of Konyukhov and Schweizerhof. The clamp moment at the end is pi EI/L.",
         source="closed form by elliptic integrals of the tangent angle tc at the pin, y/x = tan(tc - arctan(I2/I1)), "
         "F = EI (I1^2 + I2^2)/(2 (x^2 + y^2)) (comparisons.exact.elastica)",
         quantities=tuple(quantities),
         trials=(
-            on_scene(scene, EXACT, 1e-8, RIGID, read, TIMES),
-            on_scene(scene, mixed(20), 3e-6, FOURTH, read, TIMES),
-            on_scene(scene, paper(20), 1e-2, SECOND, read, TIMES),
+            on_scene(EXACT, 1e-8, RIGID, read, TIMES),
+            on_scene(mixed(20), 3e-6, FOURTH, read, TIMES),
+            on_scene(paper(20), 1e-2, SECOND, read, TIMES),
         ),
         picture=Picture(curves=(*undeformed(scene), pieces(ANSWER, (state.shape(401) for state in exact)))),
     )
@@ -93,6 +97,9 @@ def identity() -> Problem:
     return Problem(
         name="elastica-identity",
         title="Force, place and direction of a frictionless contact",
+        purpose="The direction of a frictionless contact force: normal to the axis.",
+        uncertainty=1e-15,
+        scene=scene,
         statement=f"A cantilever, {ELASTICA_TEXT}; a frictionless pin moves from (.9, 0) to (.4, .5). What is compared holds for any pin, "
         "with the contact force's own direction: tc is the angle of the tangent that is normal to it.",
         source="closed form, first integral of the elastica: F (x cos tc + y sin tc)^2 = 2 EI sin tc",
@@ -101,8 +108,8 @@ def identity() -> Problem:
             for t in (0.3, 0.6, 1.0)
         ),
         trials=(
-            on_scene(scene, EXACT, 1e-8, RIGID, read),
-            on_scene(scene, mixed(20), 1e-6, FOURTH, read),
+            on_scene(EXACT, 1e-8, RIGID, read),
+            on_scene(mixed(20), 1e-6, FOURTH, read),
         ),
         picture=Picture(
             curves=(*undeformed(scene), pieces(ANSWER, [elastica_under_pin(*path[-1]).shape(401)]))
@@ -114,20 +121,16 @@ LONG = cantilever(length=3.0)
 HIGHEST = 0.8
 
 
-def _limit(model: Model, tolerance: float, reason: str, force: str) -> Trial:
-    """Return the trial that raises a pin at x = 1 and reads the greatest force, and where it occurs."""
-    scene = under_pin(LONG, (1.0, 0.0), (1.0, HIGHEST), load_parameters=64)
+def _limit(model: Model, read: Callable[[Scene, Response], Array]) -> Trial:
+    """Return the trial that reads the greatest load and its place from columns of displacements and loads."""
 
-    def measure() -> Measured:
+    def measure(scene: Scene) -> Measured:
         response = answered(scene, model)
-        height = HIGHEST * response.load_parameter
-        vector = response.contacts[PAIR].vector
-        assert vector is not None, "it states the force's direction"
-        load = 2.0 * vector[:, 1] if force == "vertical" else response.contacts[PAIR].force
-        curve = Curve(style=model.name, points=np.stack([height, load], axis=1))
+        curve = Curve(style=model.name, points=read(scene, response))
+        height, load = curve.points.T
         return Measured(values=summit(height, load), curves=(curve,))
 
-    return trial(model, tolerance, reason, measure)
+    return trial(model, 1e-7, READ_OFF if model == EXACT else FOURTH, measure)
 
 
 def _limit_curve(force: str) -> Curve:
@@ -140,9 +143,17 @@ def _limit_curve(force: str) -> Curve:
 def force_limit() -> Problem:
     """Greatest contact force of a pin that is raised."""
     exact = contact_force_limit()
+    scene = under_pin(LONG, (1.0, 0.0), (1.0, HIGHEST), load_parameters=64)
+
+    def read(_: Scene, response: Response) -> Array:
+        return np.stack([HIGHEST * response.load_parameter, response.contacts[PAIR].force], axis=1)
+
     return Problem(
         name="force-limit",
         title="Greatest contact force of a raised pin",
+        purpose="A contact force that falls while the pin moves on.",
+        uncertainty=1e-12,
+        scene=scene,
         statement=f"A long cantilever, {ELASTICA_TEXT.replace('L = 1 m', 'L = 3 m')}, is lifted by a frictionless pin at x = a = 1 m. "
         "The force grows, has a maximum and falls, since the beam turns away.",
         source="closed form: F = EI X(tc)^2/(2 a^2) where X' = 0 (comparisons.exact.elastica)",
@@ -151,8 +162,8 @@ def force_limit() -> Problem:
             Quantity(name="height over a", exact=exact.displacement),
         ),
         trials=(
-            _limit(EXACT, 1e-7, READ_OFF, "normal"),
-            _limit(mixed(60), 1e-7, FOURTH, "normal"),
+            _limit(EXACT, read),
+            _limit(mixed(60), read),
         ),
         picture=Picture(axes=("height/a", "F a^2/EI"), curves=(_limit_curve("normal"),), shape=False),
     )
@@ -164,19 +175,31 @@ READ_OFF = "the maximum is read off a polynomial through eleven load parameters 
 def three_point_bending() -> Problem:
     """Limit load of three-point bending without friction."""
     exact = three_point_bending_limit()
+    scene = replace(rigid(load_scene("three-point-bending")), load_parameters=56)
+
+    def read(scene: Scene, response: Response) -> Array:
+        (a, _), EI = scene.pins[1].points[0], scene.beams[0].EI
+        rise = (scene.pins[1].displacement or (0.0, 0.0))[1]
+        load = -response.supports["left"].force[:, 1]
+        return np.stack([rise / a * response.load_parameter, load * a**2 / EI], axis=1)
+
     return Problem(
         name="three-point-bending",
         title="Limit load of frictionless three-point bending",
-        statement="A beam over two frictionless supports, half span a = 1 m, EI = 1 N m^2, is pressed down in the middle by the load P "
-        "until it slides through. Half of it is the cantilever of the case before: P is twice the vertical part of the contact force.",
+        purpose="Sliding supports, and a limit load that sliding alone causes.",
+        uncertainty=1e-12,
+        scene=scene,
+        statement="A beam of 600 mm over two frictionless supports, half span a = 100 mm, EI = 1,400,000 N mm^2, neither stretch nor shear "
+        f"(EA = GA = {INFINITE:g} EI/L^2 in their place), is bent by the load P on a hinge in the middle, until it slides through: "
+        "the supports rise. Half of it is the cantilever of the case before.",
         source="closed form: P = EI cos tc X(tc)^2/a^2 where 2 X' cos tc = X sin tc (comparisons.exact.elastica)",
         quantities=(
             Quantity(name="P a^2/EI", exact=exact.load),
             Quantity(name="deflection over a", exact=exact.displacement),
         ),
         trials=(
-            _limit(EXACT, 1e-7, READ_OFF, "vertical"),
-            _limit(mixed(60), 1e-7, FOURTH, "vertical"),
+            _limit(EXACT, read),
+            _limit(mixed(60), read),
         ),
         picture=Picture(axes=("deflection/a", "P a^2/EI"), curves=(_limit_curve("vertical"),), shape=False),
     )
@@ -187,25 +210,27 @@ def slip_off() -> Problem:
     height = 0.6
     scene = under_pin(BEAM, (0.8, 0.0), (0.8, height), load_parameters=12, name="slip-off")
     strip = ks(load_parameters=12)
-    strip = replace(strip, pins=scene.pins)
 
     def read(response: Response) -> Sequence[float]:
         return (height * response.contacts[PAIR].slip_off,)
+
+    on_strip = on_scene(solid(50, 2), 5e-4, "a strip with h/L = .02 stretches and shears", read, (10 / 12,))
 
     before = elastica_under_pin(0.8, height * 10 / 12)
     return Problem(
         name="slip-off",
         title="A raised pin leaves the beam over its tip",
+        purpose="The instant at which a contact leaves a beam over its tip.",
+        uncertainty=1e-12,
+        scene=scene,
         statement=f"A cantilever, {ELASTICA_TEXT}, is lifted by a frictionless pin at x = .8 m, along which it slides down, until its tip has passed. "
         "The solid is the strip of the main scene, h/L = .02.",
         source="closed form: x/L = X(tc)/I0(tc), d/L = Y(tc)/I0(tc) (comparisons.exact.elastica)",
         quantities=(Quantity(name="d/L", exact=slip_off_displacement(0.8)),),
         trials=(
-            on_scene(scene, EXACT, 1e-8, RIGID, read, (10 / 12,)),
-            on_scene(scene, mixed(20), 1e-7, FOURTH, read, (10 / 12,)),
-            on_scene(
-                strip, solid(50, 2), 5e-4, "a strip with h/L = .02 stretches and shears", read, (10 / 12,)
-            ),
+            on_scene(EXACT, 1e-8, RIGID, read, (10 / 12,)),
+            on_scene(mixed(20), 1e-7, FOURTH, read, (10 / 12,)),
+            replace(on_strip, measure=lambda scene: on_strip.measure(replace(strip, pins=scene.pins))),
         ),
         picture=Picture(curves=(*undeformed(scene), pieces(ANSWER, [before.shape(401)]))),
     )

@@ -5,30 +5,47 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.claims.claim import Quantity, StoppedError
-from comparisons.claims.manual.models import ANSWER, EXACT, FOURTH, SECOND, Model, mixed, paper, trial
+from comparisons.claims.manual.models import (
+    ANSWER,
+    EXACT,
+    FOURTH,
+    SECOND,
+    Model,
+    mixed,
+    on_scene,
+    paper,
+    trial,
+    undeformed,
+)
 from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
+from comparisons.claims.manual.scenes import MM
 from comparisons.claims.problems.frames import (
     LEE_DOWN,
+    LEE_FORCE,
     LEE_UNIT,
     TOGGLE_DOWN,
+    TOGGLE_FORCE,
     exact_path,
     lee_limit,
     lee_scene,
+    portal_sway,
     toggle_limits,
     toggle_scene,
+    under_load,
 )
 from comparisons.models.translate import to_structure
-from comparisons.scene import Scene
+from comparisons.response import Response
+from comparisons.scene import Scene, load_scene
 
 
 @dataclass(frozen=True, kw_only=True)
 class Path:
-    """A frame's path under its load, how it is followed and drawn.
+    """A frame's path under a dead load in place of the support that presses it, how it is followed and drawn.
 
     Attributes
     ----------
-    scene : Scene
-        With one load.
+    force : float
+        The load at load parameter 1.
     arc_length, steps : float, int
         For `tsm.trace`.
     limits : int
@@ -39,7 +56,7 @@ class Path:
         Load at which the drawing ends.
     """
 
-    scene: Scene
+    force: float
     arc_length: float
     steps: int
     limits: int
@@ -48,12 +65,13 @@ class Path:
 
     def trial(self, model: Model, tolerance: float, reason: str) -> Trial:
         """Return the trial that follows the path and reads its limit points."""
-        return trial(model, tolerance, reason, lambda: self._followed(model))
+        return trial(model, tolerance, reason, lambda scene: self._followed(scene, model))
 
-    def _followed(self, model: Model) -> Measured:
+    def _followed(self, scene: Scene, model: Model) -> Measured:
         import tsm
 
-        structure = to_structure(self.scene, elements=model.options.elements, element=model.options.element)
+        loaded = under_load(scene, self.force)
+        structure = to_structure(loaded, elements=model.options.elements, element=model.options.element)
         result = tsm.trace(structure, arc_length=self.arc_length, steps=self.steps, throw=False)
         found = [event.load_parameter for event in result.events if event.kind is tsm.EventKind.LIMIT_POINT]
         if len(found) < self.limits:
@@ -62,8 +80,8 @@ class Path:
             )
         load = self.unit * np.append(0.0, result.load_parameter)
         end = int(np.argmax(np.append(load > self.highest, True)))
-        joint = self.scene.loads[0]
-        start = self.scene.place(joint.node)[1]
+        joint = loaded.loads[0]
+        start = loaded.place(joint.node)[1]
         down = np.append(0.0, start - result.tips[joint.beam][:, 1])
         curve = Curve(style=model.name, points=np.stack([down, load], axis=1)[:end])
         return Measured(values=tuple(self.unit * value for value in found[: self.limits]), curves=(curve,))
@@ -78,11 +96,13 @@ COUPLED = (
 
 def lee() -> Problem:
     """Lee's frame."""
-    scene = lee_scene()
-    path = Path(scene=scene, arc_length=0.3, steps=60, limits=1, unit=0.1 * LEE_UNIT, highest=20.0)
+    path = Path(force=LEE_FORCE, arc_length=0.3, steps=60, limits=1, unit=LEE_FORCE * LEE_UNIT, highest=20.0)
     return Problem(
         name="lees-frame",
         title="Lee's frame snaps through",
+        purpose="A limit point of the load in a frame, with large rotations before it.",
+        uncertainty=1e-10,
+        scene=load_scene("lees-frame"),
         statement="A column and a girder, 120 cm each, rigidly joined, hinged at their far ends; E = 720 kN/cm^2, A = 6 cm^2, I = 2 cm^4, rigid in "
         "shear. A dead load P presses the girder down 24 cm from the corner.",
         source=f"{COUPLED}; the frame is that of Lee, Manuel and Rossow, Journal of the Engineering Mechanics Division, ASCE 94 (1968), 521-547",
@@ -94,7 +114,7 @@ def lee() -> Problem:
         ),
         picture=Picture(
             axes=("deflection under the load [cm]", "P L^2/EI"),
-            curves=(Curve(style=ANSWER, points=exact_path(scene, LEE_DOWN) * [1.0, LEE_UNIT]),),
+            curves=(Curve(style=ANSWER, points=exact_path(lee_scene(), LEE_DOWN) * [1.0, LEE_UNIT]),),
             shape=False,
         ),
     )
@@ -102,12 +122,14 @@ def lee() -> Problem:
 
 def toggle() -> Problem:
     """Williams' toggle."""
-    scene = toggle_scene()
-    path = Path(scene=scene, arc_length=0.01, steps=60, limits=2, unit=1.0, highest=70.0)
+    path = Path(force=TOGGLE_FORCE, arc_length=0.01, steps=60, limits=2, unit=1.0, highest=70.0)
     greatest, least = toggle_limits()
     return Problem(
         name="williams-toggle",
         title="Williams' toggle: two limit loads",
+        purpose="Two limit points of the load in a shallow frame, where stretch and bending are of one size.",
+        uncertainty=1e-10,
+        scene=load_scene("williams-toggle"),
         statement="Two beams clamped at their outer ends meet at an apex, half span 12.94328 in, rise .386 in; EA = 1.885e6 lb, EI = 9274 lb in^2, "
         "rigid in shear. A dead load presses the apex down.",
         source=f"{COUPLED}; the frame is that of Williams, Quarterly Journal of Mechanics and Applied Mathematics 17 (1964), 451-469",
@@ -122,7 +144,33 @@ def toggle() -> Problem:
         ),
         picture=Picture(
             axes=("deflection of the apex [in]", "load [lb]"),
-            curves=(Curve(style=ANSWER, points=exact_path(scene, TOGGLE_DOWN)),),
+            curves=(Curve(style=ANSWER, points=exact_path(toggle_scene(), TOGGLE_DOWN)),),
             shape=False,
         ),
+    )
+
+
+def portal() -> Problem:
+    """Portal frame under a horizontal load at a corner."""
+    scene = load_scene("portal-frame")
+
+    def read(response: Response) -> tuple[float]:
+        return (float(response.tips["left"][-1, 0]),)
+
+    return Problem(
+        name="portal-frame",
+        title="Portal frame sways under a load at its corner",
+        purpose="Rigid joints through large rotations, with a support at either end.",
+        uncertainty=1e-11,
+        scene=scene,
+        statement="Two columns of 200 mm, clamped at their feet, and a girder of 300 mm, rigidly joined; section 10 mm x 2 mm, E = 2.1e5 N/mm^2, nu = .3. A dead load of 400 N "
+        "pushes the left corner sideways.",
+        source=f"{COUPLED.partition(';')[0]}; the displacement under the load is read off a polynomial through ten loads around it",
+        quantities=(Quantity(name="sideways displacement of the left corner [mm]", exact=portal_sway()),),
+        trials=(
+            on_scene(EXACT, 1e-8, CLOSED, read),
+            on_scene(mixed(20), 1e-6, FOURTH, read),
+            on_scene(paper(20), 1e-2, SECOND, read),
+        ),
+        picture=Picture(axes=MM, curves=undeformed(scene)),
     )

@@ -32,7 +32,7 @@ def _claim(problem: Problem, trial: Trial, curves: list[Curve]) -> Claim:
     """Return the claim that a model answers a problem; measuring it appends to the curves."""
 
     def measure() -> Sequence[float]:
-        measured = trial.measure()
+        measured = trial.measure(problem.scene)
         curves.extend(measured.curves)
         return measured.values
 

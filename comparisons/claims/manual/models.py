@@ -97,26 +97,25 @@ def answered(scene: Scene, model: Model) -> Response:
 
 
 def on_scene(
-    scene: Scene,
     model: Model,
     tolerance: float,
     reason: str,
     read: Callable[[Response], Iterable[float]],
     shown: Sequence[float] = (1.0,),
 ) -> Trial:
-    """Return a trial that solves a scene.
+    """Return a trial that solves the scene of its problem.
 
     Parameters
     ----------
-    scene, model, tolerance, reason
-        Scene, model, allowed error and its reason.
+    model, tolerance, reason
+        Model, allowed error and its reason.
     read : callable
         From the response to the values.
     shown : sequence of float
         Load parameters whose deflected axes are drawn.
     """
 
-    def measure() -> Measured:
+    def measure(scene: Scene) -> Measured:
         response = answered(scene, model)
         values = tuple(float(value) for value in read(response))
         return Measured(values=values, curves=(deflected(scene, response, model.name, shown),))
@@ -124,7 +123,7 @@ def on_scene(
     return trial(model, tolerance, reason, measure)
 
 
-def trial(model: Model, tolerance: float, reason: str, measure: Callable[[], Measured]) -> Trial:
+def trial(model: Model, tolerance: float, reason: str, measure: Callable[[Scene], Measured]) -> Trial:
     """Return the trial of a model with the given measurement."""
     allowance = Allowance(error=tolerance, why=reason)
     return Trial(model=model.name, setting=model.setting, allowance=allowance, measure=measure)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from comparisons.claims.claim import Allowance, Judgement, Quantity
 from comparisons.response import Array
+from comparisons.scene import Scene
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,13 +68,13 @@ class Trial:
     allowance : Allowance
         Allowed error of every quantity.
     measure : callable
-        Solves; raises `StoppedError` where there is no answer.
+        Solves the problem's scene, or what follows from it; raises `StoppedError` where there is no answer.
     """
 
     model: str
     setting: str
     allowance: Allowance
-    measure: Callable[[], Measured]
+    measure: Callable[[Scene], Measured]
 
     @property
     def label(self) -> str:
@@ -89,10 +90,16 @@ class Problem:
     ----------
     name, title : str
         A short name without spaces, and a title.
+    purpose : str
+        What a wrong answer would show.
     statement : str
         The problem with its sizes and units.
     source : str
         Where the exact value comes from: literature with author and year, or the closed form.
+    uncertainty : float
+        Bound of the error of the exact values, over their scales.
+    scene : Scene
+        What is solved, or what the scenes that are solved follow from.
     quantities : tuple of Quantity
         What is compared.
     trials : tuple of Trial
@@ -103,8 +110,11 @@ class Problem:
 
     name: str
     title: str
+    purpose: str
     statement: str
     source: str
+    uncertainty: float
+    scene: Scene
     quantities: tuple[Quantity, ...]
     trials: tuple[Trial, ...]
     picture: Picture

@@ -80,15 +80,18 @@ def ks_axis() -> Problem:
     return Problem(
         name="ks-axis",
         title="Konyukhov-Schweizerhof cantilever, contact on the axis",
+        purpose="Sliding contact of a pin with the axis at rotations beyond a right angle, with stretch and shear.",
+        uncertainty=1e-11,
+        scene=scene,
         statement=f"{KS_TEXT}, in contact with the axis, from the tip.",
         source=ROD_SOURCE,
         quantities=quantities,
         trials=(
-            on_scene(scene, EXACT, 1e-9, CLOSED, read, TIMES),
-            on_scene(scene, mixed(20), 2e-6, FOURTH, read, TIMES),
-            on_scene(scene, paper(20), 1e-2, SECOND, read, TIMES),
-            on_scene(scene, solid(50, 2), 5e-3, LAW, read, TIMES),
-            on_scene(scene, ELASTICA, 2e-3, "it neither stretches nor shears", read, TIMES),
+            on_scene(EXACT, 1e-9, CLOSED, read, TIMES),
+            on_scene(mixed(20), 2e-6, FOURTH, read, TIMES),
+            on_scene(paper(20), 1e-2, SECOND, read, TIMES),
+            on_scene(solid(50, 2), 5e-3, LAW, read, TIMES),
+            on_scene(ELASTICA, 2e-3, "it neither stretches nor shears", read, TIMES),
         ),
         picture=Picture(curves=(*undeformed(scene), deflected(scene, rod, ANSWER, TIMES))),
     )
@@ -105,14 +108,17 @@ def ks_face() -> Problem:
     return Problem(
         name="ks-face",
         title="Konyukhov-Schweizerhof cantilever, contact on the face",
+        purpose="The lever of a contact force on the face, half a height off the axis.",
+        uncertainty=1e-11,
+        scene=scene,
         statement=f"{KS_TEXT}, in contact with the lower face, from (1, -.01) m: the contact is half the height away from the axis.",
         source=ROD_SOURCE,
         quantities=quantities,
         trials=(
-            on_scene(scene, EXACT, 1e-9, CLOSED, read, TIMES),
-            on_scene(scene, mixed(20), 3e-6, FOURTH, read, TIMES),
-            on_scene(scene, paper(20), 1e-2, SECOND, read, TIMES),
-            on_scene(scene, solid(50, 2), 6e-3, LAW, read, TIMES),
+            on_scene(EXACT, 1e-9, CLOSED, read, TIMES),
+            on_scene(mixed(20), 3e-6, FOURTH, read, TIMES),
+            on_scene(paper(20), 1e-2, SECOND, read, TIMES),
+            on_scene(solid(50, 2), 6e-3, LAW, read, TIMES),
         ),
         picture=Picture(curves=(*undeformed(scene), deflected(scene, rod, ANSWER, TIMES))),
     )
@@ -129,12 +135,14 @@ def ks_biot() -> Problem:
     return Problem(
         name="ks-biot",
         title="Konyukhov-Schweizerhof cantilever, solid of the rod's own law",
+        purpose="The difference between a strip and a rod without the difference of their material laws.",
+        uncertainty=1e-11,
+        scene=scene,
         statement=f"{KS_TEXT}, in contact with the axis. The solid's stress is linear in Biot's strain, as the rod's is.",
         source=ROD_SOURCE,
         quantities=quantities,
         trials=(
             on_scene(
-                scene,
                 solid(50, 2),
                 1.2e-3,
                 "what a rod leaves out of a strip with h/L = .02, of the order h^2",
@@ -164,13 +172,16 @@ def ks_tied() -> Problem:
     return Problem(
         name="ks-tied-tip",
         title="Konyukhov-Schweizerhof cantilever, point tied to the tip",
+        purpose="A prescribed motion of a beam's end through buckling in the first step.",
+        uncertainty=1e-11,
+        scene=scene,
         statement=f"{KS_TEXT.replace('A frictionless pin', 'Its tip, free to turn,')}; it buckles in the first step, at t = .0007.",
         source="Reissner's rod by spectral collocation (comparisons.exact.tied, which shares nothing with the models)",
         quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, read(rod), strict=True)),
         trials=(
-            on_scene(scene, EXACT, 1e-8, CLOSED, read, TIMES[1::2]),
-            on_scene(scene, mixed(20), 1e-5, FOURTH, read, TIMES[1::2]),
-            on_scene(scene, paper(20), 1e-2, SECOND, read, TIMES[1::2]),
+            on_scene(EXACT, 1e-8, CLOSED, read, TIMES[1::2]),
+            on_scene(mixed(20), 1e-5, FOURTH, read, TIMES[1::2]),
+            on_scene(paper(20), 1e-2, SECOND, read, TIMES[1::2]),
         ),
         picture=Picture(curves=(*undeformed(scene), deflected(scene, rod, ANSWER, TIMES[1::2]))),
     )
@@ -191,6 +202,9 @@ def short_cantilever() -> Problem:
     return Problem(
         name="short-cantilever",
         title="Small deflection of a short cantilever",
+        purpose="Shear deformation in the limit of small deflections.",
+        uncertainty=1e-9,
+        scene=scene,
         statement="A clamped beam, L = 1 m, section .1 m x .1 m, E = 1e6 N/m^2, nu = .3, effective shear area 5/6 of the area, is lifted by "
         f"a frictionless pin at a = .8 m by d = 1e-5 m. Shear has {100 * shear / (bending + shear):.1f} % of that.",
         source="closed form of Timoshenko's beam: F = d/(a^3/(3 EI) + a/GA), M = -F a",
@@ -199,9 +213,8 @@ def short_cantilever() -> Problem:
             Quantity(name="M of the clamp [N m]", exact=-exact * place),
         ),
         trials=(
-            *(on_scene(scene, model, 1e-5, linear, read) for model in (EXACT, mixed(9), paper(9), ROD)),
+            *(on_scene(model, 1e-5, linear, read) for model in (EXACT, mixed(9), paper(9), ROD)),
             on_scene(
-                scene,
                 solid(50, 4),
                 2e-3,
                 "5/6 is for sections that may warp, which the clamp's may not; the contact is as wide as the height",
@@ -227,14 +240,16 @@ def slip_off_41() -> Problem:
     return Problem(
         name="slip-off-in-shear",
         title="A raised pin leaves a beam that is soft in shear",
+        purpose="The instant at which a contact leaves a beam over its tip, with 3 % shear strain.",
+        uncertainty=1e-10,
+        scene=scene,
         statement="Nizam et al., section 4.1: L = 4.5 m, A = .005 m^2, I = .001 m^4, E = 2.1e11 N/m^2, G = 7.5e10 N/m^2, effective shear area A; "
         "a frictionless pin moves straight up at x = 4.05 m until the beam slips off it.",
         source=ROD_SOURCE,
         quantities=(Quantity(name="displacement of the pin [m]", exact=1.8 * rod.slip_off),),
         trials=(
-            on_scene(scene, EXACT, 1e-8, CLOSED, read, (0.9,)),
+            on_scene(EXACT, 1e-8, CLOSED, read, (0.9,)),
             on_scene(
-                scene,
                 mixed(18),
                 1e-5,
                 "its strain measures leave the third power of the shear strain, 3 % here",
@@ -273,14 +288,17 @@ def double_beam() -> Problem:
     return Problem(
         name="double-beam",
         title="Double beam: a pin is handed over",
+        purpose="Contact between beams, and a pin that is handed over from one beam to the next.",
+        uncertainty=1e-10,
+        scene=scene,
         statement="Nizam et al., section 4.3, with sizes of this project: two cantilevers, L = 1 m, .2 m apart, A = 3e-4 m^2, I = 2.2e-8 m^4, "
         "E = 2e7 N/m^2, G = 7.142e6 N/m^2, effective shear area A. A frictionless pin presses the upper one down at x = .8 m; its tip meets the lower one, "
         "the pin passes to that and leaves it.",
         source="two coupled Reissner rods by spectral collocation and quadratures (comparisons.exact.coupled), then a single one",
         quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, exact, strict=True)),
         trials=(
-            on_scene(scene, EXACT, 1e-8, CLOSED, read, (52 / 76,)),
-            on_scene(scene, mixed(10), 1e-6, FOURTH, read, (52 / 76,)),
+            on_scene(EXACT, 1e-8, CLOSED, read, (52 / 76,)),
+            on_scene(mixed(10), 1e-6, FOURTH, read, (52 / 76,)),
         ),
         picture=Picture(curves=undeformed(scene)),
     )

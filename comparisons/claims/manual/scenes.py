@@ -10,17 +10,42 @@ from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 Point = tuple[float, float]
 
 PAIR = "pin->cantilever"
+MM = ("x [mm]", "y [mm]")
+"""Axes of the pictures of scenes in millimetres."""
 INFINITE = 1e10
 """EA and GA of a beam without stretch and shear, over EI/L^2."""
 UNIT: dict[str, Any] = {"youngs_modulus": 1.0, "second_moment": 1.0, "area": INFINITE, "shear_modulus": 1.0}
 """A section with EI = 1 N m^2 that neither stretches nor shears."""
-ELASTICA_TEXT = f"L = 1 m, EI = 1 N m^2, neither stretch nor shear (EA = GA = {INFINITE:g} N stand for that)"
+ELASTICA_TEXT = (
+    f"L = 1 m, EI = 1 N m^2, neither stretch nor shear (EA = GA = {INFINITE:g} EI/L^2 in their place)"
+)
+STRIP_TEXT = ELASTICA_TEXT.replace("L = 1 m, EI = 1 N m^2", "L = 100 mm, EI = 175,000 N mm^2")
 
 
 def cantilever(*, length: float = 1.0, **section: Any) -> BeamSpec:
     """Return a beam along x, clamped at its start at the origin; without a section the unit one."""
     return BeamSpec(
         name="cantilever", start=(0.0, 0.0), end=(length, 0.0), clamped=("start",), **(section or UNIT)
+    )
+
+
+def rigid(scene: Scene, ratio: float = INFINITE) -> Scene:
+    """Return the scene with the same bending stiffness, and ``EA = GA = ratio EI/L^2`` in every beam."""
+    return replace(
+        scene,
+        beams=tuple(
+            BeamSpec(
+                name=beam.name,
+                start=beam.start,
+                end=beam.end,
+                clamped=beam.clamped,
+                youngs_modulus=beam.EI,
+                shear_modulus=beam.EI,
+                second_moment=1.0,
+                area=ratio / beam.length**2,
+            )
+            for beam in scene.beams
+        ),
     )
 
 

@@ -68,6 +68,8 @@ def _section(case: Case) -> Iterator[str]:
     yield ""
     yield problem.statement
     yield ""
+    yield f"Purpose: {problem.purpose}"
+    yield ""
     yield f"Exact value: {problem.source}."
     yield ""
     yield f"![{problem.title}]({case.picture})"
@@ -95,7 +97,10 @@ def numbers(cases: Sequence[Case]) -> dict[str, Any]:
 def _case(case: Case) -> dict[str, Any]:
     problem = case.problem
     return {
-        **{name: getattr(problem, name) for name in ("name", "title", "statement", "source", "quantities")},
+        **{
+            name: getattr(problem, name)
+            for name in ("name", "title", "purpose", "statement", "source", "uncertainty", "quantities")
+        },
         "runs": [
             {
                 "model": trial.model,

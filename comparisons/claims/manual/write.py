@@ -5,16 +5,13 @@ from pathlib import Path
 
 from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.pictures import draw
-from comparisons.claims.manual.problems import PROBLEMS
 from comparisons.claims.manual.record import Manual, Problem
 from comparisons.claims.manual.text import markdown, numbers
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, write_numbers
 
 
-def write_manual(
-    folder: Path, report: Report, problems: Sequence[Callable[[], Problem]] | None = None
-) -> Manual:
+def write_manual(folder: Path, report: Report, problems: Sequence[Callable[[], Problem]]) -> Manual:
     """Solve all problems, judge the answers and write the manual.
 
     Parameters
@@ -23,8 +20,8 @@ def write_manual(
         Made if it is not there.
     report : callable
         Takes a line for each case.
-    problems : sequence of callable, optional
-        What is solved, all problems if not given.
+    problems : sequence of callable
+        What is solved, of `comparisons.claims.manual.problems.named`.
 
     Returns
     -------
@@ -37,7 +34,7 @@ def write_manual(
     """
     writable_folder(folder)
     cases, pictures = [], []
-    for state in PROBLEMS if problems is None else problems:
+    for state in problems:
         problem = state()
         picture = folder / f"{problem.name}.svg"
         case, curves = answered(problem, picture.name)

@@ -1,73 +1,51 @@
-"""Frames that snap through: Lee's frame and Williams' toggle, and their limit loads by exact rods."""
+"""Frames by exact rods: limit loads of Lee's frame and Williams' toggle, which snap through, and the sway of a portal frame."""
 
+import math
+from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 
 from comparisons.claims.problems.peaks import summit
 from comparisons.exact.chain import Chain, load_path
 from comparisons.response import Array
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
+from comparisons.scene import LoadSpec, Scene, load_scene
 
 LEE_UNIT = 120.0**2 / 1440.0
-"""L^2/EI [1/kN]."""
+"""L^2/EI of Lee's frame [1/kN]."""
+LEE_FORCE, TOGGLE_FORCE = 0.1, 1.0
+"""Unit loads [kN], [lb]."""
+
+
+def under_load(scene: Scene, force: float) -> Scene:
+    """Return a frame with a downward dead force on the joint that a support presses down in the scene, in place of the support."""
+    pressed = next(support for support in scene.supports if support.moves)
+    return replace(
+        scene,
+        supports=tuple(support for support in scene.supports if support is not pressed),
+        loads=(LoadSpec(beam=pressed.beam, end=pressed.end, force=(0.0, -force)),),
+    )
 
 
 def lee_scene() -> Scene:
-    """Return Lee's frame."""
-    section: dict[str, Any] = {
-        "area": 6.0,
-        "second_moment": 2.0,
-        "youngs_modulus": 720.0,
-        "shear_modulus": 7.2e8,
-    }
-    corner, loaded = (0.0, 120.0), (24.0, 120.0)
-    return Scene(
-        name="lees-frame",
-        units="kN, cm",
-        load_parameters=1,
-        beams=(
-            BeamSpec(name="column", start=(0.0, 0.0), end=corner, **section),
-            BeamSpec(name="near", start=corner, end=loaded, **section),
-            BeamSpec(name="far", start=loaded, end=(120.0, 120.0), **section),
-        ),
-        supports=(
-            SupportSpec(beam="column", end="start", kind="pinned"),
-            SupportSpec(beam="far", end="end", kind="pinned"),
-        ),
-        loads=(LoadSpec(beam="near", end="end", force=(0.0, -0.1)),),
-    )
+    """Return Lee's frame under its unit load."""
+    return under_load(load_scene("lees-frame"), LEE_FORCE)
 
 
 def toggle_scene() -> Scene:
-    """Return Williams' toggle."""
-    section: dict[str, Any] = {
-        "youngs_modulus": 1.03e7,
-        "area": 1.885e6 / 1.03e7,
-        "second_moment": 9274.0 / 1.03e7,
-        "shear_modulus": 1.03e11,
-    }
-    apex = (12.94328, 0.386)
-    return Scene(
-        name="williams-toggle",
-        units="lb, in",
-        load_parameters=1,
-        beams=(
-            BeamSpec(name="left", start=(0.0, 0.0), end=apex, clamped=("start",), **section),
-            BeamSpec(name="right", start=apex, end=(25.88656, 0.0), clamped=("end",), **section),
-        ),
-        loads=(LoadSpec(beam="left", end="end", force=(0.0, -1.0)),),
-    )
+    """Return Williams' toggle under its unit load."""
+    return under_load(load_scene("williams-toggle"), TOGGLE_FORCE)
 
 
 @cache
 def exact_path(scene: Scene, deflections: tuple[float, ...]) -> Array:
-    """Return deflections of a frame's loaded joint and its load there, columns of one array, by exact rods."""
+    """Return deflections of a frame's loaded joint and the load there, columns of one array, by exact rods."""
     first, loaded = scene.beams[0], scene.loads[0]
+    size = math.hypot(*loaded.force)
     chain = Chain(
         joints=(first.start, *(beam.end for beam in scene.beams)),
         loaded=1 + [beam.name for beam in scene.beams].index(loaded.beam),
+        direction=(loaded.force[0] / size, loaded.force[1] / size),
         clamped=bool(first.clamped),
         EA=first.EA,
         GA=first.GA,
@@ -92,3 +70,15 @@ def toggle_limits() -> tuple[float, float]:
     """Return the greatest load of Williams' toggle and the least one after it [lb], by exact rods."""
     down, load = exact_path(toggle_scene(), TOGGLE_DOWN).T
     return summit(down[:32], load[:32])[0], -summit(down[26:], -load[26:])[0]
+
+
+PORTAL_ASIDE = (25.0, 50.0, 75.0, 95.0, *np.linspace(105.0, 127.5, 10).tolist())
+"""Displacements of the portal frame's loaded corner [mm], closer around its displacement at the whole load."""
+
+
+def portal_sway() -> float:
+    """Return the displacement of the portal frame's loaded corner [mm], by the polynomial through ten loads of exact rods around it."""
+    scene = load_scene("portal-frame")
+    aside, load = exact_path(scene, PORTAL_ASIDE)[4:].T
+    whole = scene.loads[0].force[0]
+    return float(np.polynomial.Polynomial.fit(load - whole, aside, len(aside) - 1)(0.0))

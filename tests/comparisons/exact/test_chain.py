@@ -36,10 +36,23 @@ def test_from_the_other_support_or_with_one_more_joint():
     assert np.argmax(load) not in {0, 14}
 
 
+def test_a_frame_that_is_turned_with_its_load():
+    """Lee's frame turned by .7 rad and by a half circle."""
+    down = np.linspace(0.02, 0.5, 9)
+    load = load_path(LEE, down)
+    for angle in (0.7, np.pi):
+        c, s = np.cos(angle), np.sin(angle)
+        joints = tuple((float(c * x - s * y), float(s * x + c * y)) for x, y in LEE.joints)
+        turned = replace(LEE, joints=joints, direction=(float(s), float(-c)))
+        assert load_path(turned, down) == pytest.approx(load, rel=1e-9)
+
+
 def test_what_is_not_a_chain_is_refused():
     with pytest.raises(ValueError, match=r"loaded = 2: must be a joint between the supports"):
         replace(BEAM, loaded=2)
     with pytest.raises(ValueError, match=r"EA = -1.0: must be positive"):
         replace(BEAM, EA=-1.0)
+    with pytest.raises(ValueError, match=r"direction = \(1.0, 1.0\): must be a unit vector"):
+        replace(LEE, direction=(1.0, 1.0))
     with pytest.raises(ArithmeticError, match="no equilibrium at the deflection 5"):
         load_path(LEE, [5.0])

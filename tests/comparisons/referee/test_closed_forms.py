@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
-from comparisons.exact.chain import Chain, load_path
+from comparisons.claims.problems.frames import exact_path, toggle_scene
 from comparisons.exact.elastica import elastica_under_pin
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.rod import rod_under_pin
@@ -154,28 +154,11 @@ def test_coupled_rods_to_1e_11() -> None:
 )
 def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
     """Williams' toggle: its load is a maximum near .235, a minimum near .39, unstable between."""
-    span, rise, EA, EI = 12.94328, 0.386, 1.885e6, 9274.0
-    apex = (span, rise)
-    chain = Chain(
-        joints=((0.0, 0.0), apex, (2.0 * span, 0.0)), loaded=1, clamped=True, EA=EA, GA=1e3 * EA, EI=EI
-    )
-    load = load_path(chain, np.linspace(0.0, deflection, 11)[1:])[-1]
-    section = {
-        "youngs_modulus": 1.0,
-        "shear_modulus": 1.0,
-        "area": EA,
-        "second_moment": EI,
-        "shear_area": 1e3 * EA,
-    }
-    scene = Scene(
-        name="toggle",
-        load_parameters=1,
-        beams=(
-            BeamSpec(name="one", start=(0.0, 0.0), end=apex, clamped=("start",), **section),
-            BeamSpec(name="two", start=apex, end=(2.0 * span, 0.0), clamped=("end",), **section),
-        ),
-        loads=(LoadSpec(beam="one", end="end", force=(0.0, -load)),),
-    )
+    frame = toggle_scene()
+    apex = frame.beams[0].end
+    span, rise = apex
+    load = exact_path(frame, tuple(np.linspace(0.0, deflection, 11)[1:].tolist()))[-1, 1]
+    scene = replace(frame, load_parameters=1, loads=(replace(frame.loads[0], force=(0.0, -float(load))),))
     arc, x = np.linspace(0.0, np.hypot(span, rise), 41), np.linspace(0.0, 1.0, 41)
     smooth = x**2 * (3.0 - 2.0 * x)
     left = np.stack([span * x, rise * x - deflection * smooth], axis=1)
@@ -184,11 +167,11 @@ def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
         load_parameter=1.0,
         arcs={},
         forces={},
-        axes={"one": (arc, left), "two": (arc, right)},
+        axes={"left": (arc, left), "right": (arc, right)},
         reactions={},
         tips={},
     )
     exact = found(scene, given)
-    moved = exact.ends["one.end"] - apex
+    moved = exact.ends["left.end"] - apex
     np.testing.assert_allclose(moved, [0.0, -deflection], rtol=0.0, atol=1e-11)
     assert exact.index == (1 if deflection == 0.3 else 0)

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -13,26 +14,29 @@ import pytest
 from comparisons.claims.claim import Allowance, Quantity, StoppedError, Verdict
 from comparisons.claims.junit import JUnitCase, junit_text
 from comparisons.claims.manual import Case, Problem, Trial, write_manual
-from comparisons.claims.manual import write as manual_write
-from comparisons.claims.manual.elastica import identity, slip_off
-from comparisons.claims.manual.frames import toggle
+from comparisons.claims.manual import problems as manual_problems
+from comparisons.claims.manual.columns import clamped_column, pinned_column
+from comparisons.claims.manual.contacts import crossed_beams, touch_again, two_pins
+from comparisons.claims.manual.elastica import identity, slip_off, three_point_bending
+from comparisons.claims.manual.frames import portal, toggle
 from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.loads import dead_load, roll_up
 from comparisons.claims.manual.pictures import STYLES
-from comparisons.claims.manual.problems import PROBLEMS
+from comparisons.claims.manual.problems import PROBLEMS, named
 from comparisons.claims.manual.record import Curve, Measured, Picture
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.claims.manual.text import junit_cases, markdown
 from comparisons.cli import main
 from comparisons.files import OutputError
 from comparisons.models import solve
+from comparisons.scene import Scene, load_scene
 
 
 def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.01) -> Problem:
     """A problem with the exact values 2 and 0, and models that answer so."""
 
     def trial(answer: "tuple[float, ...] | StoppedError") -> Trial:
-        def measure() -> Measured:
+        def measure(_: Scene) -> Measured:
             if isinstance(answer, StoppedError):
                 raise answer
             return Measured(values=answer, curves=(Curve(style="rod", points=np.eye(2)),))
@@ -43,6 +47,9 @@ def problem(*answers: "tuple[float, ...] | StoppedError", tolerance: float = 0.0
     return Problem(
         name="made-up",
         title="Made | up",
+        purpose="None.",
+        uncertainty=0.0,
+        scene=load_scene("tip-load"),
         statement="Nothing.",
         source="nowhere",
         quantities=(Quantity(name="a", exact=2.0), Quantity(name="|b|", exact=0.0, scale=4.0)),
@@ -170,7 +177,7 @@ def spoilt(state):
 
 
 def test_a_wrong_value_ends_the_command_with_status_1(tmp_path: Path, monkeypatch, capsys):
-    monkeypatch.setattr(manual_write, "PROBLEMS", (spoilt(dead_load), roll_up))
+    monkeypatch.setattr(manual_problems, "PROBLEMS", {"dead-load": spoilt(dead_load), "roll-up": roll_up})
     junit = tmp_path / "junit.xml"
     assert main(["manual", "--out", str(tmp_path / "m"), "--junit", str(junit), "--quiet"]) == 1
     told = capsys.readouterr()
@@ -185,9 +192,9 @@ def test_a_wrong_value_ends_the_command_with_status_1(tmp_path: Path, monkeypatc
     assert json.loads((tmp_path / "m" / "manual.json").read_text())["passed"] is False
 
 
-def test_what_passes_ends_with_status_0(tmp_path: Path, monkeypatch, capsys):
-    monkeypatch.setattr(manual_write, "PROBLEMS", QUICK)
-    assert main(["manual", "--out", str(tmp_path)]) == 0
+def test_what_passes_ends_with_status_0(tmp_path: Path, capsys):
+    names = ["dead-load", "elastica-identity"]
+    assert main(["manual", "--out", str(tmp_path), "--only", *names]) == 0
     told = capsys.readouterr()
     assert "2 cases, 5 answers, 0 beyond their tolerance" in told.out
     assert [line.split(",")[0] for line in told.err.splitlines()] == [
@@ -196,18 +203,26 @@ def test_what_passes_ends_with_status_0(tmp_path: Path, monkeypatch, capsys):
     ]
 
 
+def test_a_name_that_no_problem_has_is_bad_input(tmp_path: Path, capsys):
+    assert main(["manual", "--out", str(tmp_path / "m"), "--only", "roll-up", "rollup"]) == 2
+    assert capsys.readouterr().err.startswith(
+        "crossval: --only: rollup: no such problem (dead-load, roll-up, "
+    )
+    assert not (tmp_path / "m").exists()
+
+
 @pytest.mark.parametrize("option", ["--out", "--junit"])
 def test_a_place_that_cannot_be_written_in_is_told_before_anything_is_solved(
     option: str, tmp_path: Path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(manual_write, "PROBLEMS", (pytest.fail,))
+    monkeypatch.setattr(manual_problems, "PROBLEMS", {"none": pytest.fail})
     (tmp_path / "file").write_text("kept")
     assert main(["manual", option, "file/below"]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert (tmp_path / "file").read_text() == "kept"
     with pytest.raises(OutputError, match="cannot be written"):
-        write_manual(tmp_path / "file", pytest.fail)
+        write_manual(tmp_path / "file", pytest.fail, QUICK)
 
 
 def test_a_scene_that_is_moved_is_the_scene():
@@ -250,13 +265,32 @@ def test_problems_state_what_they_must():
             assert trial.allowance.why
 
 
+BUILT_IN = (
+    clamped_column,
+    pinned_column,
+    portal,
+    three_point_bending,
+    two_pins,
+    crossed_beams,
+    touch_again,
+)
+"""Problems of the built-in scenes without a test of their own in `tests/verification`."""
+
+
+@pytest.mark.parametrize("state", BUILT_IN, ids=lambda state: str(state.__name__))
+def test_a_problem_of_a_built_in_scene_passes(state: Callable[[], Problem]):
+    case, _ = answered(state(), "p.svg")
+    assert [item.failure for item in case.judgements if not item.passed] == []
+
+
 @pytest.mark.slow
 def test_the_whole_manual_passes(tmp_path: Path):
-    manual = write_manual(tmp_path, lambda _: None)
+    manual = write_manual(tmp_path, lambda _: None, named(None))
     items = [item for case in manual.cases for item in case.judgements]
     wrong = [item.failure for item in items if not item.passed]
     assert wrong == []
-    assert len(manual.cases) == len(PROBLEMS) == len({case.problem.name for case in manual.cases}) == 28
+    assert [case.problem.name for case in manual.cases] == list(PROBLEMS)
+    assert len(PROBLEMS) == 34
     assert all(item.claim.allowance.why and item.claim.allowance.error <= 0.3 for item in items)
     assert {trial.model for case in manual.cases for trial in case.problem.trials} >= {
         "tsm exact",

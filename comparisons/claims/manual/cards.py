@@ -1,0 +1,153 @@
+"""Benchmark cards: a problem of the manual as one JSON file, complete in itself."""
+
+import json
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from comparisons.claims.claim import Quantity
+from comparisons.claims.manual.record import Problem
+from comparisons.files import writable_folder, write_text
+from comparisons.output import Report, plain
+from comparisons.scene import to_tables
+from comparisons.scene.json_schema import json_schema
+
+SYMBOLS = {
+    "t": "load parameter, 0 to 1; loads and prescribed motions grow with it, a pin is at the fraction t of its path's length",
+    "F": "magnitude of the contact force",
+    "s": "distance of the contact point from the beam's start, along the undeformed axis",
+    "M": "moment that a support exerts on the beam, anticlockwise",
+    "P": "the load",
+    "L": "length of the beam",
+    "EA, GA, EI": "stiffnesses of a beam's section in stretch, shear and bending; they are listed under stiffness",
+}
+"""Symbols that the names of quantities use."""
+MOST_DIGITS = 15
+"""Digits of a value that is exact up to double precision."""
+
+
+def card(problem: Problem) -> dict[str, Any]:
+    """Return the card of a problem.
+
+    Examples
+    --------
+    >>> from comparisons.claims.manual.loads import roll_up
+    >>> card(roll_up())["quantities"][0]
+    {'name': 'x/L of the tip, a quarter of a circle', 'value': 0.6366197723675814, 'digits': 14, 'uncertainty': 6.366197723675814e-15}
+    """
+    texts = {name: getattr(problem, name) for name in ("name", "title", "purpose", "statement", "source")}
+    return {
+        "$schema": "card.schema.json",
+        **texts,
+        "scene": to_tables(problem.scene),
+        "stiffness": {
+            beam.name: {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI} for beam in problem.scene.beams
+        },
+        "quantities": [_quantity(one, problem.uncertainty) for one in problem.quantities],
+        "symbols": SYMBOLS,
+    }
+
+
+def _quantity(quantity: Quantity, uncertainty: float) -> dict[str, Any]:
+    """Return a quantity with its uncertainty in the quantity's own unit, and the number of significant digits that this leaves.
+
+    Of zero they are the decimals, in parts of the quantity's scale.
+    """
+    scale = abs(quantity.exact) if quantity.scale is None else quantity.scale
+    size = abs(quantity.exact) or scale
+    error = uncertainty * scale
+    digits = MOST_DIGITS if error == 0.0 else min(MOST_DIGITS, max(0, math.floor(-math.log10(error / size))))
+    return {"name": quantity.name, "value": quantity.exact, "digits": digits, "uncertainty": error}
+
+
+def card_schema() -> dict[str, Any]:
+    """Return the JSON Schema of cards; the scene has the schema of scene files."""
+    scene = {key: value for key, value in json_schema().items() if key != "$schema"}
+    number = {"type": "number"}
+    text = {"type": "string", "minLength": 1}
+    quantity = {
+        "name": {**text, "description": "The quantity, with its unit; without a unit it is dimensionless."},
+        "value": {**number, "description": "The reference value."},
+        "digits": {
+            "type": "integer",
+            "minimum": 0,
+            "maximum": MOST_DIGITS,
+            "description": "Significant digits of the value that hold.",
+        },
+        "uncertainty": {
+            **number,
+            "minimum": 0,
+            "description": "Bound of the error of the value, in its unit.",
+        },
+    }
+    stiffness = {name: {**number, "exclusiveMinimum": 0} for name in ("EA", "GA", "EI")}
+    properties = {
+        "$schema": text,
+        "name": {**text, "pattern": r"^[\w-]+$"},
+        "title": text,
+        "purpose": {**text, "description": "What the problem tests."},
+        "statement": {**text, "description": "The problem in words, with its sizes and units."},
+        "source": {**text, "description": "Where the values come from: literature, or the closed form."},
+        "scene": {
+            **scene,
+            "description": "The tables of a scene file; what is varied stands in the statement.",
+        },
+        "stiffness": {
+            "type": "object",
+            "description": "Stiffnesses of every beam's section, in the scene's units.",
+            "additionalProperties": _record(stiffness),
+        },
+        "quantities": {"type": "array", "minItems": 1, "items": _record(quantity)},
+        "symbols": {"type": "object", "additionalProperties": text},
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Benchmark card of tsm-crossval",
+        **_record(properties),
+    }
+
+
+def _record(properties: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": list(properties),
+        "additionalProperties": False,
+    }
+
+
+def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Problem]]) -> tuple[Path, ...]:
+    """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    report : callable
+        Takes a line for each card.
+    problems : sequence of callable
+        Of `comparisons.claims.manual.problems.named`.
+
+    Returns
+    -------
+    tuple of Path
+        The files, the schema last.
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be written in.
+    """
+    writable_folder(folder)
+    files = []
+    for state in problems:
+        problem = state()
+        files.append(_written(folder / f"{problem.name}.json", card(problem)))
+        report(f"{problem.name}: {len(problem.quantities)} quantities")
+    return (*files, _written(folder / "card.schema.json", card_schema()))
+
+
+def _written(path: Path, data: dict[str, Any]) -> Path:
+    write_text(path, json.dumps(plain(data), allow_nan=False, indent=1) + "\n")
+    return path
