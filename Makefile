@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all coverage mutation docs bench fuzz platforms lint format setup clean
+.PHONY: run test test-all results coverage mutation docs bench fuzz platforms lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -16,6 +16,10 @@ test: lint
 
 test-all: lint
 	$(PYTEST)
+
+# measures every number that the pages state, and writes those that have changed
+results: setup
+	$(PYTEST) --write-results
 
 # branches of elements, contact, stepping and exact answers; the modules and the bar are in pyproject.toml
 coverage: setup

@@ -1,15 +1,20 @@
-"""Speed as ratios within one run, one thread. `make bench` writes them to bench.json; the ratios gate, times inform."""
+"""Speed as ratios within one run, one thread. `make bench` writes them to bench.json and compares them with the pages."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import platform
+import sys
 from pathlib import Path
 
 from comparisons.files import write_text
 from tests.benchmarks import beams, solid, start
 from tests.benchmarks.measure import Gate
+from tests.stated import MARK, check, pages
+
+VARIES = 0.25
+"""Part of a stated ratio by which machines and runs may differ."""
 
 
 def recorded(gates: list[Gate], times: dict[str, float]) -> str:
@@ -23,10 +28,24 @@ def recorded(gates: list[Gate], times: dict[str, float]) -> str:
     return json.dumps(record, indent=1) + "\n"
 
 
-def main() -> None:
+def compared(gates: list[Gate], *, write: bool) -> list[str]:
+    """Return a line for every ratio that is not what the pages state."""
+    marks = {mark for page in pages() for mark in MARK.findall(page.read_text())}
+    failures = []
+    for gate in gates:
+        if gate.mark in marks:
+            try:
+                check(gate.mark, gate.value, relative=VARIES, write=write)
+            except AssertionError as error:
+                failures.append(str(error))
+    return failures
+
+
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("bench.json"))
-    out = parser.parse_args().out
+    parser.add_argument("--write-results", action="store_true", help="write changed ratios into the pages")
+    given = parser.parse_args()
     gates: list[Gate] = []
     times: dict[str, float] = {}
     for part in (
@@ -47,8 +66,11 @@ def main() -> None:
         print(gate)
     for name, value in times.items():
         print(f"         {name}: {1e3 * value:.3g} ms")
-    write_text(out, recorded(gates, times))
+    write_text(given.out, recorded(gates, times))
+    failures = compared(gates, write=given.write_results)
+    print(*failures, sep="\n")
+    return bool(failures)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

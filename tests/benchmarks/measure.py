@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import resource
 import statistics
 import time
@@ -23,9 +24,19 @@ class Gate:
     def met(self) -> bool:
         return bool(self.value >= self.bar if self.at_least else self.value <= self.bar)
 
+    @property
+    def mark(self) -> str:
+        """Name of the number in the pages."""
+        return "bench." + slug(self.name).strip("-")
+
     def __str__(self) -> str:
         relation = ">=" if self.at_least else "<="
         return f"{'met    ' if self.met else 'NOT MET'}  {self.name}: {self.value:.3g} (bar {relation} {self.bar:g})"
+
+
+def slug(name: str) -> str:
+    """Return a name in small letters with dashes."""
+    return re.sub(r"[^a-z0-9.]+", "-", name.lower())
 
 
 def seconds(

@@ -16,3 +16,10 @@ def test_measured_ratios_are_written_and_read():
         ("cut-backs", 1.0, False),
     ]
     assert record["seconds"] == {"import tsm": 0.25}
+
+
+def test_a_ratio_that_has_moved_is_named():
+    ratios = [Gate("mixed over timoshenko, seconds per iteration", value, 1.3, False) for value in (0.9, 2.5)]
+    (failure,) = bench.compared([*ratios, Gate("cut-backs", 1, 0, False)], write=False)
+    assert "bench.mixed-over-timoshenko-seconds-per-iteration" in failure
+    assert "2.5" in failure

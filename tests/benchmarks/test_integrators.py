@@ -54,3 +54,14 @@ def test_both_integrators_agree_on_ks():
     collocated = tsm.solve(structure, t).contacts["pin->cantilever"]
     np.testing.assert_allclose(shot.force, collocated.force, rtol=1e-9)
     assert shot.arc_position == pytest.approx(collocated.arc_position, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "size"), [("explicit", 4), ("explicit", 8), ("gauss", 8), ("gauss", 12), ("gauss", 14)]
+)
+def test_errors_on_ks(name, size, stated):
+    """What 14 nodes leave is near round-off."""
+    structure = to_structure(load_scene("ks-cantilever"), elements=1, element="exact")
+    with getattr(integrators, name)(size):
+        found = integrators.errors(tsm.solve(structure, np.arange(1, 51) / 50))
+    stated(f"integrators.{name}-{size}", *found, bound=size == 14)

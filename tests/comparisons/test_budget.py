@@ -18,10 +18,11 @@ def budget(request: pytest.FixtureRequest) -> Budget:
     return error_budget(load_scene(request.param))
 
 
-def test_parts_sum_to_the_difference(budget: Budget) -> None:
-    """Bar 20 %; measured 1.4 % of the arc position at t = .75, where large parts cancel, .6 % elsewhere."""
-    for quantity in QUANTITIES:
-        assert np.all(np.abs(budget.rest(quantity)) < 0.015), quantity
+def test_parts_sum_to_the_difference(budget: Budget, stated) -> None:
+    """The largest rest is of the arc position at t = .75, where large parts cancel."""
+    rest = max(np.abs(budget.rest(quantity)).max() for quantity in QUANTITIES)
+    assert rest < 0.015
+    stated(f"budget.rest-{budget.scene}", rest)
 
 
 def test_the_material_law_is_the_largest_part_of_the_force(budget: Budget) -> None:

@@ -45,19 +45,25 @@ def test_all_stages_complete_and_are_verified(both: tuple[Response, Response]) -
         np.testing.assert_allclose(tip[-1], place, atol=1e-12)
 
 
-def test_forces_and_jumps_are_those_of_the_beams(both: tuple[Response, Response]) -> None:
-    """Bars: 1 % in every force except beside a jump, jumps within one load parameter; measured .11 %, .16."""
+def test_forces_and_jumps_are_those_of_the_beams(
+    both: tuple[Response, Response], request: pytest.FixtureRequest, stated
+) -> None:
+    """Forces except beside a jump, and jumps."""
     solid, beams = both
+    forces, jumps = [], []
     for pair in (UPPER, TIP, LOWER):
         ours, theirs = solid.contacts[pair].force, beams.contacts[pair].force
         changes = np.flatnonzero(np.diff(theirs > 0)) + 1
         beside = np.min(np.abs(np.arange(ours.size)[:, None] - changes), axis=1) <= 1
         away = (theirs > 0) & ~beside
-        np.testing.assert_allclose(ours[away], theirs[away], rtol=2e-3, err_msg=pair)
+        forces.append(np.abs(ours[away] / theirs[away] - 1).max())
         np.testing.assert_array_equal(np.flatnonzero(np.diff(ours > 0)) + 1, changes, err_msg=pair)
         slips = solid.contacts[pair].slip_off, beams.contacts[pair].slip_off
         if np.isfinite(slips[1]):
-            assert abs(slips[0] - slips[1]) < 1 / 76
+            jumps.append(76 * abs(slips[0] - slips[1]))
+    assert max(forces) <= 2e-3
+    assert max(jumps) < 1
+    stated(f"solid.double-beam-{request.node.callspec.params['both']}", max(forces), max(jumps))
 
 
 def test_contact_forces_between_the_strips_are_internal(both: tuple[Response, Response]) -> None:
@@ -70,7 +76,7 @@ def test_contact_forces_between_the_strips_are_internal(both: tuple[Response, Re
     np.testing.assert_allclose(reactions, -vectors[0] - vectors[1], atol=2e-6)
 
 
-def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one() -> None:
+def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one(stated) -> None:
     """Where pin, upper tip and lower axis meet in one point the lower strip takes the tip's force over from the tip.
 
     The tip stays clenched, its force falls to zero, and only then, at .5386 instead of .5371, does the pin leave the upper
@@ -89,3 +95,4 @@ def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one() ->
         assert min(force[clenched].min() for force in (upper, tip, lower)) > 0
         assert upper[-1] == tip[-1] == 0
         assert 0.5385 < 0.76 * result.contacts[UPPER].slip_off < 0.539
+        stated("solid.leaves-upper", 0.76 * result.contacts[UPPER].slip_off)

@@ -54,7 +54,7 @@ def boundary(mesh, height=0.6):
 @elements
 @laws
 @pytest.mark.parametrize("plane", PLANES)
-def test_patch_test(strip, material, element, plane):
+def test_patch_test(strip, material, element, plane, stated):
     """Linear displacements on the boundary of distorted elements: a constant gradient inside, to 1e-12."""
     mesh = distorted(strip, element, 4)
     H = np.array([[0.1, 0.3], [-0.2, 0.05]])
@@ -62,6 +62,7 @@ def test_patch_test(strip, material, element, plane):
     law = elastic_law(material, E, 0.3, plane)
     u = solve_inside(mesh, law, exact, 0 * exact)
     np.testing.assert_allclose(u, exact, rtol=0, atol=1e-12)
+    stated("solid.patch", np.abs(u - exact).max(), bound=True)
     P = law.stress(deformation_gradient(mesh, u))
     expected = law.stress((np.eye(2) + H)[:, :, None])[:, :, 0]
     np.testing.assert_allclose(P, expected[:, :, None, None] + 0 * P, rtol=0, atol=1e-10 * E)
@@ -111,7 +112,7 @@ def gradient(X, Y):
 
 @elements
 @laws
-def test_manufactured_solution_in_large_strain(strip, material, element):
+def test_manufactured_solution_in_large_strain(strip, material, element, stated):
     """Orders p + 1 in the mean square of u and p in that of its gradient; body force by complex steps."""
     law = elastic_law(material, E, 0.3)
     errors = np.array([manufactured_errors(strip, law, element, n) for n in (8, 16)])
@@ -119,6 +120,8 @@ def test_manufactured_solution_in_large_strain(strip, material, element):
     orders = np.log2(errors[0] / errors[1])
     assert orders[0] == pytest.approx(order + 1, abs=0.15)
     assert orders[1] == pytest.approx(order, abs=0.1)
+    if (element, material) == ("Q2", "st-venant-kirchhoff"):
+        stated("solid.orders", *orders)
 
 
 def manufactured_errors(strip, law, element, n):

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import tsm
+from comparisons.claims.extremes.axes import matrix
+from comparisons.cost.cases import sweep_cases
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 from tsm.batch import march
@@ -17,6 +19,7 @@ from tsm.batch.constants import constants_of, take
 from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.batch.equations import Configurations, Equations
 from tsm.batch.geometry import project
+from tsm.batch.topology import topology
 from tsm.elements import mixed_contact
 from tsm.elements.properties import Properties
 from tsm.model import Model
@@ -439,3 +442,15 @@ def test_some_structures_of_a_record() -> None:
     np.testing.assert_array_equal(part.coefficients.constant, expected.coefficients.constant)
     np.testing.assert_array_equal(part.arc, expected.arc)
     np.testing.assert_array_equal(part.scales.noise, expected.scales.noise)
+
+
+def test_what_the_suite_could_solve_at_once(stated) -> None:
+    """Cases of beams, and groups that share what a batch shares."""
+    extremes = [case for cell in matrix() for case in cell.cases]
+    for name, cases in (("trade", sweep_cases(load_scene("ks-cantilever"))), ("extremes", extremes)):
+        beams = {case for case in cases if case.model == "tsm"}
+        groups = set()
+        for case in beams:
+            structure = to_structure(case.scene, element=case.options.element, elements=case.options.elements)
+            groups.add((repr(topology(structure)), case.scene.times, case.options.tolerance))
+        stated(f"batch.{name}", len(beams), len(groups))

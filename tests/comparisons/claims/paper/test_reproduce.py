@@ -141,24 +141,24 @@ def test_fig8(tmp_path):
     assert runs["ks-tied-tip", "TSM mixed, 20 elements"]["error_path_shape"] < 1e-5
 
 
-def test_fig9(tmp_path):
-    """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8); `mixed` within 2e-7 of the rods."""
+def test_fig9(tmp_path, stated):
+    """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8)."""
     found = run("fig9", tmp_path)
     assert found["exact_events"]["touch"] == pytest.approx(0.149786, abs=1e-6)
-    assert found["exact_events"]["hand-over"] == pytest.approx(0.537111, abs=1e-6)
+    stated("double-beam.hand-over", found["exact_events"]["hand-over"])
     assert found["exact_events"]["slip-off"] == pytest.approx(0.2 + 0.538697355, abs=1e-4)
     assert found["end"] == "pin at the tip"
     depth = {(event["kind"], event["pair"]): event["depth"] for event in found["events"]}
     assert depth["touch", "upper.end->lower"] == pytest.approx(found["exact_events"]["touch"], abs=1e-5)
-    assert depth["touch", "pin->lower"] == pytest.approx(found["exact_events"]["hand-over"], abs=1e-5)
-    assert depth["slip-off", "pin->upper"] == pytest.approx(found["exact_events"]["hand-over"], abs=1e-5)
+    hand_over = depth["touch", "pin->lower"], depth["slip-off", "pin->upper"]
+    error = np.abs(np.array(hand_over) - found["exact_events"]["hand-over"]).max()
+    assert error <= 1e-5
+    stated("double-beam.hand-over-error", error)
     assert depth["slip-off", "pin->lower"] == pytest.approx(found["exact_events"]["slip-off"], abs=1e-5)
     assert [check["stage"] for check in found["checks"]] == [
         "one rod under the pin", "coupled", "coupled", "the other rod under the pin",
     ]  # fmt: skip
-    assert (
-        max(max(check["force"], check["arc"]) for check in found["checks"]) < 2e-7
-    )  # as results/paper.md states it
+    stated("paper.double-beam", max(max(check["force"], check["arc"]) for check in found["checks"]))
     assert [stage["key"] for stage in found["stages"]] == list("abcdef")
     depths = [stage["depth"] for stage in found["stages"]]
     assert depths == sorted(depths)
@@ -213,7 +213,7 @@ def test_help_loads_nothing_heavy():
 
 
 @pytest.mark.slow
-def test_all_with_full_settings(tmp_path):
+def test_all_with_full_settings(tmp_path, stated):
     done = reproduce("all", tmp_path, quick=False, report=lambda _: None)
     assert done.stopped == ()
     for figure in FIGURES:
@@ -223,30 +223,28 @@ def test_all_with_full_settings(tmp_path):
     assert set(found.values()) <= set(Verdict)
     for claim in CLAIMS:
         assert found[claim.text] == FULL[claim.judge.__qualname__], claim.text
-    page = Path(__file__).parents[4] / "docs" / "results" / "paper.md"
     counts = Counter(FULL[claim.judge.__qualname__] for claim in CLAIMS)
-    assert f"{len(CLAIMS)} claims" in page.read_text()
+    stated("paper.claims", len(CLAIMS))
+    for verdict, name in ((Verdict.REPRODUCED, "reproduced"), (Verdict.IN_DIRECTION, "in-direction"),
+                          (Verdict.NOT_REPRODUCED, "not-reproduced"), (Verdict.CANNOT_BE_TOLD, "open")):  # fmt: skip
+        stated(f"paper.{name}", counts[verdict])
     summary = "; ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
     assert summary in (tmp_path / "claims.md").read_text()
-    assert summary in " ".join(page.read_text().split())
     critical = json.loads((tmp_path / "fig7b.json").read_text())
     for element, slope, within in (
         ("euler-bernoulli-simple", -3, 0.05), ("euler-bernoulli-cantilever", -3, 0.05), (turned_frame.NAME, -3, 0.05),
         ("timoshenko", -1, 0.05), ("mixed", 0, 0.05),
     ):  # fmt: skip
         assert critical["slopes_of_the_floor"][element] == pytest.approx([slope, slope], abs=within)
-    # round-off decides them, so another processor may differ; results/paper.md states 7e-11, 3e-10, 1e-12 and at most 2.5
-    for element, needed in (
-        ("euler-bernoulli-simple", 7e-11),
-        ("euler-bernoulli-cantilever", 3e-10),
-        ("timoshenko", 1e-12),
-    ):
-        assert needed / 2 < critical["tolerance_for_the_printed"][element] < 2 * needed
+    for element in ("euler-bernoulli-simple", "euler-bernoulli-cantilever", "timoshenko"):
+        # round-off decides them, so another processor may differ
+        stated(f"paper.tolerance-{element}", critical["tolerance_for_the_printed"][element], relative=0.5)
     simple, cantilever = (
         np.array([one["median"] for one in critical["critical_area"][f"euler-bernoulli-{form}"].values()])
         for form in ("simple", "cantilever")
     )
     assert 2.0 < (simple / cantilever).max() < 2.55
+    stated("paper.gain", (simple / cantilever).max(), relative=0.2)
     assert (simple / cantilever)[-2:] == pytest.approx(1.0, abs=0.1)
     for tolerance, areas in critical["critical_area"]["mixed"].items():
         assert areas["largest"] <= NEAREST, tolerance

@@ -171,7 +171,7 @@ def test_pin_on_the_face_up_to_a_tenth() -> None:
 
 @needs_ccx
 @pytest.mark.slow
-def test_study_is_within_its_bars() -> None:
+def test_study_is_within_its_bars(stated) -> None:
     told: list[str] = []
     rows = peers(told.append)
     tips = [row for row in rows if row["case"].startswith("tip load")]
@@ -186,3 +186,12 @@ def test_study_is_within_its_bars() -> None:
         assert row["message"] or row["calculix"]
         assert row["largest"] <= 1e-3
     assert len(told) == 12
+    for clamp in ("rod", "full"):
+        for mesh in ("50x2", "100x4"):
+            found = [row["difference"] for row in tips if (row["clamp"], row["mesh"]) == (clamp, mesh)]
+            stated(f"calculix.{clamp}-{mesh}", *found)
+    for step in reached:
+        mine = [row for row in pins if row["step"] == step]
+        there = [row["difference"] for row in mine if row["difference"] is not None]
+        stated(f"calculix.pin-{step:g}", mine[0]["reached"], *there)
+        stated(f"calculix.largest-{step:g}", mine[0]["largest"])
