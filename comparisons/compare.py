@@ -1,7 +1,7 @@
 """One scene through every model: table, pictures and files."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +11,7 @@ from comparisons import models
 from comparisons.budget import Budget, error_budget
 from comparisons.errors import Errors, error_histories, errors, largest
 from comparisons.files import alone_in, writable_folder, write_text
-from comparisons.models import Model, certified, solve
+from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.verify import CHECK_FAILED
@@ -115,7 +115,9 @@ def _silent(_: str) -> AbstractContextManager[Watch]:
     return nullcontext(unwatched)
 
 
-def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _silent) -> Comparison:
+def compare(
+    scene: Scene, folder: Path, report: Report, watching: Watching = _silent, others: Sequence[str] = ()
+) -> Comparison:
     """Solve `scene` with every model that can state it and write the results to `folder`.
 
     Parameters
@@ -128,6 +130,8 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
         Receives lines about the progress.
     watching : callable
         ``watching(label)`` gives a context with the `Watch` of a run.
+    others : sequence of str
+        Programs of others that run as well, by their names or program files.
 
     Raises
     ------
@@ -137,7 +141,8 @@ def compare(scene: Scene, folder: Path, report: Report, watching: Watching = _si
     folder = writable_folder(folder)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
-    responses = _solve_all(scene, report, watching)
+    runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
+    responses = _solve_all(scene, [*runs, *RUNS], report, watching)
     reference = responses[ROD.label]
     rows = [
         Row(
@@ -163,14 +168,14 @@ def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
     return {**found, "path": {name: largest(values) for name, values in reached.items()}}
 
 
-def _solve_all(scene: Scene, report: Report, watching: Watching) -> dict[str, Response]:
+def _solve_all(scene: Scene, runs: Sequence[Run], report: Report, watching: Watching) -> dict[str, Response]:
     responses: dict[str, Response] = {}
-    for number, run in enumerate(RUNS, 1):
+    for number, run in enumerate(runs, 1):
         try:
-            with watching(f"[{number}/{len(RUNS)}] {run.label}") as watch:
+            with watching(f"[{number}/{len(runs)}] {run.label}") as watch:
                 response = certified(solve(scene, run.model, run.options, watch), scene)
         except ModelError as error:
-            report(f"[{number}/{len(RUNS)}] {run.label}: left out, {error}")
+            report(f"[{number}/{len(runs)}] {run.label}: left out, {error}")
             continue
         responses[run.label] = response
         outcome = (
@@ -178,7 +183,7 @@ def _solve_all(scene: Scene, report: Report, watching: Watching) -> dict[str, Re
             if response.completed
             else f"{response.status}: {response.message}"
         )
-        report(f"[{number}/{len(RUNS)}] {run.label}: {outcome}")
+        report(f"[{number}/{len(runs)}] {run.label}: {outcome}")
     return responses
 
 

@@ -5,8 +5,8 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from comparisons.models import MODELS
-from comparisons.models.options import ModelError, Options
+from comparisons.models import find
+from comparisons.models.options import Options
 from comparisons.scene import Scene, to_toml
 from comparisons.version import version
 
@@ -23,7 +23,7 @@ class Case:
     scene : Scene
         The scene.
     model : str
-        Key of `comparisons.models.MODELS`.
+        Name of a model, see `comparisons.models.find`.
     options : Options
         The model's options.
 
@@ -38,8 +38,7 @@ class Case:
     options: Options = field(default_factory=Options)
 
     def __post_init__(self) -> None:
-        if self.model not in MODELS:
-            raise ModelError(f"model = {self.model}: must be one of {', '.join(MODELS)}")
+        find(self.model)
 
     @property
     def key(self) -> str:
@@ -48,17 +47,23 @@ class Case:
             "version": version(),
             "scene": to_toml(self.scene),
             "mesh_files": [_digest(beam.solid_mesh_file) for beam in self.scene.beams],
-            "model": self.model,
+            "model": find(self.model).identity,
             "options": asdict(self.options),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     @property
+    def model_name(self) -> str:
+        """Name of the model, also where `model` is a program file."""
+        return find(self.model).name
+
+    @property
     def label(self) -> str:
         """Short text for people: ``tsm mixed 10``, ``solid Q2 50x2``."""
-        setting = MODELS[self.model].setting(self.scene, self.options)
+        model = find(self.model)
+        setting = model.setting(self.scene, self.options)
         branch = "" if self.options.branch is None else f" {self.options.branch}"
-        return f"{self.model} {setting}".rstrip() + branch
+        return f"{model.name} {setting}".rstrip() + branch
 
 
 def _digest(mesh_file: str | None) -> str | None:

@@ -4,13 +4,14 @@ import json
 import statistics
 from dataclasses import dataclass, replace
 from importlib import import_module
+from os import times
 from time import process_time
 
 import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.memory import with_peak_memory
-from comparisons.models import MODELS, certified, solve
+from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError
 from comparisons.output import plain
 from comparisons.response import Response
@@ -69,7 +70,7 @@ def measure(case: Case, *, repeats: int = 3) -> Measurement:
 
     A solution that stops is measured like any other. A scene that the model refuses has the status ``REFUSED``. Neither raises.
     """
-    for library in MODELS[case.model].libraries:
+    for library in find(case.model).libraries:
         import_module(library)
     try:
         (response, first), peak = with_peak_memory(lambda: _timed(case))
@@ -91,9 +92,15 @@ def _verdict(response: Response, case: Case) -> str:
 
 
 def _timed(case: Case) -> tuple[Response, float]:
-    began = process_time()
+    began = _processor_seconds()
     response = solve(case.scene, case.model, case.options)
-    return response, process_time() - began
+    return response, _processor_seconds() - began
+
+
+def _processor_seconds() -> float:
+    """Processor time of this process, and of child processes that have ended, which programs of others are [s]."""
+    now = times()
+    return process_time() + now.children_user + now.children_system
 
 
 def unmeasured(status: str, message: str) -> Measurement:

@@ -91,13 +91,13 @@ class Store:
     def older(self, cases: Mapping[str, Case]) -> dict[str, tuple[str, str]]:
         """Return version and status of the settled results that other versions have of `cases`, by the cases' keys.
 
-        If several versions have a result, the last version by name is returned. A case with a mesh file has none, because the content
-        of the file at that time is not known.
+        If several versions have a result, the last version by name is returned. A case with a mesh file or a program file has none,
+        because the content of the file at that time is not known.
         """
         keys = {
             (to_toml(case.scene), case.model, options_text(case)): key
             for key, case in cases.items()
-            if not any(beam.solid_mesh_file for beam in case.scene.beams)
+            if case.model == case.model_name and not any(beam.solid_mesh_file for beam in case.scene.beams)
         }
         with database_errors(self.path, "cannot be read"):
             rows = self._connection.execute(
@@ -194,7 +194,7 @@ def _row(key: str, case: Case, measurement: "Measurement") -> dict[str, object]:
     return {
         "key": key,
         "scene": case.scene.name,
-        "model": case.model,
+        "model": case.model_name,
         "label": case.label,
         "definition": to_toml(case.scene),
         "options": options_text(case),

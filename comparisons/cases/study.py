@@ -10,8 +10,8 @@ from typing import Any
 from comparisons.cases import settings
 from comparisons.cases.case import Case
 from comparisons.cases.ranges import values
-from comparisons.models import MODELS
-from comparisons.models.options import BRANCHES, Options
+from comparisons.models import find
+from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, Rule, RuleError
@@ -48,7 +48,7 @@ def read_study(path: Path) -> Study:
     """Return the study that the TOML file `path` states.
 
     The table ``[study]`` has ``name``, ``scene`` (a built-in one, or a file beside the study) and ``repeats`` (3). Every table
-    ``[[run]]`` has ``model``, and may have the model's options and any key of the scene's records, each with one value, a list of
+    ``[[run]]`` has ``model`` (a name, or a program file beside the study), and may have the model's options and any key of the scene's records, each with one value, a list of
     values or a range; its cases are all combinations, the first key varying slowest.
 
     Raises
@@ -66,7 +66,7 @@ def read_study(path: Path) -> Study:
         head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
     )
     try:
-        cases = tuple(dict.fromkeys(_cases(scene, tables["run"])))
+        cases = tuple(dict.fromkeys(_cases(scene, tables["run"], path.parent)))
     except FieldError as error:
         raise StudyError(source, str(error)) from None
     return Study(name=head["name"], repeats=head["repeats"], cases=cases)
@@ -96,7 +96,7 @@ def _checked(key: str, value: object, rule: Rule) -> Any:
         raise FieldError(key, value, str(error)) from None
 
 
-def _cases(scene: Scene, runs: list[dict[str, Any]]) -> Iterator[Case]:
+def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path) -> Iterator[Case]:
     axes: list[dict[settings.Path, tuple[object, ...]]] = []
     for i, run in enumerate(runs):
         try:
@@ -109,7 +109,7 @@ def _cases(scene: Scene, runs: list[dict[str, Any]]) -> Iterator[Case]:
     for i, varied in enumerate(axes):
         for chosen in product(*varied.values()):
             try:
-                yield _case(scene, dict(zip(varied, chosen, strict=True)))
+                yield _case(scene, dict(zip(varied, chosen, strict=True)), folder)
             except FieldError as error:
                 raise error.within(f"run[{i}].") from None
 
@@ -160,6 +160,18 @@ def _named_axes(
         yield (kind, name, key), values(f"{place}.{key}", value)
 
 
+def _model(value: object, folder: Path) -> str:
+    """Accept a model's name, or a program file ``NAME.toml`` in `folder`, as its path."""
+    name = rules.text(value)
+    try:
+        if name.endswith(".toml"):
+            name = str((folder / name).resolve())
+        find(name)
+    except ModelError as error:
+        raise RuleError(str(error).partition(": ")[2]) from None
+    return name
+
+
 def _element(value: object) -> str:
     from tsm import ELEMENTS
 
@@ -177,14 +189,14 @@ OPTION_RULES: dict[str, Rule] = {
 assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
 
 
-def _case(scene: Scene, chosen: dict[settings.Path, object]) -> Case:
-    model = _checked("model", chosen[("model",)], rules.choice(*MODELS))
+def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
+    model = _checked("model", chosen[("model",)], lambda value: _model(value, folder))
     options = {}
     for key, rule in OPTION_RULES.items():
         if (key,) in chosen:
             value = chosen[(key,)]
-            if key not in MODELS[model].options:
-                raise FieldError(key, value, f'is no option of model = "{model}"')
+            if key not in find(model).options:
+                raise FieldError(key, value, f'is no option of model = "{find(model).name}"')
             options[key] = _checked(key, value, rule)
     changes = {path: value for path, value in chosen.items() if len(path) > 1}
     return Case(scene=settings.changed(scene, changes), model=model, options=Options(**options))

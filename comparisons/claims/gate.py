@@ -7,7 +7,7 @@ from functools import partial
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
 from comparisons.errors import difference
-from comparisons.models import MODELS, ROD, certified, solve
+from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import Options
 from comparisons.models.registry import COARSE
 from comparisons.response import Response
@@ -83,7 +83,7 @@ def gate(
     claims = (
         Claim(
             name=f"{quantity} <= {bound:g}",
-            statement=f"the error of {model} in {scene.name}",
+            statement=f"the error of {response.model} in {scene.name}",
             source=f"against {reference.model}",
             quantities=(Quantity(name=quantity, exact=0.0, scale=1.0),),
             allowance=Allowance(error=bound, why="asked for"),
@@ -96,4 +96,4 @@ def gate(
 
 def _reference(scene: Scene, against: str | None) -> Response:
     name = ROD.name if against is None else against
-    return solve(scene, name, MODELS[name].reference or Options())
+    return solve(scene, name, find(name).reference or Options())

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
-from comparisons.cli.options import add_options, chosen
+from comparisons.cli.options import ModelNames, add_options, chosen
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
 from comparisons.files import writable_file, write_text
-from comparisons.models import MODELS, TSM
+from comparisons.models import TSM
 from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
 
@@ -34,7 +34,7 @@ def add_to(commands: "Commands") -> None:
         "answer", metavar="RESPONSE.json|SCENE", help="what solve --json wrote, or a scene to solve and judge"
     )
     parser.add_argument("--scene", metavar="SCENE", help="of a response, where it is not a built-in one")
-    parser.add_argument("--model", choices=MODELS, help="of a scene: the model that answers (tsm)")
+    parser.add_argument("--model", choices=ModelNames(), help="of a scene: the model that answers (tsm)")
     add_options(parser, "elements", "element", "mesh")
     parser.add_argument(
         "--all", action="store_true", help="judge every load parameter and follow the path between them"

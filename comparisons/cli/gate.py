@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import add_options, chosen
+from comparisons.cli.options import ModelNames, add_options, chosen
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import writable_file, write_text
-from comparisons.models import MODELS, TSM
+from comparisons.models import TSM
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
 
@@ -35,8 +35,10 @@ def add_to(commands: "Commands") -> None:
         metavar="QUANTITY=X",
         help="a bound, any number of them: " + ", ".join(QUANTITIES),
     )
-    gate.add_argument("--model", choices=MODELS, default=TSM.name, help="the model that is measured (tsm)")
-    gate.add_argument("--against", choices=MODELS, help="the model that it is measured against")
+    gate.add_argument(
+        "--model", choices=ModelNames(), default=TSM.name, help="the model that is measured (tsm)"
+    )
+    gate.add_argument("--against", choices=ModelNames(), help="the model that it is measured against")
     add_options(gate, "elements", "element", "mesh")
     gate.add_argument("--junit", metavar="FILE", help="write the bounds as JUnit XML")
     gate.set_defaults(run=run)
@@ -64,7 +66,7 @@ def run(given: argparse.Namespace) -> int:
     found = gate(scene, given.model, chosen(given), dict(given.max_error), given.against)
     if file is not None:
         write_text(file, found.junit())
-    print(f"{scene.name}: {given.model} against {found.reference.model}")
+    print(f"{scene.name}: {found.response.model} against {found.reference.model}")
     for item in found.bounds:
         print(f"  {item.name:8s} {item.error:9.3g}  {'<=' if item.holds else '> '} {item.allowed:g}")
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])

@@ -1,11 +1,13 @@
 """The options of the models as arguments of commands."""
 
 import argparse
+from collections.abc import Iterator
 from typing import Any
 
 from comparisons.cli import values
-from comparisons.models import MODELS
-from comparisons.models.options import BRANCHES, Options
+from comparisons.models import MODELS, find
+from comparisons.models.options import BRANCHES, ModelError, Options
+from comparisons.scene import InputError
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
@@ -26,6 +28,23 @@ ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
 def argument(name: str) -> str:
     """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
     return "--" + name.replace("_", "-")
+
+
+class ModelNames:
+    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the models of this package."""
+        return iter(MODELS)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a name is known, or is the name of a file that may state a program."""
+        try:
+            return find(str(name)) is not None
+        except ModelError:
+            return False
+        except InputError:
+            return True
 
 
 def add_options(parser: argparse.ArgumentParser, *names: str) -> None:

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
-from comparisons.cli.options import add_options, argument, chosen
+from comparisons.cli.options import ModelNames, add_options, argument, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.models import MODELS, TSM
+from comparisons.models import TSM
 from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import built_in_scenes, load_scene
@@ -29,7 +29,7 @@ def add_to(commands: "Commands") -> None:
 
     solve = commands.add_parser("solve", help="solve a scene with one model", epilog=EPILOG)
     solve.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    solve.add_argument("--model", choices=MODELS, help="left to the scene with --accuracy, else needed")
+    solve.add_argument("--model", choices=ModelNames(), help="left to the scene with --accuracy, else needed")
     solve.add_argument(
         "--accuracy",
         type=values.part,

@@ -62,9 +62,9 @@ class Model(ABC):
         Whether the model has the stretch and the shear of Reissner's rod.
     """
 
-    name: ClassVar[str]
-    label: ClassVar[str]
-    options: ClassVar[tuple[str, ...]] = ()
+    name: str
+    label: str
+    options: tuple[str, ...] = ()
     libraries: ClassVar[tuple[str, ...]] = ()
     meshed: ClassVar[bool] = True
     refinable: ClassVar[bool] = False
@@ -98,6 +98,11 @@ class Model(ABC):
     def colour(self) -> str:
         """Colour of the model as a whole: the colour of its first style."""
         return next(iter(self.styles().values())).colour
+
+    @property
+    def identity(self) -> str:
+        """Text by which stored studies know the model; it changes with whatever outside this package changes its answers."""
+        return self.name
 
     def run_label(self, options: Options) -> str:  # noqa: ARG002 - others have settings
         """Return the label of one run, as ``TSM mixed, 20 elements``."""

@@ -27,8 +27,28 @@ MODELS: dict[str, Model] = {
 }
 
 
+def find(name: str) -> Model:
+    """Return a model by its name: a key of `MODELS`, a program of others by its name, or a program file ``NAME.toml``.
+
+    Raises
+    ------
+    ModelError
+        If there is no such model.
+    ProgramFileError
+        If the program file cannot be read.
+    """
+    if name in MODELS:
+        return MODELS[name]
+    from comparisons.models.outside.programs import outside
+
+    found = outside(name, taken=MODELS)
+    if found is None:
+        raise ModelError(f"model = {name}: must be one of {', '.join(MODELS)}, or a program file NAME.toml")
+    return found
+
+
 def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch = unwatched) -> Response:
-    """Return the verified response of `model`, a key of `MODELS`, to `scene`; `watch` receives every accepted step.
+    """Return the verified response of `model`, a name for `find`, to `scene`; `watch` receives every accepted step.
 
     Raises
     ------
@@ -37,16 +57,16 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     """
     from comparisons.models.verify import verified
 
-    if model not in MODELS:
-        raise ModelError(f"model = {model}: must be one of {', '.join(MODELS)}")
-    given = options or Options()
+    chosen, given = find(model), options or Options()
     for option, value in vars(given).items():
-        if value is not None and option not in MODELS[model].options:
-            raise ModelError(f"{model}: {option} = {value}: not an option of this model")
+        if value is not None and option not in chosen.options:
+            raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
     try:
-        return verified(MODELS[model].solve(scene, given, watch), scene)
+        response = chosen.solve(scene, given, watch)
+        reported = response.completed or response.reported_success
+        return replace(verified(response, scene), reported_success=reported)
     except ValueError as error:
-        raise ModelError(f"{model}: {error}") from error
+        raise ModelError(f"{chosen.name}: {error}") from error
 
 
 def certified(

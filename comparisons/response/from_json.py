@@ -13,6 +13,9 @@ from comparisons.scene.tables import InputError, read_text
 
 Array = NDArray[np.float64]
 
+LARGEST_WHOLE = 1e15
+"""Largest magnitude of a whole number in a list."""
+
 
 class ResponseError(InputError):
     """A JSON file that does not hold a response."""
@@ -63,14 +66,15 @@ def restated(data: Any) -> Response:
         status=_text(data, "status"),
         message=str(data.get("message", "read back")),
         completed=data["status"] == "COMPLETED",
+        reported_success=data.get("reported_success") is True,
         continuum=data.get("continuum") is True,
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,
         tips={beam: _numbers(tips, beam, (steps, 2), "tips.") for beam in tips},
         newton_iterations=np.zeros(steps, dtype=np.int64) if iterations is None else iterations,
-        cutbacks=data.get("cutbacks", 0),
-        unknowns=data.get("unknowns", 0),
+        cutbacks=_whole(data, "cutbacks"),
+        unknowns=_whole(data, "unknowns"),
         wall_seconds=float(_numbers({"wall_seconds": 0.0, **data}, "wall_seconds", ())),
         axis_line=SampledAxes(
             arc_length={beam: arc for beam, (arc, _) in axes.items()},
@@ -79,13 +83,34 @@ def restated(data: Any) -> Response:
         grid=no_grid,
         events=_events(data),
         index=_given(data, "index", (steps,)),
-        critical=tuple(_critical(point) for point in data.get("critical", ())),
+        critical=tuple(_critical(point) for point in _list(data, "critical")),
     )
 
 
 def _given(data: dict[str, Any], key: str, shape: tuple[int]) -> NDArray[np.int64] | None:
     """Return a list of whole numbers; None where the file does not have it."""
-    return None if data.get(key) is None else _numbers(data, key, shape).astype(np.int64)
+    if data.get(key) is None:
+        return None
+    found = _numbers(data, key, shape)
+    if not np.all(np.abs(found) <= LARGEST_WHOLE):
+        raise FieldError(key, MISSING, "must be a list of whole numbers")
+    return found.astype(np.int64)
+
+
+def _whole(data: dict[str, Any], key: str) -> int:
+    """Return a whole number, 0 where the file does not have it."""
+    found = data.get(key, 0)
+    if isinstance(found, bool) or not isinstance(found, int):
+        raise FieldError(key, found, "must be a whole number")
+    return found
+
+
+def _list(data: dict[str, Any], key: str) -> list[Any]:
+    """Return a list, an empty one where the file does not have it."""
+    found = data.get(key, [])
+    if not isinstance(found, list):
+        raise FieldError(key, MISSING, "must be a list")
+    return found
 
 
 def _critical(data: Any) -> CriticalPoint:
@@ -121,7 +146,7 @@ def _numbers(data: dict[str, Any], key: str, shape: tuple[int | None, ...], pref
     """Return a list of numbers, null as nan."""
     try:
         found = np.array(data.get(key), dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.array(0.0)
     if found.size == 0 and 0 in shape:
         return np.zeros([size or 0 for size in shape])
@@ -155,10 +180,17 @@ def _support(data: dict[str, Any], prefix: str, steps: int) -> SupportHistory:
 
 
 def _events(data: dict[str, Any]) -> tuple[ContactEvent, ...] | None:
-    found = data.get("events")
-    if found is None:
+    if data.get("events") is None:
         return None
-    try:
-        return tuple(ContactEvent(**event) for event in found)
-    except TypeError:
-        raise FieldError("events", MISSING, "must be a list of events") from None
+    return tuple(_event(event) for event in _list(data, "events"))
+
+
+def _event(data: Any) -> ContactEvent:
+    event = _table({"events": data}, "events")
+    numbers = {
+        key: float(_numbers(event, key, (), "events."))
+        for key in ("load_parameter", "arc_position", "force", "released")
+    }
+    return ContactEvent(
+        kind=_text(event, "kind"), pair=_text(event, "pair"), element=_whole(event, "element"), **numbers
+    )

@@ -25,7 +25,7 @@ class ContactHistory:
         Distance along the undeformed axis from the beam's start; nan where the pair is open.
     gap : ndarray, shape (s,)
         Zero where closed, or minus the penetration for a penalty model; positive or nan where open.
-    compliance : float
+    compliance : float or ndarray, shape (s,)
         Penetration per force of a penalty model, ``gap = -compliance force``.
     slip_off : float
         Load parameter at which the node left the beam over its free end; nan if it did not.
@@ -36,7 +36,7 @@ class ContactHistory:
     force: Array
     arc_position: Array
     gap: Array
-    compliance: float = 0.0
+    compliance: float | Array = 0.0
     slip_off: float = np.nan
     vector: Array | None = None
 
@@ -203,6 +203,8 @@ class Response:
         Critical points that the model met.
     certificate : Certificate, optional
         Verdict of the referee on the answer.
+    reported_success : bool
+        Whether the model itself reported a complete solution, whatever the checks found.
     """
 
     model: str
@@ -227,6 +229,12 @@ class Response:
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()
     certificate: "Certificate | None" = None
+    reported_success: bool = False
+
+    @property
+    def false_success(self) -> bool:
+        """Whether the model reported a complete solution that a check or the referee refused: it said success and was wrong."""
+        return self.reported_success and not self.completed
 
     @property
     def iterations(self) -> int:

@@ -39,6 +39,7 @@ def as_dict(response: Response) -> dict[str, Any]:
     return {
         "status": response.status,
         "message": response.message,
+        "reported_success": response.reported_success,
         "model": response.model,
         "continuum": response.continuum,
         "scene": response.scene,

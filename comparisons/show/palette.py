@@ -4,6 +4,7 @@ Elements of one model differ by markers and dashes, which also tell the models a
 """
 
 from comparisons.models import MODELS, Style
+from comparisons.models.outside.programs import read_before
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -19,7 +20,11 @@ PIN = VERMILION
 
 
 def _styles() -> dict[str, Style]:
-    found = {words: style for model in MODELS.values() for words, style in model.styles().items()}
+    found = {
+        words: style
+        for model in (*MODELS.values(), *read_before())
+        for words, style in model.styles().items()
+    }
     return dict(sorted(found.items(), key=lambda item: -len(item[0])))
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.files import replacing
-from comparisons.models import MODELS
+from comparisons.models import find
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
@@ -101,7 +101,7 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
 
 def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
     """Return the line of a model; beams with few elements take the next marker, which marks their nodes."""
-    model = MODELS[response.model]
+    model = find(response.model)
     if not model.meshed:
         return EXACT
     if model.continuum:

@@ -11,6 +11,7 @@ PAGES = {
     "messages.md": messages.page,
     "statuses.md": statuses.page,
     "response.md": response.page,
+    "resolved-scene.md": response.scene_page,
 }
 """What makes the text of each page."""
 

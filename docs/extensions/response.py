@@ -1,4 +1,4 @@
-"""The JSON file of a response, from its schema."""
+"""The JSON texts of a response and of a resolved scene, from their schemas."""
 
 import json
 from collections.abc import Iterator
@@ -7,13 +7,19 @@ from typing import Any
 
 from docs.extensions.markdown import table, text
 
-FILE = Path(__file__).parents[1] / "reference" / "response.schema.json"
-SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+FOLDER = Path(__file__).parents[1] / "reference"
+SCHEMA: dict[str, Any] = json.loads((FOLDER / "response.schema.json").read_text(encoding="utf-8"))
+SCENE: dict[str, Any] = json.loads((FOLDER / "resolved-scene.schema.json").read_text(encoding="utf-8"))
 
 
 def page() -> str:
-    """Return a table with a row for every key of the file."""
+    """Return a table with a row for every key of a response."""
     return table(("key", "type", "meaning"), _rows("", SCHEMA)) + "\n"
+
+
+def scene_page() -> str:
+    """Return a table with a row for every key of a resolved scene."""
+    return table(("key", "type", "meaning"), _rows("", SCENE)) + "\n"
 
 
 def _rows(prefix: str, schema: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
@@ -42,9 +48,12 @@ def _resolved(schema: dict[str, Any]) -> dict[str, Any]:
 
 def _sort(item: dict[str, Any]) -> str:
     if "$ref" in item:
-        return {"history": "s numbers", "vectors": "s pairs of numbers", "support": "table"}[
-            item["$ref"].rpartition("/")[2]
-        ]
+        return {
+            "history": "s numbers",
+            "vectors": "s pairs of numbers",
+            "support": "table",
+            "vector": "2 numbers",
+        }[item["$ref"].rpartition("/")[2]]
     if "enum" in item:
         return " or ".join(f"`{value}`" for value in item["enum"])
     kind = item["type"]

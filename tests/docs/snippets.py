@@ -71,11 +71,11 @@ def shows(printed: str, stated: str) -> bool:
 def run_page(markdown: str, folder: Path, *, slow: bool) -> None:
     """Run the blocks of a page in `folder`, the current one.
 
-    A block whose first line is ``# NAME.toml`` or ``# NAME.py`` is that file. A ``text`` block behind code is what the code prints.
+    A block whose first line is ``# NAME.toml``, ``# NAME.py`` or ``# NAME.sh`` is that file; a ``py`` or ``bash`` block is not run itself. A ``text`` block behind code is what the code prints.
     """
     printed: str | None = None
     for kind, text in blocks(markdown):
-        name = re.match(r"# ([\w-]+\.(?:toml|py))\n", text)
+        name = re.match(r"# ([\w-]+\.(?:toml|py|sh))\n", text)
         if name:
             (folder / name[1]).write_text(text)
         if kind == "python":

@@ -10,9 +10,15 @@ import pytest
 import fem_reference
 import tsm
 from comparisons.cli import main
+from comparisons.models.options import Options
+from comparisons.models.outside.request import request
+from comparisons.models.outside.status import ProgramStatus
+from comparisons.scene import built_in_scenes, load_scene
 from comparisons.scene.read import LISTS
 from docs.extensions import response, scene_file, statuses
 from docs.extensions.generated import PAGES, write_pages
+
+FINDINGS = Path(__file__).parents[1] / "comparisons" / "findings"
 
 
 def test_every_key_of_a_scene_is_listed() -> None:
@@ -26,7 +32,11 @@ def test_every_key_of_a_scene_is_listed() -> None:
 
 def test_every_status_is_listed() -> None:
     page = statuses.page()
-    assert all(f"`{status.name}`" in page for kind in (tsm.Status, fem_reference.Status) for status in kind)
+    assert all(
+        f"`{status.name}`" in page
+        for kind in (tsm.Status, fem_reference.Status, ProgramStatus)
+        for status in kind
+    )
 
 
 @pytest.mark.parametrize(
@@ -49,6 +59,17 @@ def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
     jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
+
+
+@pytest.mark.parametrize("scene", [*built_in_scenes(), *map(str, sorted(FINDINGS.glob("*.toml")))])
+def test_a_resolved_scene_obeys_its_schema(scene: str) -> None:
+    found = load_scene(scene)
+    data = json.loads(request(found, Options(elements=7), found.times))
+    jsonschema.Draft202012Validator.check_schema(response.SCENE)
+    jsonschema.Draft202012Validator(response.SCENE).validate(data)
+    assert [beam["elements"] for beam in data["beams"]] == [7] * len(found.beams)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft202012Validator(response.SCENE).validate({**data, "unheard_of": 1})
 
 
 def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path: Path) -> None:

@@ -22,7 +22,15 @@ LONG = [page for page, text in PAGES.items() if any(f"\n{command}" in text for c
 def test_the_pages_are_found() -> None:
     assert {"tutorial.md", "how-to/scene.md", "how-to/element.md", "how-to/study.md"} <= set(PAGES)
     assert {"tutorial.md", "how-to/study.md"} <= set(LONG)
-    known = {"python", "toml", "sh", "text", "yaml"}  # yaml is for a CI system
+    known = {
+        "python",
+        "toml",
+        "sh",
+        "text",
+        "yaml",
+        "py",
+        "bash",
+    }  # yaml is for a CI system, py and bash for programs of others
     assert {kind for text in PAGES.values() for kind, _ in blocks(text)} <= known
 
 

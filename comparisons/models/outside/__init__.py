@@ -1,1 +1,1 @@
-"""Other programs, for comparison on the same problems."""
+"""Programs of others as models: they run in a child process and answer in JSON."""
