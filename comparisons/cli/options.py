@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from comparisons.cli import values
-from comparisons.models import MODELS, find
-from comparisons.models.options import BRANCHES, ModelError, Options
-from comparisons.scene import InputError
+from comparisons.models import MODELS
+from comparisons.models.options import BRANCHES, Options
+from comparisons.models.outside.programs import known
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
@@ -39,12 +39,7 @@ class ModelNames:
 
     def __contains__(self, name: object) -> bool:
         """Whether a name is known, or is the name of a file that may state a program."""
-        try:
-            return find(str(name)) is not None
-        except ModelError:
-            return False
-        except InputError:
-            return True
+        return name in MODELS or known(str(name))
 
 
 def add_options(parser: argparse.ArgumentParser, *names: str) -> None:

@@ -4,7 +4,7 @@ Elements of one model differ by markers and dashes, which also tell the models a
 """
 
 from comparisons.models import MODELS, Style
-from comparisons.models.outside.programs import read_before
+from comparisons.models.outside.programs import used
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -20,11 +20,7 @@ PIN = VERMILION
 
 
 def _styles() -> dict[str, Style]:
-    found = {
-        words: style
-        for model in (*MODELS.values(), *read_before())
-        for words, style in model.styles().items()
-    }
+    found = {words: style for model in (*MODELS.values(), *used()) for words, style in model.styles().items()}
     return dict(sorted(found.items(), key=lambda item: -len(item[0])))
 
 

@@ -1,34 +1,82 @@
-"""The programs of others that are known: program files that were read."""
+"""The models from outside this package: entry points of other packages, and program files."""
+
+from __future__ import annotations
 
 from collections.abc import Container
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model
+from comparisons.models.options import ModelError
 from comparisons.models.outside.program_file import ProgramFileError, read_program
 
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+GROUP = "crossval.models"
+"""Group of the entry points by which other packages offer their models."""
 SUFFIX = ".toml"
 """Suffix of a program file."""
-_READ: dict[str, Model] = {}
-"""Models of the program files read by this process, by name."""
+_USED: dict[str, Model] = {}
+"""The models from outside that this process has used, by name."""
 
 
 def outside(name: str, taken: Container[str] = ()) -> Model | None:
-    """Return the model of a program file ``NAME.toml``, or of one read before by its name; None if there is none.
+    """Return a model that is none of this package; None if there is no such model.
+
+    Parameters
+    ----------
+    name : str
+        A program file ``NAME.toml``, the name of a program file read before, or of an entry point.
+    taken : container of str
+        Names that a program file must not state.
 
     Raises
     ------
     ProgramFileError
         If the file cannot be read, or states a name in `taken`.
+    ModelError
+        If an entry point yields no model.
     """
-    if not name.endswith(SUFFIX):
-        return _READ.get(name)
-    program = read_program(Path(name))
-    if program.name in taken:
-        raise ProgramFileError(name, f'program.name = "{program.name}": must not be the name of a model')
-    _READ[program.name] = program
-    return program
+    if name.endswith(SUFFIX):
+        model: Model | None = read_program(Path(name))
+    else:
+        model = _USED.get(name) or (_loaded(offered()[name]) if name in offered() else None)
+    if model is None:
+        return None
+    if model.name in taken:
+        raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
+    _USED[model.name] = model
+    return model
 
 
-def read_before() -> tuple[Model, ...]:
-    """Return the models of the program files that this process has read."""
-    return tuple(_READ.values())
+def known(name: str) -> bool:
+    """Whether a name may be one of a model from outside; nothing is read or imported."""
+    return name.endswith(SUFFIX) or name in _USED or name in offered()
+
+
+def used() -> tuple[Model, ...]:
+    """Return the models from outside that this process has used."""
+    return tuple(_USED.values())
+
+
+@cache
+def offered() -> dict[str, EntryPoint]:
+    """Return the entry points by which installed packages offer models, by the models' names; nothing of the packages is imported."""
+    from importlib.metadata import entry_points
+
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def _loaded(point: EntryPoint) -> Model:
+    """Return the model that an entry point yields."""
+    try:
+        model = point.load()
+    except Exception as error:
+        raise ModelError(
+            f"entry point {point.name} = {point.value}: {type(error).__name__}: {error}"
+        ) from error
+    if not isinstance(model, Model) or model.name != point.name:
+        raise ModelError(f"entry point {point.name} = {point.value}: must be a Model of this name")
+    return model
