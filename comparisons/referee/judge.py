@@ -63,7 +63,7 @@ def _verdict(
         return Verdict.NOT_AN_EQUILIBRIUM, f"supports and contacts are off by {differences.place:.2g} L"
     if not size <= allowed:
         return Verdict.NOT_AN_EQUILIBRIUM, f"{name} off by {size:.2g}, allowed {allowed:.2g}"
-    imbalance = "" if response.continuum else unbalanced(scene, answer)
+    imbalance = "" if response.continuum or response.outside else unbalanced(scene, answer)
     if imbalance:
         return Verdict.NOT_AN_EQUILIBRIUM, imbalance
     violation = next(inadmissible(scene, exact), "")

@@ -68,6 +68,7 @@ def restated(data: Any) -> Response:
         completed=data["status"] == "COMPLETED",
         reported_success=data.get("reported_success") is True,
         continuum=data.get("continuum") is True,
+        outside=data.get("outside") is True,
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,

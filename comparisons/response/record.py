@@ -170,6 +170,8 @@ class Response:
         Whether the model reports a complete solution.
     continuum : bool
         Whether the model is a two-dimensional body and not a rod.
+    outside : bool
+        Whether a program of others gave the answer, whose forces balance to its own accuracy only.
     load_parameter : ndarray, shape (s,)
         The accepted load parameters of the scene.
     contacts : dict of ContactHistory
@@ -224,6 +226,7 @@ class Response:
     grid: Callable[[int], Grid] = field(repr=False)
     events: tuple[ContactEvent, ...] | None = None
     continuum: bool = False
+    outside: bool = False
     integration_error: float = 0.0
     deformation: Deformation | None = None
     index: NDArray[np.int64] | None = None

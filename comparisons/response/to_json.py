@@ -42,6 +42,7 @@ def as_dict(response: Response) -> dict[str, Any]:
         "reported_success": response.reported_success,
         "model": response.model,
         "continuum": response.continuum,
+        "outside": response.outside,
         "scene": response.scene,
         "load_parameter": response.load_parameter,
         "contacts": {

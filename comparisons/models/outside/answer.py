@@ -79,6 +79,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
     return replace(
         response,
+        outside=True,
         load_parameter=np.array(scene.times[: len(response.load_parameter)]),
         contacts={pair: _penetrating(item) for pair, item in response.contacts.items()},
         grid=lambda k: axis_grid(scene, axes, k),
@@ -101,6 +102,7 @@ def silent(
         status=status,
         message=message,
         completed=False,
+        outside=True,
         reported_success=reported_success,
         load_parameter=none,
         contacts={

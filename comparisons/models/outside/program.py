@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from importlib.util import find_spec
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
-from comparisons.models.options import Options
+from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.child import Limits, found, run
 
 if TYPE_CHECKING:
@@ -41,8 +42,10 @@ class Command:
         Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
     colour : str
         Colour of its lines, in hexadecimal digits.
+    requires : str
+        Python module or program without which `command` cannot run; by default the program of `command`.
     needs : str
-        Sentence on what must be installed, shown if `command` cannot be found.
+        Sentence on how to install what is required.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Command:
     limits: Limits = field(default_factory=Limits)
     elements: tuple[int, ...] = ()
     colour: str = COLOUR
+    requires: str = ""
     needs: str = ""
 
 
@@ -82,10 +86,9 @@ class Program(Model):
 
     def missing(self) -> str | None:
         """Return what must be installed to run the program; None if it can be found."""
-        program = self.command.command[0]
-        if found(program, self.command.folder) is not None:
-            return None
-        return self.command.needs or f"there is no program {program}"
+        program = self.command.requires or self.command.command[0]
+        there = found(program, self.command.folder) or (self.command.requires and find_spec(program))
+        return None if there else self.command.needs or f"there is no program {program}"
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state `scene`: it is asked with the scene and no load parameters."""
@@ -98,6 +101,9 @@ class Program(Model):
         from comparisons.models.outside.status import ProgramError
 
         del watch
+        missing = self.missing()
+        if missing is not None:
+            raise ModelError(missing)
         try:
             text = request(scene, options, scene.times)
             output, seconds = run(self.command.command, self.command.folder, text, self.command.limits)

@@ -1,7 +1,8 @@
-"""The models from outside this package: entry points of other packages, and program files."""
+"""The models from outside this package: adapters, entry points of other packages, and program files."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Container
 from functools import cache
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model
 from comparisons.models.options import ModelError
+from comparisons.models.outside.program import Command, Program
 from comparisons.models.outside.program_file import ProgramFileError, read_program
 
 if TYPE_CHECKING:
@@ -18,6 +20,32 @@ GROUP = "crossval.models"
 """Group of the entry points by which other packages offer their models."""
 SUFFIX = ".toml"
 """Suffix of a program file."""
+ROOT = Path(__file__).parents[3]
+"""Folder of this package, from which the adapters are imported."""
+
+
+def _adapter(name: str, label: str, colour: str, requires: str, needs: str) -> Program:
+    """Return the program of an adapter, which is the module of its name in `comparisons.models.outside.adapters`."""
+    module = f"comparisons.models.outside.adapters.{name}"
+    run = f"import runpy, sys; sys.path.insert(0, {str(ROOT)!r}); runpy.run_module({module!r}, run_name='__main__')"
+    return Program(
+        Command(
+            name=name, label=label, command=(sys.executable, "-c", run), folder=Path.cwd(),
+            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs,
+        )
+    )  # fmt: skip
+
+
+EXTRA = "is needed: install tsm-crossval[others]"
+ADAPTERS: dict[str, Program] = {
+    program.name: program
+    for program in (
+        _adapter(
+            "opensees", "OpenSees", "#882255", "openseespy", f"openseespy {EXTRA}, and Debian's libblas3"
+        ),
+    )
+}
+"""The adapters of this package by name."""
 _USED: dict[str, Model] = {}
 """The models from outside that this process has used, by name."""
 
@@ -28,7 +56,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     Parameters
     ----------
     name : str
-        A program file ``NAME.toml``, the name of a program file read before, or of an entry point.
+        A program file ``NAME.toml``, the name of a program file read before, an adapter, or an entry point.
     taken : container of str
         Names that a program file must not state.
 
@@ -42,7 +70,9 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     if name.endswith(SUFFIX):
         model: Model | None = read_program(Path(name))
     else:
-        model = _USED.get(name) or (_loaded(offered()[name]) if name in offered() else None)
+        model = (
+            _USED.get(name) or ADAPTERS.get(name) or (_loaded(offered()[name]) if name in offered() else None)
+        )
     if model is None:
         return None
     if model.name in taken:
@@ -53,7 +83,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
 
 def known(name: str) -> bool:
     """Whether a name may be one of a model from outside; nothing is read or imported."""
-    return name.endswith(SUFFIX) or name in _USED or name in offered()
+    return name.endswith(SUFFIX) or name in _USED or name in ADAPTERS or name in offered()
 
 
 def used() -> tuple[Model, ...]:

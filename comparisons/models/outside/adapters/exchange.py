@@ -1,0 +1,153 @@
+"""What all adapters share: they read the resolved scene, state the reason of a refusal, and write the response."""
+
+import contextlib
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from time import perf_counter
+from typing import Any
+
+Table = dict[str, Any]
+Points = Sequence[Sequence[float]]
+
+
+class RefusedError(Exception):
+    """The program cannot state the scene; the message is the reason."""
+
+
+class StoppedError(Exception):
+    """The program stopped before the last load parameter; the message is the reason."""
+
+
+class Histories:
+    """The histories of an answer, one state after the other.
+
+    Parameters
+    ----------
+    scene : dict
+        The resolved scene.
+    """
+
+    def __init__(self, scene: Table) -> None:
+        self.scene = scene
+        self.reached: list[float] = []
+        self.axes: Table = {beam["name"]: {"arc_length": [], "position": []} for beam in scene["beams"]}
+        self.contacts: Table = {
+            item["pair"]: {"force": [], "vector": [], "arc_position": [], "gap": []}
+            for item in scene["contacts"]
+        }
+        self.held: dict[str, tuple[list[Sequence[float]], list[float]]] = {
+            item["node"]: ([], []) for item in scene["supports"]
+        }
+
+    def axis(self, beam: str, arcs: Sequence[float], points: Points) -> None:
+        """Add the deformed axis of a beam: arc lengths (m,) and positions (m, 2)."""
+        self.axes[beam]["arc_length"] = list(arcs)
+        self.axes[beam]["position"].append([[float(x), float(y)] for x, y in points])
+
+    def support(self, node: str, force: Sequence[float], moment: float = 0.0) -> None:
+        """Add force and moment of a support on its beam."""
+        forces, moments = self.held[node]
+        forces.append([float(force[0]), float(force[1])])
+        moments.append(float(moment))
+
+    def open(self, pair: str) -> None:
+        """Add an open contact."""
+        self.contact(pair, (0.0, 0.0), None, None)
+
+    def contact(self, pair: str, vector: Sequence[float], arc: float | None, gap: float | None) -> None:
+        """Add a contact: its force on the beam, arc position and gap; both None where the pair is open."""
+        x, y = float(vector[0]), float(vector[1])
+        for key, value in (
+            ("force", (x * x + y * y) ** 0.5),
+            ("vector", [x, y]),
+            ("arc_position", arc),
+            ("gap", gap),
+        ):
+            self.contacts[pair][key].append(value)
+
+    def tables(self) -> Table:
+        """Return the histories by the names of the response; of two supports of a beam the first holds more components."""
+        supports: Table = {}
+        for item in sorted(
+            self.scene["supports"], key=lambda one: (one["motion"].count(None), one["end"] == "end")
+        ):
+            forces, moments = self.held[item["node"]]
+            record = {"force": forces, "moment": moments}
+            if item["beam"] in supports:
+                supports[item["beam"]]["other_end"] = record
+            else:
+                supports[item["beam"]] = record
+        return {
+            "load_parameter": self.reached,
+            "axes": self.axes,
+            "contacts": self.contacts,
+            "supports": supports,
+        }
+
+
+Refusal = Callable[[Table], str | None]
+States = Callable[[Table, Histories], Iterator[float]]
+
+
+def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
+    """Answer the scene on standard input.
+
+    Parameters
+    ----------
+    refusal : callable
+        ``refusal(scene)``: why the program cannot state the scene, None if it can.
+    states : callable
+        ``states(scene, histories)``: adds the states to `histories` and yields the load parameter of each. It raises
+        `StoppedError` where the program stops.
+    continuum : bool
+        Whether the program solves a two- or three-dimensional body.
+    """
+    with _output_aside() as answer:
+        json.dump(_answered(json.load(sys.stdin), refusal, states) | {"continuum": continuum}, answer)
+
+
+def _answered(scene: Table, refusal: Refusal, states: States) -> Table:
+    """Return the tables of the response."""
+    reason = refusal(scene)
+    if reason is not None:
+        return {"status": "REFUSED", "message": reason}
+    histories, began = Histories(scene), perf_counter()
+    status, message = "COMPLETED", "the program reports success"
+    if scene["load_parameters"]:
+        try:
+            for load_parameter in states(scene, histories):
+                histories.reached.append(load_parameter)
+        except RefusedError as error:
+            return {"status": "REFUSED", "message": str(error)}
+        except StoppedError as error:
+            status, message = "STOPPED", str(error)
+    seconds = perf_counter() - began
+    return {"status": status, "message": message, "wall_seconds": seconds, **histories.tables()}
+
+
+@contextlib.contextmanager
+def _output_aside() -> Iterator[Any]:
+    """Give a file that is the standard output, while all that a program prints goes to standard error."""
+    with os.fdopen(os.dup(1), "w", encoding="utf-8") as answer:
+        sys.stdout.flush()
+        os.dup2(2, 1)
+        yield answer
+
+
+def points_along(beam: Table, count: int) -> tuple[list[float], list[tuple[float, float]]]:
+    """Return arc lengths and undeformed positions of `count` equal parts of a beam's axis, ends included."""
+    (x, y), (c, s), length = beam["start"], beam["direction"], beam["length"]
+    arcs = [length * k / count for k in range(count + 1)]
+    return arcs, [(x + c * arc, y + s * arc) for arc in arcs]
+
+
+def refined(scene: Table, steps: int) -> list[list[float]]:
+    """Return the load steps to each load parameter: at least `steps` in all, equal between two load parameters."""
+    times = [0.0, *scene["load_parameters"]]
+    inner = max(1, -(-steps // (len(times) - 1)))
+    return [
+        [before + (t - before) * k / inner for k in range(1, inner)] + [t] for before, t in pairwise(times)
+    ]

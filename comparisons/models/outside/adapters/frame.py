@@ -1,0 +1,115 @@
+"""A scene as a frame of nodes and straight elements, for adapters of beam programs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from comparisons.models.outside.adapters.exchange import Histories, Table, points_along
+
+
+@dataclass(frozen=True, kw_only=True)
+class Element:
+    """A straight element.
+
+    Attributes
+    ----------
+    beam : dict
+        The beam of the resolved scene.
+    nodes : (int, int)
+        Indices of its nodes.
+    arc : float
+        Arc position of its first node.
+    length : float
+        Undeformed length.
+    """
+
+    beam: Table
+    nodes: tuple[int, int]
+    arc: float
+    length: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """Nodes and elements of all beams; joined beams share a node.
+
+    Attributes
+    ----------
+    points : list of (float, float)
+        Undeformed positions of the nodes.
+    numbers : dict of list of int
+        Indices of the nodes along each beam.
+    elements : list of Element
+        All elements, beam by beam.
+    """
+
+    scene: Table
+    points: list[tuple[float, float]]
+    numbers: dict[str, list[int]]
+    elements: list[Element]
+
+    def node(self, item: Table) -> int:
+        """Return the node of a support or load."""
+        return self.numbers[item["beam"]][0 if item["end"] == "start" else -1]
+
+    def named(self, kind: str, name: str) -> Table:
+        """Return a beam or pin of the scene by its name."""
+        found: Table = next(item for item in self.scene[kind] if item["name"] == name)
+        return found
+
+    def beside(self, contact: Table, radius: float) -> tuple[tuple[float, float], float]:
+        """Return the start of a contact's pin, moved across the axis until a gap of the scene is one for `radius`; and its gap."""
+        beam, pin = self.named("beams", contact["beam"]), self.named("pins", contact["node"])
+        (x, y), (c, s), side = pin["path"][0], beam["direction"], 1.0 if contact["side"] == "left" else -1.0
+        _, left = projection(beam["start"], beam["end"], (x, y))
+        across = side * (radius - contact["offset"])
+        return (x - across * s, y + across * c), side * left - contact["offset"]
+
+    def arc_position(self, element: int, places: Sequence[Any], point: Any) -> float:
+        """Return the arc position of the foot of a point on the chord of an element."""
+        item = self.elements[element]
+        part, _ = projection(places[item.nodes[0]], places[item.nodes[1]], point)
+        return item.arc + min(max(part, 0.0), 1.0) * item.length
+
+    def add(self, histories: Histories, places: Sequence[Any], reactions: Sequence[Any]) -> None:
+        """Add positions (n, 2) of the nodes and reactions (n, 3), force and moment, of the supported ones to histories."""
+        for beam in self.scene["beams"]:
+            arcs, _ = points_along(beam, beam["elements"])
+            histories.axis(beam["name"], arcs, [places[node] for node in self.numbers[beam["name"]]])
+        for item in self.scene["supports"]:
+            x, y, moment = reactions[self.node(item)]
+            histories.support(item["node"], (x, y), moment)
+
+
+def frame(scene: Table) -> Frame:
+    """Return the frame of a resolved scene."""
+    at_joint = {end: number for number, ends in enumerate(scene["joints"]) for end in ends}
+    shared: dict[int, int] = {}
+    points: list[tuple[float, float]] = []
+    numbers: dict[str, list[int]] = {}
+    elements: list[Element] = []
+    for beam in scene["beams"]:
+        own: list[int] = []
+        arcs, line = points_along(beam, beam["elements"])
+        for k, point in enumerate(line):
+            end = {0: "start", beam["elements"]: "end"}.get(k)
+            joint = at_joint.get(f"{beam['name']}.{end}", -1)
+            number = shared.get(joint, len(points))
+            if number == len(points):
+                points.append(point)
+            if joint >= 0:
+                shared[joint] = number
+            own.append(number)
+        numbers[beam["name"]] = own
+        elements += [
+            Element(beam=beam, nodes=nodes, arc=arc, length=beam["length"] / beam["elements"])
+            for nodes, arc in zip(pairwise(own), arcs, strict=False)
+        ]
+    return Frame(scene=scene, points=points, numbers=numbers, elements=elements)
+
+
+def projection(a: Any, b: Any, point: Any) -> tuple[float, float]:
+    """Return the foot of a point on the chord from `a` to `b`, as a part of the chord, and the distance to its left."""
+    (x, y), (u, v) = (b[0] - a[0], b[1] - a[1]), (point[0] - a[0], point[1] - a[1])
+    return (x * u + y * v) / (x * x + y * y), (x * v - y * u) / (x * x + y * y) ** 0.5
