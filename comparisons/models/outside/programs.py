@@ -41,6 +41,14 @@ ADAPTERS: dict[str, Program] = {
     program.name: program
     for program in (
         _adapter(
+            "calculix",
+            "CalculiX",
+            "#117733",
+            "ccx",
+            "Debian's calculix-ccx is needed: there is no program ccx",
+        ),
+        _adapter("exudyn", "Exudyn", "#999933", "exudyn", f"exudyn {EXTRA}"),
+        _adapter(
             "opensees", "OpenSees", "#882255", "openseespy", f"openseespy {EXTRA}, and Debian's libblas3"
         ),
     )

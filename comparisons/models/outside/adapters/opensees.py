@@ -84,13 +84,13 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
     ops.node(
         first, *(a + inward * (z - b) for a, b, z in zip((x, y), beam["start"], beam["end"], strict=True))
     )
+    times, ways = mesh.way(pin)
     for k in (0, 1):
-        values = [point[k] - pin["path"][0][k] for point in pin["path"]]
-        ops.timeSeries("Path", first + k, "-time", 0.0, *pin["corners"], 1.0, "-values", *values)
+        ops.timeSeries("Path", first + k, "-time", *times, "-values", *ways[k])
         ops.pattern("Plain", first + k, first + k)
         ops.sp(first, k + 1, 1.0)
     ops.nDMaterial("ContactMaterial2D", first, 0.0, 1.0, 0.0, 0.0)
-    touching = {first + k: k for k, one in enumerate(mesh.elements) if one.beam is beam}
+    touching = {first + k: k for k in mesh.elements_of(beam)}
     for contact, k in touching.items():
         ops.node(contact + 500_000, 0.0, 0.0)
         nodes = (*mesh.elements[k].nodes, first, contact + 500_000)
