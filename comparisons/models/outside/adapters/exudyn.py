@@ -1,21 +1,21 @@
 """Exudyn: ANCF cables without shear, and a sliding joint between a pin and a beam.
 
-The joint holds the pin on the beam from the start, and may pull. An argument of the program is the number of load steps.
+The joint holds the pin on the beam from the start, and may pull.
 """
 
-import sys
 from collections.abc import Iterator
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
-from numpy import interp
+from numpy import interp, zeros
 
 from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.frame import Frame, frame, projection
 
-STEPS, SHORTER = 400, (1, 2, 4)
-"""Least number of load steps, and the parts of a step that are tried where Newton's method does not converge."""
-NEAR = 1e-6
-"""Largest gap of a pin that a joint can hold, over the length."""
+STEPS, SHORTER, NEAR = 400, (1, 2, 4), 1e-6
+"""Least number of load steps, parts of a step that are tried where Newton's method does not converge, and the largest gap of a pin
+that a joint can hold, over the length."""
 Held = dict[tuple[int, int, float], int]
 """Constraints by node, component and lever arm."""
 
@@ -25,10 +25,9 @@ def refusal(scene: Table) -> str | None:
     mesh = frame(scene)
     if scene["joints"]:
         return f"ANCF cables have no rigid joint, the scene has one at {scene['joints'][0][0]}"
-    if any(0.0 not in beam["direction"] for beam in scene["beams"]):
-        return "the adapter clamps beams along x or y, the scene has an inclined one"
-    if any(support["motion"][2] for support in scene["supports"]):
-        return "the adapter turns no support, the scene turns one"
+    inclined = any(0.0 not in beam["direction"] for beam in scene["beams"])
+    if inclined or any(support["motion"][2] for support in scene["supports"]):
+        return "the adapter has beams along x or y, and turns no support"
     for item in scene["contacts"]:
         pins = [pin for pin in scene["pins"] if pin["name"] == item["node"]]
         beam = mesh.named("beams", item["beam"])
@@ -40,43 +39,34 @@ def refusal(scene: Table) -> str | None:
 
 def states(scene: Table, histories: Histories) -> Iterator[float]:
     """Solve by static steps and yield every load parameter."""
-    import exudyn as exu
-    from exudyn import utilities as ex
+    exu, ex = import_module("exudyn"), import_module("exudyn.utilities")
 
     mesh, system, quantity = frame(scene), exu.SystemContainer().AddSystem(), exu.OutputVariableType
     nodes, held, joints = _stated(ex, system, mesh)
     system.Assemble()
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    settings.staticSolver.verboseMode = 0
-    settings.staticSolver.adaptiveStep = False
-    settings.staticSolver.newton.maxIterations = 100
-    before = 0.0
-    for steps in refined(scene, int(sys.argv[1]) if sys.argv[1:] else STEPS):
-        settings.staticSolver.loadStepStart, settings.staticSolver.loadStepDuration = (
-            before,
-            steps[-1] - before,
-        )
+    settings, before = exu.SimulationSettings(), 0.0
+    settings.solution.file.write, solver = False, settings.staticSolver
+    solver.verboseMode, solver.adaptiveStep, solver.newton.maxIterations = 0, False, 100
+    for steps in refined(scene, STEPS):
+        t = steps[-1]
+        solver.loadStepStart, solver.loadStepDuration = before, t - before
         for parts in SHORTER:
-            settings.staticSolver.numberOfLoadSteps = parts * len(steps)
-            try:
+            solver.numberOfLoadSteps = parts * len(steps)
+            with suppress(exu.SolverError, ValueError):
                 exu.SolveStatic(system, settings, updateInitialValues=True, showHints=False)
-            except (exu.SolverError, ValueError):
-                continue
-            before = steps[-1]
-            break
-        if before != steps[-1]:
-            raise StoppedError(f"Newton's method does not converge at load parameter {steps[-1]:.6g}")
+                break
+        else:
+            raise StoppedError(f"Newton's method does not converge at load parameter {t:.6g}")
+        before = t
         places = [system.GetNodeOutput(node, quantity.Position)[:2] for node in nodes]
-        reactions: dict[int, list[float]] = {}
+        reactions: Any = zeros((len(nodes), 3))
         for (node, component, arm), constraint in held.items():
-            force = float(system.GetObjectOutput(constraint, quantity.Force))
-            reactions.setdefault(node, [0.0, 0.0, 0.0])[min(component, 2)] += force * arm
+            reactions[node, component] = arm * system.GetObjectOutput(constraint, quantity.Force)
         mesh.add(histories, places, reactions)
         for pair, joint in joints.items():
             x, y, _ = system.GetObjectOutput(joint, quantity.Force)
             histories.contact(pair, (x, y), system.GetObjectOutput(joint, quantity.SlidingCoordinate), 0.0)
-        yield before
+        yield t
 
 
 def _stated(ex: Any, system: Any, mesh: Frame) -> tuple[list[int], Held, dict[str, int]]:
@@ -87,8 +77,8 @@ def _stated(ex: Any, system: Any, mesh: Frame) -> tuple[list[int], Held, dict[st
         nodes.append(system.AddNode(ex.NodePoint2DSlope1(referenceCoordinates=[*point, *along])))
     for one in mesh.elements:
         section = {"bendingStiffness": one.beam["EI"], "axialStiffness": one.beam["EA"], "massPerLength": 1.0}
-        own = [nodes[node] for node in one.nodes]
-        cables.append(system.AddObject(ex.ObjectANCFCable2D(length=one.length, nodeNumbers=own, **section)))
+        section |= {"length": one.length, "nodeNumbers": [nodes[node] for node in one.nodes]}
+        cables.append(system.AddObject(ex.ObjectANCFCable2D(**section)))
     held: Held = {}
     for support in mesh.scene["supports"]:
         node, (c, s) = mesh.node(support), mesh.named("beams", support["beam"])["direction"]
@@ -96,21 +86,15 @@ def _stated(ex: Any, system: Any, mesh: Frame) -> tuple[list[int], Held, dict[st
             # a rotation is held by the slope across the beam
             coordinate, arm = (component, 1.0) if component < 2 else (3, c) if c else (2, -s)
             if value is not None:
-                held[node, component, arm] = _moved(
-                    ex, system, nodes[node], coordinate, [0.0, 1.0], [0.0, value]
-                )
+                held[node, component, arm] = _moved(ex, system, nodes[node], coordinate, [0, 1], [0, value])
     for load in mesh.scene["loads"]:
         cable, one = next(item for item in enumerate(mesh.elements) if mesh.node(load) in item[1].nodes)
         place = [one.length * one.nodes.index(mesh.node(load)), 0.0, 0.0]
         marker = system.AddMarker(ex.MarkerBodyRigid(bodyNumber=cables[cable], localPosition=place))
-        for kind, vector in ((ex.Force, [*load["force"], 0.0]), (ex.Torque, [0.0, 0.0, load["moment"]])):
-            ramp = {"loadVectorUserFunction": lambda _, t, full: [t * value for value in full]}
-            system.AddLoad(kind(markerNumber=marker, loadVector=vector, **ramp))
-    return (
-        nodes,
-        held,
-        {item["pair"]: _joint(ex, system, mesh, item, cables) for item in mesh.scene["contacts"]},
-    )
+        for kind, full in ((ex.Force, [*load["force"], 0.0]), (ex.Torque, [0.0, 0.0, load["moment"]])):
+            ramp = {"loadVectorUserFunction": lambda _, t, vector: [t * value for value in vector]}
+            system.AddLoad(kind(markerNumber=marker, loadVector=full, **ramp))
+    return nodes, held, {one["pair"]: _joint(ex, system, mesh, one, cables) for one in mesh.scene["contacts"]}
 
 
 def _moved(ex: Any, system: Any, node: int, coordinate: int, times: list[float], way: list[float]) -> int:
@@ -118,19 +102,18 @@ def _moved(ex: Any, system: Any, node: int, coordinate: int, times: list[float],
     ground = ex.MarkerNodeCoordinate(nodeNumber=system.AddNode(ex.NodePointGround()), coordinate=0)
     moved = ex.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
     offset = (lambda _, t, *__: float(interp(t, times, way))) if any(way) else 0
-    markers = [system.AddMarker(ground), system.AddMarker(moved)]
-    return int(system.AddObject(ex.CoordinateConstraint(markerNumbers=markers, offsetUserFunction=offset)))
+    both = [system.AddMarker(ground), system.AddMarker(moved)]
+    return int(system.AddObject(ex.CoordinateConstraint(markerNumbers=both, offsetUserFunction=offset)))
 
 
 def _joint(ex: Any, system: Any, mesh: Frame, item: Table, cables: list[int]) -> int:
     """State the pin of a pair and its sliding joint."""
     beam, pin = mesh.named("beams", item["beam"]), mesh.named("pins", item["node"])
-    node = system.AddNode(ex.NodePoint2D(referenceCoordinates=pin["path"][0]))
-    times, ways = mesh.way(pin)
+    start, node = pin["path"][0], system.AddNode(ex.NodePoint2D(referenceCoordinates=pin["path"][0]))
     for k in (0, 1):
-        _moved(ex, system, node, k, times, ways[k])
+        _moved(ex, system, node, k, mesh.way(pin)[0], mesh.way(pin)[1][k])
     own = [cables[k] for k in mesh.elements_of(beam)]
-    part = min(max(projection(beam["start"], beam["end"], pin["path"][0])[0], 0.0), 1.0)
+    part = min(max(projection(beam["start"], beam["end"], start)[0], 0.0), 1.0)
     first = min(int(part * len(own)), len(own) - 1)
     data = ex.NodeGenericData(initialCoordinates=[first, part * beam["length"]], numberOfDataCoordinates=2)
     markers = [system.AddMarker(ex.MarkerBodyCable2DCoordinates(bodyNumber=cable)) for cable in own]

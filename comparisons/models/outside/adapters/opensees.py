@@ -1,10 +1,9 @@
 """OpenSees: corotational Euler-Bernoulli beams, and `BeamContact2D` between a pin and every element of a beam.
 
 The contact element keeps projection and normal from the last load step, so that its error falls with the step. Its normal is undefined
-for a pin on the axis. There, pin and axis are `APART`. An argument of the program is the number of load steps.
+for a pin on the axis. There, pin and axis are `APART`.
 """
 
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -34,7 +33,7 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         getattr(ops, method)(kind)
     ops.test("NormUnbalance", 1e-7 * min(beam["EI"] / beam["length"] ** 2 for beam in scene["beams"]), 50)
     ops.algorithm("Newton")
-    for steps in refined(scene, int(sys.argv[1]) if sys.argv[1:] else STEPS):
+    for steps in refined(scene, STEPS):
         for t in steps:
             ops.integrator("LoadControl", t - ops.getTime())
             ops.analysis("Static")
