@@ -7,8 +7,13 @@ from importlib import metadata
 from typing import NamedTuple
 
 NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "pyvista", "matplotlib", "filelock", "psutil")
-EXTRAS = {"distributed": "extra cluster: studies on a Dask cluster (--cluster)"}
-PROGRAMS = {"ccx": "Debian's calculix-ccx: crossval study peers"}
+EXTRAS = {
+    "distributed": "extra cluster: studies on a Dask cluster (--cluster)",
+    "openseespy": "extra others: --model opensees",
+    "exudyn": "extra others: --model exudyn",
+    "felupe": "extra others: --model felupe",
+}
+PROGRAMS = {"ccx": "Debian's calculix-ccx: --model calculix, crossval study peers"}
 
 
 class Finding(NamedTuple):

@@ -7,7 +7,7 @@ from typing import Any
 from comparisons.cli import values
 from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, Options
-from comparisons.models.outside.programs import known
+from comparisons.models.outside.programs import ADAPTERS, known
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
@@ -40,6 +40,18 @@ class ModelNames:
 def argument(name: str) -> str:
     """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
     return "--" + name.replace("_", "-")
+
+
+class ModelNames:
+    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the models and adapters of this package."""
+        return iter((*MODELS, *ADAPTERS))
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a name is known, or is the name of a file that may state a program."""
+        return name in MODELS or known(str(name))
 
 
 def add_options(parser: argparse.ArgumentParser, *names: str) -> None:

@@ -27,6 +27,8 @@ class Answer:
         Mean displacement of the free end, ``(s, 2)`` [m].
     force, moment
         What the clamp exerts on the strip, ``(s, 2)`` [N] and about the clamped point ``(s,)`` [N m].
+    axis
+        Positions of the nodes on the axis, ``(s, a, 2)`` [m].
     stopped
         Reason why CalculiX stopped before the end; empty if it did not.
     """
@@ -35,7 +37,25 @@ class Answer:
     tip: Floats
     force: Floats
     moment: Floats
+    axis: Floats
     stopped: str = ""
+
+
+def answer(mesh: Slab, deck: str, seconds: float = 300.0) -> Answer:
+    """Return the answer to a deck, up to the last increment that converged.
+
+    Raises
+    ------
+    CalculixError
+        If CalculiX is not installed, or does not complete one increment.
+    """
+    try:
+        printed, stopped = run(deck, seconds), ""
+    except CalculixError as error:
+        if error.printed is None or not error.printed.times:
+            raise
+        printed, stopped = error.printed, error.reason
+    return _answer(mesh, printed, stopped)
 
 
 def tip_load(strip: "Strip", force: float, seconds: float = 300.0) -> Answer:
@@ -63,29 +83,27 @@ def pressed(
         If CalculiX is not installed, or does not complete one increment.
     """
     mesh = slab(strip)
-    deck = pin_deck(mesh, start, motion, steps, penalty)
-    try:
-        printed, stopped = run(deck, seconds), ""
-    except CalculixError as error:
-        if error.printed is None or not error.printed.times:
-            raise
-        printed, stopped = error.printed, error.reason
-    answer = _answer(mesh, printed, stopped)
-    through = np.flatnonzero(np.hypot(*answer.force.T) < mesh.unit)
-    return answer if not through.size else _until(answer, int(through[0]))
+    found = answer(mesh, pin_deck(mesh, start, motion, steps, penalty), seconds)
+    through = np.flatnonzero(np.hypot(*found.force.T) < mesh.unit)
+    return found if not through.size else _until(found, int(through[0]))
 
 
 def _answer(mesh: Slab, printed: Printed, stopped: str = "") -> Answer:
     """Collect the increments that CalculiX printed completely."""
     ends, held = 2 * mesh.strip.mesh[1] + 1, len(mesh.clamp)
-    wanted = {("displacements", "TIP"): ends, ("displacements", "CLAMP"): held, ("forces", "CLAMP"): held}
+    wanted = {
+        ("displacements", "TIP"): ends,
+        ("displacements", "AXIS"): len(mesh.axis),
+        ("displacements", "CLAMP"): held,
+        ("forces", "CLAMP"): held,
+    }
     whole = [
         [rows for rows in printed.tables.get(name, []) if len(rows) == size] for name, size in wanted.items()
     ]
     count = min(map(len, whole))
     if count == 0:
         raise CalculixError(stopped or "printed no result", printed)
-    tip, moved, forces = (np.array(tables[:count])[:, :, :2] for tables in whole)
+    tip, bent, moved, forces = (np.array(tables[:count])[:, :, :2] for tables in whole)
     forces = forces * mesh.unit
     x, y = (mesh.clamp + moved).transpose(2, 0, 1)
     return Answer(
@@ -93,6 +111,7 @@ def _answer(mesh: Slab, printed: Printed, stopped: str = "") -> Answer:
         tip=_simpson(mesh.strip.mesh[1]) @ tip,
         force=forces.sum(axis=1),
         moment=(x * forces[..., 1] - y * forces[..., 0]).sum(axis=1),
+        axis=mesh.axis + bent,
         stopped=stopped,
     )
 
@@ -103,6 +122,7 @@ def _until(answer: Answer, count: int) -> Answer:
         tip=answer.tip[:count],
         force=answer.force[:count],
         moment=answer.moment[:count],
+        axis=answer.axis[:count],
         stopped="lost the pin through the face",
     )
 

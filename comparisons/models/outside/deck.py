@@ -30,7 +30,9 @@ _BARS = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
 _FACE = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12
 """Consistent nodal forces of a unit force that is spread evenly over a face with eight nodes."""
 _CONTROLS = ("*CONTROLS, PARAMETERS=FIELD", "1.E-6,1.E-8")
-_PRINT = ("*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "")
+_PRINT = (
+    "*NODE PRINT, NSET=TIP", "U", "*NODE PRINT, NSET=AXIS", "U", "*NODE PRINT, NSET=CLAMP", "U,RF", "*END STEP", "",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,6 +65,13 @@ class Slab:
     def thickness(self) -> float:
         """Thickness w [m]."""
         return THINNESS * self.strip.height
+
+    @property
+    def axis(self) -> Array:
+        """Positions of the nodes on the axis in the plane, from the clamp on, ``(a, 2)`` [m]."""
+        middle = self.strip.mesh[1]
+        found: Array = self.points[:, middle, 0][self.numbers[:, middle, 0] > 0][:, :2]
+        return found
 
     @property
     def clamp(self) -> Array:
@@ -103,13 +112,14 @@ def slab(strip: "Strip") -> Slab:
     )
 
 
-def tip_load_deck(mesh: Slab, force: float) -> str:
-    """Deck of a transverse dead load [N], spread evenly over the free end."""
+def tip_load_deck(mesh: Slab, force: float, steps: int | None = None) -> str:
+    """Deck of a transverse dead load [N], spread evenly over the free end, in equal steps or in steps that CalculiX chooses."""
     ny, end = mesh.strip.mesh[1], mesh.numbers[-1]
     loads = np.zeros(end.shape)
     for row in range(ny):
         loads[2 * row : 2 * row + 3] += force / mesh.unit / ny * _FACE
-    step = ["*STEP, NLGEOM, INC=1000", *_CONTROLS, "*STATIC", ".2,1.", "*CLOAD"]
+    way = ["*STATIC", ".2,1."] if steps is None else ["*STATIC, DIRECT", f"{1 / steps:.12e},1."]
+    step = ["*STEP, NLGEOM, INC=10000", *_CONTROLS, *way, "*CLOAD"]
     forces = [f"{n},2,{load:.12e}" for n, load in zip(end[end > 0], loads[end > 0], strict=True)]
     return "\n".join([*_model(mesh), *step, *forces, *_PRINT])
 
@@ -166,6 +176,7 @@ def _model(mesh: Slab) -> list[str]:
         *_node_set("HELD", n[0] if strip.clamp == "full" else n[0, strip.mesh[1]]),
         *_node_set("MIDDLE", n[:, :, 0]),
         *_node_set("TIP", n[-1, :, 0]),
+        *_node_set("AXIS", n[:, strip.mesh[1], 0]),
         "*MATERIAL, NAME=ELASTIC",
         "*ELASTIC",
         f"{modulus:.12e},{strip.poissons_ratio:.12e}",

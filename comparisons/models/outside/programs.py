@@ -41,6 +41,15 @@ ADAPTERS: dict[str, Program] = {
     program.name: program
     for program in (
         _adapter(
+            "calculix",
+            "CalculiX",
+            "#117733",
+            "ccx",
+            "Debian's calculix-ccx is needed: there is no program ccx",
+        ),
+        _adapter("exudyn", "Exudyn", "#999933", "exudyn", f"exudyn {EXTRA}"),
+        _adapter("felupe", "FElupe", "#DDCC77", "felupe", f"felupe {EXTRA}"),
+        _adapter(
             "opensees", "OpenSees", "#882255", "openseespy", f"openseespy {EXTRA}, and Debian's libblas3"
         ),
     )
@@ -71,7 +80,7 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
         model: Model | None = read_program(Path(name))
     else:
         model = (
-            _USED.get(name) or ADAPTERS.get(name) or (_loaded(offered()[name]) if name in offered() else None)
+            ADAPTERS.get(name) or _USED.get(name) or (_loaded(offered()[name]) if name in offered() else None)
         )
     if model is None:
         return None

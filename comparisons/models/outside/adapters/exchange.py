@@ -106,7 +106,8 @@ def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
         Whether the program solves a two- or three-dimensional body.
     """
     with _output_aside() as answer:
-        json.dump(_answered(json.load(sys.stdin), refusal, states) | {"continuum": continuum}, answer)
+        scene = json.load(sys.stdin) | ({"steps": int(sys.argv[1])} if sys.argv[1:] else {})
+        json.dump(_answered(scene, refusal, states) | {"continuum": continuum}, answer)
 
 
 def _answered(scene: Table, refusal: Refusal, states: States) -> Table:
@@ -145,9 +146,17 @@ def points_along(beam: Table, count: int) -> tuple[list[float], list[tuple[float
 
 
 def refined(scene: Table, steps: int) -> list[list[float]]:
-    """Return the load steps to each load parameter: at least `steps` in all, equal between two load parameters."""
+    """Return the load steps to each load parameter, equal between two load parameters.
+
+    Parameters
+    ----------
+    scene : dict
+        The resolved scene.
+    steps : int
+        Least number of all steps; an argument of the program replaces it.
+    """
     times = [0.0, *scene["load_parameters"]]
-    inner = max(1, -(-steps // (len(times) - 1)))
+    inner = max(1, -(-scene.get("steps", steps) // (len(times) - 1)))
     return [
         [before + (t - before) * k / inner for k in range(1, inner)] + [t] for before, t in pairwise(times)
     ]

@@ -58,6 +58,15 @@ class Frame:
         found: Table = next(item for item in self.scene[kind] if item["name"] == name)
         return found
 
+    def way(self, pin: Table) -> tuple[list[float], list[list[float]]]:
+        """Return the load parameters of the corners of a pin's path, and the displacements x and y of the pin there."""
+        start = pin["path"][0]
+        return [0.0, *pin["corners"], 1.0], [[point[k] - start[k] for point in pin["path"]] for k in (0, 1)]
+
+    def elements_of(self, beam: Table) -> list[int]:
+        """Return the indices of the elements of a beam."""
+        return [k for k, one in enumerate(self.elements) if one.beam is beam]
+
     def beside(self, contact: Table, radius: float) -> tuple[tuple[float, float], float]:
         """Return the start of a contact's pin, moved across the axis until a gap of the scene is one for `radius`; and its gap."""
         beam, pin = self.named("beams", contact["beam"]), self.named("pins", contact["node"])

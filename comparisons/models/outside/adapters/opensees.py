@@ -1,10 +1,9 @@
 """OpenSees: corotational Euler-Bernoulli beams, and `BeamContact2D` between a pin and every element of a beam.
 
 The contact element keeps projection and normal from the last load step, so that its error falls with the step. Its normal is undefined
-for a pin on the axis. There, pin and axis are `APART`. An argument of the program is the number of load steps.
+for a pin on the axis. There, pin and axis are `APART`.
 """
 
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -34,7 +33,7 @@ def states(scene: Table, histories: Histories) -> Iterator[float]:
         getattr(ops, method)(kind)
     ops.test("NormUnbalance", 1e-7 * min(beam["EI"] / beam["length"] ** 2 for beam in scene["beams"]), 50)
     ops.algorithm("Newton")
-    for steps in refined(scene, int(sys.argv[1]) if sys.argv[1:] else STEPS):
+    for steps in refined(scene, STEPS):
         for t in steps:
             ops.integrator("LoadControl", t - ops.getTime())
             ops.analysis("Static")
@@ -84,13 +83,13 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
     ops.node(
         first, *(a + inward * (z - b) for a, b, z in zip((x, y), beam["start"], beam["end"], strict=True))
     )
+    times, ways = mesh.way(pin)
     for k in (0, 1):
-        values = [point[k] - pin["path"][0][k] for point in pin["path"]]
-        ops.timeSeries("Path", first + k, "-time", 0.0, *pin["corners"], 1.0, "-values", *values)
+        ops.timeSeries("Path", first + k, "-time", *times, "-values", *ways[k])
         ops.pattern("Plain", first + k, first + k)
         ops.sp(first, k + 1, 1.0)
     ops.nDMaterial("ContactMaterial2D", first, 0.0, 1.0, 0.0, 0.0)
-    touching = {first + k: k for k, one in enumerate(mesh.elements) if one.beam is beam}
+    touching = {first + k: k for k in mesh.elements_of(beam)}
     for contact, k in touching.items():
         ops.node(contact + 500_000, 0.0, 0.0)
         nodes = (*mesh.elements[k].nodes, first, contact + 500_000)

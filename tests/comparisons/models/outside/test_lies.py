@@ -21,7 +21,7 @@ support["force"] = [[0.0, 0.0] for _ in support["force"]]
 LIES = {
     "zero force": ('contact["force"] = [0.0 for _ in contact["force"]]', "CHECK_FAILED", True),
     "NaN": ('contact["force"][2] = math.nan', "NOT_FINITE", True),
-    "wrong sign": ('support["force"] = [[-x, -y] for x, y in support["force"]]', "CHECK_FAILED", True),
+    "wrong sign": ('support["force"] = [[-x, -y] for x, y in support["force"]]', "NOT_AN_EQUILIBRIUM", True),
     "x and y swapped": (
         'axis["position"] = [[[y, x] for x, y in line] for line in axis["position"]]',
         "NOT_AN_EQUILIBRIUM",
@@ -50,7 +50,7 @@ support["moment"] = [0.0 for _ in support["moment"]]
         "CHECK_FAILED",
         True,
     ),
-    "stale answer": ('answer = json.loads(Path("stale.json").read_text())', "CHECK_FAILED", True),
+    "stale answer": ('answer = json.loads(Path("stale.json").read_text())', "NOT_AN_EQUILIBRIUM", True),
 }
 """The lines of each lie, the status that it gets, and whether the program stated success."""
 

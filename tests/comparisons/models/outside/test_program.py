@@ -175,8 +175,8 @@ def test_a_program_that_is_not_there(tmp_path: Path) -> None:
     file = tmp_path / "none.toml"
     file.write_text('[program]\nname = "none"\ncommand = ["no-such-program"]\n')
     assert find(str(file)).refusal(KS) == "there is no program no-such-program"
-    response = solve(KS, str(file))
-    assert (response.status, response.message) == ("NOT_STARTED", "there is no program no-such-program")
+    with pytest.raises(ModelError, match=r"^none: there is no program no-such-program$"):
+        solve(KS, str(file))
     (tmp_path / "empty").write_text("")
     (tmp_path / "empty").chmod(0o755)
     file.write_text('[program]\nname = "none"\ncommand = ["./empty"]\n')
@@ -251,7 +251,7 @@ def test_solve_and_gate_have_it(
     program("support['moment'] = [2 * m for m in support['moment']]")
     assert main(["solve", "ks.toml", "--model", "liar.toml", "--json", "a.json"]) == 3
     data = json.loads((tmp_path / "a.json").read_text())
-    assert (data["status"], data["reported_success"]) == ("CHECK_FAILED", True)
+    assert (data["status"], data["reported_success"]) == ("NOT_AN_EQUILIBRIUM", True)
     assert main(["certify", "a.json", "--scene", "ks.toml"]) == 1
 
 
