@@ -25,18 +25,6 @@ ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
 """How each field of `Options` is read, and what it is."""
 
 
-class ModelNames:
-    """The values of ``--model``: the models of this package, programs of others, and program files, which are read only when they are used."""
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the models of this package."""
-        return iter(MODELS)
-
-    def __contains__(self, name: object) -> bool:
-        """Whether a name is known, or is the name of a file that may state a program."""
-        return name in MODELS or known(str(name))
-
-
 def argument(name: str) -> str:
     """Return the argument of a field of `Options`, as ``--integration-tolerance``."""
     return "--" + name.replace("_", "-")
