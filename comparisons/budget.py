@@ -11,18 +11,15 @@ construction, and the rest is a measured number.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from comparisons.models import ROD, TSM, solve
+from comparisons.errors import forces, moments, size
+from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.translate import to_rod, to_solid
-from comparisons.response import Array
+from comparisons.response import Array, Response
 from comparisons.scene import Scene
-
-if TYPE_CHECKING:
-    from fem_reference import SolidProblem
 
 TIMES = (0.25, 0.5, 0.75, 1.0)
 """Load parameters of the budget."""
@@ -30,37 +27,40 @@ STEPS = 20
 """Load steps of the solutions that the budget is computed from; the part for load steps compares with twice as many."""
 ELEMENTS = 20
 """TSM elements, of the type `mixed`."""
-QUANTITIES = ("contact_force", "arc_position", "clamp_moment")
+LEAST = 1e-3
+"""Least value of the rods, over the largest of its kind, that differences are relative to. A smaller one has no budget."""
 PARTS = {
     "TSM mesh": "20 elements against their limit, extrapolated with fourth order from 20 and 40",
-    "TSM theory": "that limit against the exact Reissner rod",
-    "solid beside the rod": "the rod against the limit of the solid with the rod's law, linear in Biot's strain, and no penetration",
+    "TSM theory": "that limit against the exact Reissner rods",
+    "solid beside the rod": "the rods against the limit of the solid with the rod's law, linear in Biot's strain, and no penetration",
     "material law": "the law linear in Biot's strain against the scene's",
     "solid mesh": "the limit against the scene's mesh, extrapolated with second order from that and one twice as fine",
     "penalty": "no penetration, by augmented Lagrangian steps, against the scene's penalty",
-    "load steps": "twice as many load parameters and a hundredth of the tolerance",
+    "load steps": "twice as many load parameters",
 }
 """The parts and what each measures."""
 BIOT = "biot-linear"
+Values = dict[str, Array]
+"""Values at the load parameters `TIMES`, shape (4,), by quantity."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Budget:
-    """The difference of TSM and solid and its parts, relative to the exact rod's value at the same load parameter.
+    """The difference of TSM and solid and its parts, relative to the exact rods' value at the same load parameter.
 
     Attributes
     ----------
     scene : str
         Name.
     total : dict of ndarray, shape (4,)
-        ``(q_TSM - q_solid) / q_rod`` by quantity, at the load parameters `TIMES`.
+        ``(q_TSM - q_solid) / q_rod`` by quantity, at the load parameters `TIMES`; nan where the rods' value is zero or the pair is open.
     parts : dict of dict of ndarray, shape (4,)
         By quantity and part.
     """
 
     scene: str
-    total: dict[str, Array]
-    parts: dict[str, dict[str, Array]]
+    total: Values
+    parts: dict[str, Values]
 
     def rest(self, quantity: str) -> Array:
         """Difference that the parts do not explain, over the total."""
@@ -69,31 +69,31 @@ class Budget:
         return np.asarray((total - explained) / total)
 
 
-Values = dict[str, Array]
-
-
 def error_budget(scene: Scene) -> Budget:
-    """Measure the budget of a scene with one cantilever under one pin.
+    """Measure the budget of a scene that beams and solid state.
+
+    The quantities are the forces and arc positions of all contact pairs, or the forces of the supports in a scene without contact,
+    and the moments of the supports.
 
     Raises
     ------
     ModelError
-        If a model cannot state the scene, or a solution behind the budget stops.
+        If the solid cannot state the scene, a solution behind the budget stops, or no quantity has a value.
     """
-    contact = to_rod(scene).contact
-    if contact is None:
-        raise ModelError("the budget is that of a contact, the scene has none")
     short = replace(scene, load_parameters=STEPS)
-    problem = to_solid(short)
-    rod = _response(short, ROD.name, Options())
-    if not all(np.all(np.isfinite(values) & (values != 0)) for values in rod.values()):
-        raise ModelError("the budget is relative to the exact rod, which is not in contact all the time")
-    coarse, fine = (_response(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
-    solid, finer = _solid(problem), _solid(_refined(problem))
-    augmented, careful = _solid(_augmented(problem)), _solid(problem, careful=True)
-    biot = _with(problem, BIOT)
-    like_rod, finer_like_rod = (_solid(_augmented(one)) for one in (biot, _refined(biot)))
-    linear = _solid(biot)
+    rod = _values(short, ROD.name)
+    quantities = tuple(name for name, values in rod.items() if np.isfinite(values).any())
+    if not quantities:
+        raise ModelError(
+            "the budget is relative to the exact rods, which have no force at its load parameters"
+        )
+    coarse, fine = (_values(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
+    solid, finer = _values(short, SOLID.name), _values(_refined(short), SOLID.name)
+    augmented = _values(_augmented(short), SOLID.name)
+    careful = _values(replace(short, load_parameters=2 * STEPS), SOLID.name)
+    biot = replace(short, beams=tuple(replace(beam, material=BIOT) for beam in short.beams))
+    like_rod, finer_like_rod = (_values(_augmented(one), SOLID.name) for one in (biot, _refined(biot)))
+    linear = _values(biot, SOLID.name)
     parts: dict[str, Callable[[str], Array]] = {
         "TSM mesh": lambda q: -_step(coarse, fine, q, order=4),
         "TSM theory": lambda q: coarse[q] + _step(coarse, fine, q, order=4) - rod[q],
@@ -106,8 +106,8 @@ def error_budget(scene: Scene) -> Budget:
     assert tuple(parts) == tuple(PARTS), "every part is explained"
     return Budget(
         scene=scene.name,
-        total={q: (coarse[q] - solid[q]) / rod[q] for q in QUANTITIES},
-        parts={q: {name: part(q) / rod[q] for name, part in parts.items()} for q in QUANTITIES},
+        total={q: (coarse[q] - solid[q]) / rod[q] for q in quantities},
+        parts={q: {name: part(q) / rod[q] for name, part in parts.items()} for q in quantities},
     )
 
 
@@ -117,53 +117,60 @@ def _step(coarse: Values, fine: Values, quantity: str, *, order: int) -> Array:
     return step
 
 
-def _response(scene: Scene, model: str, options: Options) -> Values:
+def _values(scene: Scene, model: str, options: Options | None = None) -> Values:
+    """Return the quantities of a model's response; nan where a value is small against the largest of its kind."""
     response = solve(scene, model, options)
     if not response.completed:
         raise ModelError(f"the budget's {model} stopped: {response.message}")
-    contact, support = response.contacts[scene.contacts[0].pair], response.supports[scene.beams[0].name]
-    return _at_times(response.load_parameter, (contact.force, contact.arc_position, support.moment))
+    ks = [int(np.argmin(np.abs(response.load_parameter - t))) for t in TIMES]
+    found = {}
+    for kind, columns in _kinds(response, scene).items():
+        largest = max((float(np.abs(values).max(initial=0.0)) for values in columns.values()), default=0.0)
+        for name, values in columns.items():
+            seen = np.abs(values[ks]) > LEAST * largest
+            found[f"{kind} {name}" if len(columns) > 1 else kind] = np.where(seen, values[ks], np.nan)
+    return found
 
 
-def _solid(problem: "SolidProblem", *, careful: bool = False) -> Values:
-    import fem_reference
-
-    steps = 2 * STEPS if careful else STEPS
-    settings = fem_reference.Settings(tolerance=1e-11) if careful else fem_reference.Settings()
-    result = fem_reference.solve(problem, np.arange(1, steps + 1) / steps, settings, throw=False)
-    if result.status is not fem_reference.Status.COMPLETED:
-        raise ModelError(f"the budget's solid stopped: {result.message}")
-    contact, support = (next(iter(table.values())) for table in (result.contacts, result.supports))
-    return _at_times(result.load_parameter, (contact.force, contact.arc_position, support.moment))  # type: ignore[attr-defined]
+def _kinds(response: Response, scene: Scene) -> dict[str, Values]:
+    """Return the histories of all quantities by kind, and by pair or supported beam."""
+    acting = {name: size(values) for name, values in forces(response).items()}
+    turning = {name: values for name, values in moments(response).items() if _held(scene, name)}
+    if not response.contacts:
+        return {"support_force": acting, "clamp_moment": turning}
+    arcs = {pair: contact.arc_position for pair, contact in response.contacts.items()}
+    return {"contact_force": acting, "arc_position": arcs, "clamp_moment": turning}
 
 
-def _at_times(load_parameter: Array, histories: tuple[Array, ...]) -> Values:
-    ks = [int(np.argmin(np.abs(load_parameter - t))) for t in TIMES]
-    return {name: history[ks] for name, history in zip(QUANTITIES, histories, strict=True)}
+def _held(scene: Scene, name: str) -> bool:
+    """Whether the support of a column of `comparisons.errors.moments` holds the rotation."""
+    beam, _, other = name.partition(".")
+    return "rotation" in scene.supports_of(beam)[bool(other)].held
 
 
-def _with(problem: "SolidProblem", material: str) -> "SolidProblem":
-    return replace(problem, strips=(replace(problem.strips[0], material=material),))
+def _refined(scene: Scene) -> Scene:
+    return replace(
+        scene,
+        beams=tuple(replace(beam, mesh=(2 * beam.mesh[0], 2 * beam.mesh[1])) for beam in scene.beams),
+    )
 
 
-def _refined(problem: "SolidProblem") -> "SolidProblem":
-    nx, ny = problem.strips[0].mesh
-    return replace(problem, strips=(replace(problem.strips[0], mesh=(2 * nx, 2 * ny)),))
-
-
-def _augmented(problem: "SolidProblem") -> "SolidProblem":
-    return replace(problem, contacts=(replace(problem.contacts[0], penetration=1e-12),))
+def _augmented(scene: Scene) -> Scene:
+    contacts = tuple(replace(contact, penalty=None, penetration=1e-12) for contact in scene.contacts)
+    return replace(scene, contacts=contacts)
 
 
 def budget_rows(budget: Budget) -> Iterator[dict[str, Any]]:
-    """Yield one row for every quantity and load parameter: total, parts and rest."""
-    for quantity in QUANTITIES:
+    """Yield one row for every quantity and load parameter with a value: total, parts and rest."""
+    for quantity, total in budget.total.items():
         rest = budget.rest(quantity)
         for k, t in enumerate(TIMES):
+            if np.isnan(total[k]):
+                continue
             yield {
                 "quantity": quantity,
                 "load_parameter": t,
-                "total": float(budget.total[quantity][k]),
+                "total": float(total[k]),
                 "parts": {name: float(values[k]) for name, values in budget.parts[quantity].items()},
                 "rest_over_total": float(rest[k]),
             }

@@ -83,8 +83,7 @@ def _solid_variants(scene: Scene, *, quick: bool) -> Iterator[Case]:
 def _line_stiffness(scene: Scene) -> float:
     """Young's modulus times width of the first beam, to two digits."""
     beam = scene.beams[0]
-    area, inertia, _ = beam.cross_section
-    width = beam.width or area / (12.0 * inertia / area) ** 0.5
+    width = beam.width or beam.cross_section[0] / beam.rectangle_height
     return float(f"{beam.youngs_modulus * width:.2g}")
 
 

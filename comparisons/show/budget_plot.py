@@ -1,11 +1,12 @@
 """The error budget as one figure of stacked bars, and as a file of numbers."""
 
+from math import ceil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from comparisons.budget import PARTS, QUANTITIES, STEPS, TIMES, Budget, budget_rows
+from comparisons.budget import PARTS, STEPS, TIMES, Budget, budget_rows
 from comparisons.output import write_numbers
 from comparisons.show import palette
 from comparisons.show.plot import figure, save
@@ -13,14 +14,20 @@ from comparisons.show.plot import figure, save
 COLOURS = (
     palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
 )  # fmt: skip
+COLUMNS = 3
+"""Panels beside each other."""
 HATCHES = ("", "//", "..", "", "xx", "\\\\", "++")
 """Colours and hatches of the parts, in their order; hatches distinguish neighbours in grey print."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:
     """Draw every quantity's parts stacked at the load parameters of the budget, and the total as a mark."""
-    fig = figure(figsize=(11.0, 4.6))
-    for axes, quantity in zip(fig.subplots(1, len(QUANTITIES)), QUANTITIES, strict=True):
+    rows = ceil(len(budget.total) / COLUMNS)
+    fig = figure(figsize=(11.0, 3.4 * rows + 1.2))
+    panels = fig.subplots(rows, COLUMNS, squeeze=False).ravel()
+    for axes in panels[len(budget.total) :]:
+        axes.set_axis_off()
+    for axes, quantity in zip(panels, budget.total, strict=False):
         _stack(axes, budget, quantity)
         axes.set(title=quantity.replace("_", " "), xlabel="load parameter")
     fig.axes[0].set_ylabel("(TSM - solid) / exact rod [%]")
@@ -39,7 +46,7 @@ def _stack(axes: Any, budget: Budget, quantity: str) -> None:
     places = np.arange(len(TIMES))
     above, below = np.zeros(len(TIMES)), np.zeros(len(TIMES))
     for (name, values), colour, hatch in zip(budget.parts[quantity].items(), COLOURS, HATCHES, strict=True):
-        height = 100.0 * values
+        height = 100.0 * np.nan_to_num(values)
         bottom = np.where(height >= 0.0, above, below)
         axes.bar(
             places,
@@ -69,6 +76,8 @@ def write_budget(budget: Budget, path: Path) -> None:
         "load_parameters_of_the_runs": STEPS,
         "parts": PARTS,
         "rows": list(budget_rows(budget)),
-        "largest_rest_over_total": max(float(np.abs(budget.rest(quantity)).max()) for quantity in QUANTITIES),
+        "largest_rest_over_total": max(
+            float(np.nanmax(np.abs(budget.rest(quantity)))) for quantity in budget.total
+        ),
     }
     write_numbers(path, numbers)

@@ -1,7 +1,6 @@
 """A scene as solid strips: plane stress, thickness equal to the width, unilateral contact."""
 
 from collections import defaultdict
-from math import sqrt
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
@@ -114,14 +113,13 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     """
     if beam.width is not None and beam.height is not None:
         return beam.width, beam.height
-    area, inertia, _ = beam.cross_section
-    height = sqrt(12.0 * inertia / area)
+    height = beam.rectangle_height
     if height > SLENDER * beam.length:
         raise ModelError(
             f'the solid model needs the width and height of beam "{beam.name}": the rectangle of its area and second '
             f"moment is {height:.3g} high, more than an eighth of the length"
         )
-    return area / height, height
+    return beam.cross_section[0] / height, height
 
 
 def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "Strip":
