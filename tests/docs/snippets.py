@@ -12,7 +12,7 @@ from pathlib import Path
 from comparisons.cli import main
 
 ROOT = Path(__file__).parents[2]
-SLOW = ("crossval trade", "crossval compare", "crossval study", "crossval reproduce")
+SLOW = ("crossval trade", "crossval compare", "crossval study", "crossval reproduce", "crossval league")
 """Commands of many seconds, left to the slow tests."""
 
 

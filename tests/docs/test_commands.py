@@ -27,7 +27,7 @@ LINES = [
 COMMANDS = list(dict.fromkeys(LINES))
 """Each once; the README's own scene is run by the README's tests."""
 
-ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes")
+ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes", "crossval league")
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
 LONG = ("crossval view", "crossval compare", "crossval reproduce")
 """Commands of many seconds, left to the slow tests; the fast tests of the commands run them on smaller scenes."""
