@@ -111,13 +111,13 @@ class Joint:
         require(distinct, f"Joint({self.ends!r})", "ends", self.ends, "must be at least two different ends")
 
 
-def require_held(
+def require_known_ends(
     strips: tuple[Strip, ...],
     supports: tuple[Support, ...],
     joints: tuple[Joint, ...],
     loads: tuple[EndLoad, ...],
 ) -> None:
-    """Require known ends, one support at a joint or end, joints at one position, and strips that cannot move without strain."""
+    """Require known ends without clamps, one support at a joint or end, and joints at one position."""
     positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in strips for end in ENDS}
     clamps = [f"{strip.name}.{end}" for strip in strips for end in strip.clamped]
     conditions: list[Support | EndLoad] = [*supports, *loads]
@@ -135,13 +135,41 @@ def require_held(
     require_distinct("SolidProblem", "joints", (end for joint in joints for end in joint.ends))
     first = {end: joint.ends[0] for joint in joints for end in joint.ends}
     require_distinct("SolidProblem", "supports", (first.get(item.node, item.node) for item in supports))
+
+
+def require_held(
+    strips: tuple[Strip, ...],
+    supports: tuple[Support, ...],
+    joints: tuple[Joint, ...],
+    touching: list[tuple[str, Point, Point]],
+) -> None:
+    """Require strips that cannot move without strain; ``touching`` has the strip, position and normal of pins that touch."""
     for group in _structures(strips, joints):
-        held: list[tuple[Point, Motion]] = [
-            (positions[end], (0.0, 0.0, 0.0)) for end in clamps if end.split(".")[0] in group
+        rows = [
+            (position, (float(component == 0), float(component == 1)), float(component == 2))
+            for position, motion in _held(strips, supports, group)
+            for component in range(3)
+            if motion[component] is not None
         ]
-        held += [(positions[item.node], item.motion) for item in supports if item.strip in group]
-        rule = f"must hold the joined strips {', '.join(sorted(group))} without contact"
-        require(_rigid(held), "SolidProblem", "supports", tuple(motion for _, motion in held), rule)
+        rows += [(position, normal, 0.0) for name, position, normal in touching if name in group]
+        rule = f"must hold {', '.join(sorted(group))}, with the pins that touch at the start"
+        motions = tuple(motion for _, motion in _held(strips, supports, group))
+        require(_rigid(rows), "SolidProblem", "supports", motions, rule)
+
+
+def _held(
+    strips: tuple[Strip, ...], supports: tuple[Support, ...], group: set[str]
+) -> list[tuple[Point, Motion]]:
+    """Positions and motions of the clamps and supports of a group of strips."""
+    own = {strip.name: strip for strip in strips if strip.name in group}
+    held: list[tuple[Point, Motion]] = [
+        (strip.start if end == "start" else strip.end, (0.0, 0.0, 0.0))
+        for strip in own.values()
+        for end in strip.clamped
+    ]
+    ends = [(own[item.strip], item) for item in supports if item.strip in own]
+    held += [(strip.start if item.end == "start" else strip.end, item.motion) for strip, item in ends]
+    return held
 
 
 def _structures(strips: tuple[Strip, ...], joints: tuple[Joint, ...]) -> list[set[str]]:
@@ -154,12 +182,11 @@ def _structures(strips: tuple[Strip, ...], joints: tuple[Joint, ...]) -> list[se
     return groups
 
 
-def _rigid(held: list[tuple[Point, Motion]]) -> bool:
-    """Whether supports leave no rigid motion ``(a - c y, b + c x, c)``."""
+def _rigid(held: list[tuple[Point, Point, float]]) -> bool:
+    """Whether no rigid motion ``(a - c y, b + c x, c)`` is left; held are positions, directions there, and rotations."""
     rows = []
-    for point, motion in held:
-        x, y = np.subtract(point, held[0][0])
-        forms = ((1.0, 0.0, -y), (0.0, 1.0, x), (0.0, 0.0, 1.0))
-        rows += [form for form, value in zip(forms, motion, strict=True) if value is not None]
+    for position, (nx, ny), rotation in held:
+        x, y = np.subtract(position, held[0][0])
+        rows.append((nx, ny, ny * x - nx * y + rotation))
     scale = np.array([1.0, 1.0, 1 / max([1e-300, *(abs(row[2]) for row in rows)])])
     return len(rows) > 0 and int(np.linalg.matrix_rank(np.array(rows) * scale, tol=1e-9)) == 3

@@ -24,7 +24,7 @@ from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
 from fem_reference.newton import Attempt
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, State, Touch, at_rest, build_state
+from fem_reference.state import Condition, State, Touch, at_rest, build_state, with_conditions
 from fem_reference.status import Status
 from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
 
@@ -99,7 +99,7 @@ class _Progress:
 
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
     """Yield a step to every load parameter; a step with another status than ``CONVERGED`` is the last."""
-    start = accept(model, at_rest(model), settings)
+    start = accept(model, _start(model), settings)
     assert start is not None, "the undeformed stiffness is regular, since no strip can move without strain"
     track: tuple[Accepted, ...] = (start,)
     trial = settings.first_step
@@ -110,6 +110,20 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
         if status is not Status.CONVERGED:
             return
         track, trial = progress.track, progress.trial
+
+
+def _start(model: Model) -> State:
+    """Undeformed state. If a strip has no clamp, contacts that touch are closed without force, since they may hold it."""
+    state = at_rest(model)
+    if all(strip.clamped for strip in model.problem.strips):
+        return state
+    return with_conditions(
+        state,
+        tuple(
+            replace(touch.condition, closed=touch.projection.inside and abs(touch.gap) <= 1e-9 * model.length)
+            for touch in state.touches
+        ),
+    )
 
 
 def _step(progress: _Progress, status: Status) -> Step:

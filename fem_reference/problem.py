@@ -15,7 +15,7 @@ from fem_reference.checks import (
     require_point,
     require_positive,
 )
-from fem_reference.conditions import EndLoad, Joint, Support, require_held
+from fem_reference.conditions import EndLoad, Joint, Support, require_held, require_known_ends
 from fem_reference.strip import Strip
 
 TURN = 0.5
@@ -158,7 +158,7 @@ class SolidProblem:
     ------
     ValueError
         If a name appears twice, a contact, support, joint or load refers to an unknown name, an end has two supports, a
-        joint's ends are apart, strips can move without strain, or a node starts on the wrong side of a strip.
+        joint's ends are apart, strips can move without strain and are not touched by a pin, or a node starts on the wrong side of a strip.
     """
 
     strips: tuple[Strip, ...]
@@ -173,7 +173,6 @@ class SolidProblem:
         require_distinct("SolidProblem", "strips", [strip.name for strip in self.strips])
         require_distinct("SolidProblem", "pins", [pin.name for pin in self.pins])
         require_distinct("SolidProblem", "contacts", [contact.name for contact in self.contacts])
-        require_held(self.strips, self.supports, self.joints, self.loads)
         names = [strip.name for strip in self.strips]
         for contact in self.contacts:
             owner = f"Contact({contact.name!r})"
@@ -183,6 +182,8 @@ class SolidProblem:
             rule = f"must name a pin or another strip's end: {nodes}"
             require(contact.node in nodes, owner, "node", contact.node, rule)
             self._require_side(contact)
+        require_known_ends(self.strips, self.supports, self.joints, self.loads)
+        require_held(self.strips, self.supports, self.joints, self._touching())
 
     def strip(self, name: str) -> Strip:
         """Return the strip called ``name``."""
@@ -210,12 +211,30 @@ class SolidProblem:
         strip = self.strip(name)
         return (strip.start if end == "start" else strip.end), 0.0
 
-    def _require_side(self, contact: Contact) -> None:
-        """Require that the node does not start beyond the touched surface."""
+    def _gap(self, contact: Contact) -> tuple[float, float]:
+        """Initial gap of a contact's node, and its axial coordinate on the strip [m]."""
         strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
         axial, transverse = strip.to_local(np.array(start, dtype=float))
         height = strip.height / 2 if contact.surface == "face" else 0.0
-        gap = contact.sign * transverse - height - radius
+        return float(contact.sign * transverse - height - radius), float(axial)
+
+    def _touching(self) -> list[tuple[str, Point, Point]]:
+        """Strip, position and normal of every pin that touches at the start."""
+        found: list[tuple[str, Point, Point]] = []
+        for contact in self.contacts:
+            strip, pin, (gap, axial) = self.strip(contact.strip), self.pin(contact.node), self._gap(contact)
+            if pin is not None and gap <= 1e-9 * strip.length and 0 <= axial <= strip.length:
+                normal = strip.frame[:, 1]
+                found.append((strip.name, pin.path[0], (float(normal[0]), float(normal[1]))))
+        return found
+
+    def _require_side(self, contact: Contact) -> None:
+        """Require that the node does not start beyond the touched surface."""
+        strip, (start, _), (gap, axial) = (
+            self.strip(contact.strip),
+            self.start_of(contact),
+            self._gap(contact),
+        )
         pin = self.pin(contact.node) is not None
         require(
             gap >= -1e-9 * strip.length or not 0 < axial < strip.length,

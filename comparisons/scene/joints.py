@@ -132,13 +132,13 @@ def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str], key:
             f'beam "{beam.name}" is free: clamp it, give it a [[support]] or join it to a beam that has one'
         )
         raise FieldError(key, beam.clamped, rule)
-    if touched.isdisjoint(names) and not rigid(scene, structure):
+    if touched.isdisjoint(names) and not _rigid(scene, structure):
         rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
         raise FieldError(key, beam.clamped, rule)
 
 
-def rigid(scene: Scene, structure: list[BeamSpec]) -> bool:
-    """Return whether the supports leave a structure no rigid motion ``(a - c y, b + c x, c)``."""
+def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:
+    """Whether the supports leave no rigid motion ``(a - c y, b + c x, c)``."""
     own = [support for beam in structure for support in scene.supports_of(beam.name)]
     levels = {scene.place(support.node)[1] for support in own if "x" in support.held}
     columns = {scene.place(support.node)[0] for support in own if "y" in support.held}

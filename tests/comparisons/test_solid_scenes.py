@@ -55,6 +55,22 @@ def pushed_between(h: float) -> Scene:
     return scene(beam(height=h, clamped=("start",)), supports=(roller,), pins=(pin,), contacts=(contact,))
 
 
+def raised(h: float) -> Scene:
+    """A beam hinged at its middle that rests on two pins, which rise: only their contact keeps it from turning."""
+    halves = (
+        beam("left", height=h, start=(-1.5, 0.0), end=(0.0, 0.0)),
+        beam("right", height=h, end=(1.5, 0.0)),
+    )
+    places = {"first": -1.0, "second": 1.0}
+    pins = [PinSpec(name=name, start=(x, 0.0), displacement=(0.0, 0.5)) for name, x in places.items()]
+    contacts = [
+        ContactSpec(node=pin.name, beam=half.name, side="right")
+        for pin, half in zip(pins, halves, strict=True)
+    ]
+    hinge = hold("left", "end", "pinned")
+    return scene(*halves, supports=(hinge,), pins=tuple(pins), contacts=tuple(contacts))
+
+
 def driven_tip(h: float) -> Scene:
     """A strip whose clamp is driven, so that its tip presses a cantilever."""
     upper = beam("b", height=h, start=(0.6, 1.0), end=(0.6, 0.1))
@@ -71,7 +87,7 @@ def frame(h: float) -> Scene:
     return scene(beam(height=h, clamped=("start",)), other, supports=(roller,), loads=(load,))
 
 
-MAKERS = (tip_load, moved_clamp, turned_pins, pushed_between, driven_tip, frame)
+MAKERS = (tip_load, moved_clamp, turned_pins, pushed_between, raised, driven_tip, frame)
 
 
 def actions(response: Response) -> tuple[np.ndarray, np.ndarray]:

@@ -15,8 +15,13 @@ def contact(**values):
     return make_problem(contact=values)
 
 
-def load(strip=STRIP, force=(1.0, 0.0)):
-    return fr.SolidProblem(strips=(make_strip(),), loads=(fr.EndLoad(strip=strip, force=force),))
+def load(**values):
+    given = {"strip": STRIP, "force": (1.0, 0.0)} | values
+    return fr.SolidProblem(strips=(make_strip(),), loads=(fr.EndLoad(**given),))
+
+
+def support(**values):
+    return fr.Support(**({"strip": STRIP, "end": "start"} | values))
 
 
 REFUSED = {
@@ -48,7 +53,17 @@ REFUSED = {
         "strip": ["beam"],
         "node": ["nail", "cantilever.end"],
     },
-    (load, r"EndLoad\('.*'\)"): {"strip": ["nobody"], "force": [(0.0, 0.0), (np.inf, 0.0)]},
+    (load, r"EndLoad\('.*'\)"): {
+        "strip": ["nobody"],
+        "force": [(0.0, 0.0), (np.inf, 0.0)],
+        "moment": [NAN],
+        "end": ["middle", "start"],
+    },
+    (support, r"Support\('.*'\)"): {
+        "end": ["middle"],
+        "motion": [(None, None, None), (0.0, NAN, None), (0.0, 0.0)],
+    },
+    (fr.Joint, r"Joint\(\(.*\)\)"): {"ends": [("a.end",), ("a.end", "a.end")]},
     (fr.Settings, "Settings"): {
         "tolerance": [0.0],
         "min_step": [1.0],
