@@ -9,7 +9,7 @@ from comparisons.cli.options import ModelNames, add_options, argument, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.files import writable_file, writable_folder, write_text
-from comparisons.models import TSM
+from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import built_in_scenes, load_scene
@@ -67,7 +67,9 @@ def run(given: "argparse.Namespace") -> int:
     if given.vtk is not None:
         from comparisons.show.export import check_series
 
-        check_series(writable_folder(given.vtk), given.model or TSM.name, scene)
+        check_series(
+            writable_folder(given.vtk), TSM.name if given.model is None else find(given.model).name, scene
+        )
     from comparisons.models import certified, solve
     from comparisons.response.to_json import as_json, summary
 
