@@ -36,7 +36,8 @@ def beams() -> Response:
 def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
     data = json.loads(as_json(beams))
     assert list(data) == [
-        "status", "message", "model", "continuum", "scene", "load_parameter", "contacts", "supports", "tips", "axes",
+        "status", "message", "reported_success", "model", "continuum", "outside", "scene", "load_parameter",
+        "contacts", "supports", "tips", "axes",
         "events", "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
     assert list(data["contacts"][PAIR]) == ["force", "vector", "arc_position", "gap", "slip_off"]
