@@ -51,9 +51,9 @@ def test_junit(scene: str, tmp_path: Path) -> None:
     assert "against rod" in str(suite[1][0].get("message"))
 
 
-def test_a_model_without_an_exact_rod_is_measured_against_exact_elements(capsys: Output) -> None:
+def test_two_beams_are_measured_against_the_exact_rods(capsys: Output) -> None:
     assert main(["gate", "double-beam", "--max-error", "force=1e-3", "--elements", "10"]) == 0
-    assert capsys.readouterr().out.startswith("double-beam: tsm against tsm")
+    assert capsys.readouterr().out.startswith("double-beam: tsm against rod")
 
 
 def test_a_solution_that_stops_holds_no_bound(tmp_path: Path, capsys: Output) -> None:

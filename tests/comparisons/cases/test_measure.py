@@ -53,7 +53,7 @@ def test_key_depends_on_the_mesh_file(tmp_path: Path) -> None:
 
 def test_labels() -> None:
     assert case(element="mixed", elements=10).label == "tsm mixed 10"
-    assert case(element="exact", tolerance=1e-6).label == "tsm exact 1 tolerance 1e-06"
+    assert case(element="exact", integration_tolerance=1e-6).label == "tsm exact 1 tolerance 1e-06"
     assert case(elements=10, branch="stable").label == "tsm mixed 10 stable"
     assert case("solid", mesh=(50, 2)).label == "solid Q2 50x2"
     assert case("rod").label == "rod"
