@@ -112,7 +112,8 @@ BAD = {
     "run[0].beam.height.from = 0: must be positive in a range": RUN
     + 'beam.height = { from = 0, to = 1, count = 3, spacing = "log" }',
     'run[0].element = "mixd": must be one of': RUN + 'element = "mixd"',
-    "run[0].integration_tolerance = 2: must lie between 0 and 1": RUN + 'element = "exact"\nintegration_tolerance = 2',
+    "run[0].integration_tolerance = 2: must lie between 0 and 1": RUN
+    + 'element = "exact"\nintegration_tolerance = 2',
     'run[0].mesh = "25x2": is no option of model = "tsm"': RUN + 'mesh = "25x2"',
     "run[0].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25, 2]',
     'run[0].model = "fem": must be one of': '[[run]]\nmodel = "fem"',

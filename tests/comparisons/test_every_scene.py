@@ -1,0 +1,64 @@
+"""Every built-in scene by every model of a comparison: a certified answer, a stop by name, or one line why not."""
+
+import pytest
+
+from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, SOLID, Run
+from comparisons.errors import errors
+from comparisons.models import MODELS, certified, solve
+from comparisons.models.options import ModelError
+from comparisons.referee import Verdict
+from comparisons.scene import Scene, built_in_scenes, load_scene
+
+NOT_BY_THE_SOLID = {
+    "cantilever-critical-area": "more than an eighth of the length",
+    "ks-printed-shear": "a Poisson's ratio between",
+    "lees-frame": "a Poisson's ratio between",
+    "williams-toggle": "a Poisson's ratio between",
+}
+"""Scenes that no solid is: a section higher than a beam's, and beams that do not shear."""
+WITH_ELASTICA = {"cantilever-critical-area", "ks-cantilever", "ks-printed-shear", "touch-again"}
+"""Scenes of one cantilever under one pin on its axis."""
+STOPS = {"CUTBACK_FLOOR"}
+"""How the paper's element stops in a critical area."""
+
+
+def outcome(scene: Scene, run: Run) -> str:
+    """Return ``CERTIFIED``, the status of a stop, or the reason of a refusal."""
+    try:
+        response = certified(solve(scene, run.model, run.options), scene)
+    except ModelError as error:
+        return str(error)
+    if not response.completed:
+        assert not response.false_success, response.message
+        return response.status
+    assert response.certificate is not None
+    assert response.certificate.verdict is Verdict.CERTIFIED, response.certificate.reason
+    if run is not ELASTICA:
+        found = errors(response, solve(scene, ROD.model), scene)["path"]
+        assert found["tip"] < 0.02
+    return Verdict.CERTIFIED.name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_every_model_has_a_certified_answer_or_a_reason(name: str) -> None:
+    scene = load_scene(name)
+    assert outcome(scene, ROD) == outcome(scene, MIXED) == Verdict.CERTIFIED.name
+    assert outcome(scene, PAPER[1]) in {Verdict.CERTIFIED.name, *STOPS}
+    by_solid = outcome(scene, SOLID)
+    assert (
+        NOT_BY_THE_SOLID[name] in by_solid if name in NOT_BY_THE_SOLID else by_solid == Verdict.CERTIFIED.name
+    )
+    assert (outcome(scene, ELASTICA) == Verdict.CERTIFIED.name) == (name in WITH_ELASTICA)
+
+
+@pytest.mark.parametrize("name", built_in_scenes())
+def test_every_model_states_it_or_says_why(name: str) -> None:
+    refused = {model.name: model.refusal(load_scene(name)) for model in MODELS.values()}
+    assert {model for model, reason in refused.items() if reason is None} == {
+        "tsm",
+        "rod",
+        *(["solid"] if name not in NOT_BY_THE_SOLID else []),
+        *(["elastica"] if name in WITH_ELASTICA else []),
+    }
+    assert all(reason is None or len(reason.splitlines()) == 1 for reason in refused.values())
