@@ -30,6 +30,7 @@ def plot_budget(budget: Budget, *paths: Path) -> None:
     for axes, quantity in zip(panels, budget.total, strict=False):
         _stack(axes, budget, quantity)
         axes.set(title=quantity.replace("_", " "), xlabel="load parameter")
+        axes.margins(y=0.08)
     fig.axes[0].set_ylabel("(TSM - solid) / exact rod [%]")
     fig.suptitle(f"{budget.scene}: what the difference is made of")
     fig.legend(

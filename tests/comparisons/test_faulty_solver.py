@@ -111,13 +111,13 @@ def a_stale_result(patch: pytest.MonkeyPatch) -> None:
 
 
 def swapped_reactions(patch: pytest.MonkeyPatch) -> None:
-    true = discrete_models._beam_supports
+    true = discrete_models._by_beam
 
     def swapped(*given: Any) -> Any:
         found = true(*given)
         return dict(zip(found, reversed(found.values()), strict=True))
 
-    patch.setattr(discrete_models, "_beam_supports", swapped)
+    patch.setattr(discrete_models, "_by_beam", swapped)
 
 
 def a_wrong_support(patch: pytest.MonkeyPatch) -> None:

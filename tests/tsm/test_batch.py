@@ -452,5 +452,5 @@ def test_what_the_suite_could_solve_at_once(stated) -> None:
         groups = set()
         for case in beams:
             structure = to_structure(case.scene, element=case.options.element, elements=case.options.elements)
-            groups.add((repr(topology(structure)), case.scene.times, case.options.tolerance))
+            groups.add((repr(topology(structure)), case.scene.times, case.options.integration_tolerance))
         stated(f"batch.{name}", len(beams), len(groups))

@@ -161,7 +161,7 @@ def test_stress_is_the_solids():
     assert answer.reached
     with pytest.raises(ModelError, match="beams have section forces"):
         solve_to(KS, 0.05, "stress", model="tsm")
-    with pytest.raises(ModelError, match="is that of one beam"):
+    with pytest.raises(ModelError, match="is defined for a scene with one beam"):
         solve_to(load_scene("double-beam"), 0.05, "stress")
 
 

@@ -96,4 +96,4 @@ def test_a_case_that_raises_does_not_stop_the_others(tmp_path: Path, monkeypatch
 
 def test_a_worker_of_another_version_is_found_out() -> None:
     with pytest.raises(RuntimeError, match="another version"):
-        run_module.solve("0" * 64, CASES[0], 1)
+        run_module.solve("0" * 64, CASES[0], repeats=1, process=False)

@@ -101,7 +101,7 @@ def test_check_says_why_a_model_cannot_state_a_scene(capsys: Output) -> None:
     assert main(["check", "double-beam", "--out", "double.svg"]) == 0
     out = capsys.readouterr().out
     assert "2 beams, 1 pin, 3 contact pairs" in out
-    assert "  rod: no, " in out
+    assert "  elastica: no, " in out
     drawn = Path("double.svg").read_text()
     assert drawn.startswith("<?xml")
 
