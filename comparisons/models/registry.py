@@ -81,7 +81,8 @@ def certified(
     scene : Scene
         The scene that was solved.
     which : {"last", "all", "none"}
-        Load parameters to certify.
+        Load parameters to certify. With ``last`` they are the last one and the neighbours of events; a program of others, which
+        does not state its events, is judged at all.
     allowance : float
         Largest relative distance from the exact equilibrium. For a solid, the height over the length is added.
     """
@@ -90,7 +91,7 @@ def certified(
 
     if which == "none" or not len(response.load_parameter):
         return response
-    every = range(len(response.load_parameter)) if which == "all" else None
+    every = range(len(response.load_parameter)) if which == "all" or response.outside else None
     allowed = allowance + default_allowance(response, scene) - ALLOWED
     found = certify(response, scene, at=every, allowance=allowed)
     response = replace(response, certificate=found)
