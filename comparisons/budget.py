@@ -9,7 +9,7 @@ Each part is extrapolated from runs that differ in one setting only. The sum of 
 construction, and the rest is a measured number.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -40,7 +40,7 @@ PARTS = {
 }
 """The parts and what each measures."""
 BIOT = "biot-linear"
-Values = dict[str, Array]
+Values = Mapping[str, Array]
 """Values at the load parameters `TIMES`, shape (4,), by quantity."""
 
 

@@ -26,7 +26,7 @@ AWAY = 1.5
 Errors = Mapping[str, Mapping[str, float]]
 """Errors by scope and quantity."""
 Steps = NDArray[np.integer]
-Columns = dict[str, Array]
+Columns = Mapping[str, Array]
 """Values over load parameters by pair, support or beam."""
 
 

@@ -93,7 +93,7 @@ def _solid(scene: Scene, model: Model, t: Array) -> tuple[Array, float, Array]:
         raise StoppedError(f"{result.status.name}: {result.message}")
     name = scene.beams[0].name
     energy = float(sum(fem_reference.energy(result, -1)))
-    return -result.supports[name].force, energy, fem_reference.axis_line(result, name, -1)
+    return -next(iter(result.supports.values())).force, energy, fem_reference.axis_line(result, name, -1)
 
 
 ANGLE, SHIFT = 0.7, (2.0, -3.0)
