@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
+from comparisons.referee.distance import scales
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.follow import at_rest, departs
 from comparisons.referee.judge import impossible, judged
@@ -48,6 +49,7 @@ def certify(
         else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
     )
     states = tuple(judged(response, scene, k, allowed) for k in numbers)
+    states = tuple(_on_the_path(response, scene, numbers, states, allowed))
     path = tuple(_path(response, scene))
     verdict, reason = _worst(states, path, steps)
     gone = next(_departures(response, scene, states, numbers), "") if verdict is Verdict.CERTIFIED else ""
@@ -57,6 +59,22 @@ def certify(
         verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
         seconds=perf_counter() - began,
     )  # fmt: skip
+
+
+def _on_the_path(
+    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+) -> Iterator[Judgement]:
+    """Yield the judgements; a refused state is judged again with the largest force and moment of all judged load parameters.
+
+    A moment that changes its sign is small at one load parameter, and a difference relative to it alone is large.
+    """
+    sizes = [scales(scene, item.exact) for item in states if item.exact is not None]
+    largest = tuple(max(column, default=0.0) for column in zip(*sizes, strict=True)) or (0.0, 0.0)
+    for k, item in zip(numbers, states, strict=True):
+        if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
+            yield judged(response, scene, k, allowed, exact=item.exact, largest=(largest[0], largest[1]))
+        else:
+            yield item
 
 
 _GRAVITY = (

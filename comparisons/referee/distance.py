@@ -65,18 +65,23 @@ def _size(value: float) -> float:
     return math.inf if math.isnan(value) else value
 
 
-def distance(scene: Scene, answer: AnswerState, exact: Equilibrium) -> Distance:
-    """Return the differences between an answer and the exact equilibrium."""
-    size, moment = scales(scene, exact)
+def distance(
+    scene: Scene, answer: AnswerState, exact: Equilibrium, largest: tuple[float, float] = (0.0, 0.0)
+) -> Distance:
+    """Return the differences between an answer and the exact equilibrium.
+
+    Forces and moments are relative to the largest at this load parameter, or to `largest` if that is larger.
+    """
+    size, moment = map(max, scales(scene, exact), largest)
     force, arc = [0.0], [0.0]
-    largest = max(
+    largest_contact = max(
         [LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
     )
     last = LAST_PLACES * max(beam.EA for beam in scene.beams)
     length = max(beam.length for beam in scene.beams)
     for pair, contact in exact.contacts.items():
         touched = next(item.beam for item in scene.contacts if item.pair == pair)
-        force.append(_beyond(float(np.hypot(*(contact.force - answer.forces[pair]))), largest, last))
+        force.append(_beyond(float(np.hypot(*(contact.force - answer.forces[pair]))), largest_contact, last))
         arc.append(abs(contact.arc_position - answer.arcs[pair]) / scene.beam(touched).length)
     reaction = [0.0 if answer.reactions.keys() == exact.reactions.keys() else math.inf]
     for end, held in exact.reactions.items():

@@ -22,20 +22,38 @@ LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
 
 
-def judged(response: Response, scene: Scene, k: int, allowed: float) -> Judgement:
-    """Judge one load parameter."""
+def judged(
+    response: Response,
+    scene: Scene,
+    k: int,
+    allowed: float,
+    *,
+    exact: Equilibrium | None = None,
+    largest: tuple[float, float] = (0.0, 0.0),
+) -> Judgement:
+    """Judge one load parameter.
+
+    Parameters
+    ----------
+    response, scene, k, allowed
+        The answer, its scene, the number of the load parameter, and the largest difference allowed.
+    exact : Equilibrium, optional
+        The exact equilibrium near the answer, if it is known.
+    largest : (float, float)
+        Largest force and moment of other load parameters; differences are relative to these where they are larger.
+    """
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
     if contradiction:
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
-    exact = equilibrium(scene, answer)
+    exact = exact or equilibrium(scene, answer)
     if exact.status is not SearchStatus.FOUND:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
     answer = _with_vectors(answer, response, exact, k)
-    differences = distance(scene, answer, exact)
+    differences = distance(scene, answer, exact, largest)
     verdict, reason = _verdict(response, scene, answer, exact, differences, allowed)
     return Judgement(
         load_parameter=t,

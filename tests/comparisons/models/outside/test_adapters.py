@@ -147,14 +147,14 @@ def test_scenes_without_contact(name: str, scene: str) -> None:
 
 @needs("exudyn")
 def test_exudyn_is_off_in_the_middle_of_a_path_and_reports_success() -> None:
-    """Ten elements: right at the end to 5e-3, and off by 15 % after the strip has buckled, which is why every load parameter is judged."""
+    """Ten elements: right at the end to 5e-3, and off by more than 5 % of the largest reaction after the strip has buckled, which is why every load parameter is judged."""
     response = answered("exudyn", STATED["tied"], 10)
     assert (response.status, response.false_success) == ("NOT_AN_EQUILIBRIUM", True)
     assert response.certificate is not None
     judged = response.certificate.judged
     assert judged[-1].distance is not None
     assert judged[-1].distance.largest[1] < 5e-3
-    assert max(one.distance.largest[1] for one in judged if one.distance is not None) > 0.1
+    assert max(one.distance.largest[1] for one in judged if one.distance is not None) > 0.05
 
 
 PORTAL, DOUBLE = STATED["portal"], load_scene("double-beam")
