@@ -51,9 +51,8 @@ autodoc_default_options = {"members": True, "no-value": True}
 numpydoc_show_class_members = False
 add_module_names = False
 toc_object_entries = False
-nitpick_ignore = [
-    ("py:class", "collections.abc.Mapping")
-]  # in the alias `Errors`; the standard library is not linked
+# in the aliases `Errors`, `Columns` and `Values`; the standard library and NumPy are not linked
+nitpick_ignore_regex = [("py:class", r"collections\.abc\.Mapping|numpy\.(ndarray|dtype|float64)")]
 
 
 def _list_keys(

@@ -257,7 +257,7 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 @pytest.mark.slow
-def test_a_scene_without_rod_and_solid(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_frame_of_two_beams(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     column = replace(KS.beams[0], name="column")
     girder = replace(column, name="girder", start=(1.0, 0.0), end=(1.0, 1.0), clamped=())
     scene = replace(
@@ -273,6 +273,13 @@ def test_a_scene_without_rod_and_solid(tmp_path: Path, capsys: pytest.CaptureFix
     path.write_text(to_toml(scene))
     assert run("trade", str(path), "--quick", "--out", str(tmp_path / "out")) == 0
     out = capsys.readouterr().out
-    assert "not independent" in out
-    assert "limit: not known" in out
-    assert "REFUSED" in out
+    assert "errors against: the exact Reissner rods" in out
+    assert (
+        "1 of 40 settings without a solution:\n  elastica [2]: REFUSED: elastica: the exact models have one beam"
+        in out
+    )
+    with (tmp_path / "out" / "trade.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    exact = [float(row["error_path_shape"]) for row in rows if row["family"] == "TSM exact"]
+    assert len(exact) > 0
+    assert max(exact) < 1e-12

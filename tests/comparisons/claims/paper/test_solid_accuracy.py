@@ -82,7 +82,7 @@ def test_scatter_is_within_its_bar(stated) -> None:
 
 @pytest.mark.slow
 def test_penalty_is_valid_over_many_decades_and_named_below(stated) -> None:
-    """From 10 to 1e13 N/m the force is right; over the eleven decades to 1e12 the penetration is seen to fall as 1 / eps."""
+    """From 10 to 1e13 N/m the force is right; over the eleven decades to 1e12 the penetration falls as 1 / eps."""
     found = penalty(quiet)
     for scene in ("ks-cantilever", "ks-face"):
         rows = [row for row in found if row["scene"] == scene]
@@ -93,8 +93,11 @@ def test_penalty_is_valid_over_many_decades_and_named_below(stated) -> None:
         assert [row["penalty"] for row in soft] == pytest.approx([1e-3, 1e-2, 0.1, 1.0])
         assert [row["penalty"] for row in valid] == pytest.approx(10.0 ** np.arange(1, 14))
         window = valid[:-1]
-        eps, deep = (np.log10([row[name] for row in window]) for name in ("penalty", "penetration"))
-        np.testing.assert_allclose(np.diff(deep) / np.diff(eps), -1, atol=0.06)
+        penetration = np.array([row["penetration"] for row in window])
+        round_off = (
+            2 * np.finfo(float).eps
+        )  # of two places about 1 m from the origin; 1e-15 m is penetrated at 1e12 N/m
+        np.testing.assert_allclose(penetration[1:], penetration[:-1] / 10, rtol=0.01, atol=round_off)
         assert all(row["force_error"] < 1e-3 for row in valid)
         stated("solid.penalty", window[0]["penalty"], window[-1]["penalty"])
 
