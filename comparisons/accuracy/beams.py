@@ -94,7 +94,7 @@ def graded_to(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) ->
         said.append(f"{element}, {total} elements: estimate {estimate:.1e} of {quantity}")
         if estimate <= accuracy or total >= MOST:
             break
-        if stuck > accuracy / 2:
+        if stuck > 0.9 * accuracy:
             said.append(f"{element}: its strain measures leave {stuck:.1e}, whatever the elements")
             break
         growth = (estimate / (accuracy - stuck)) ** (1 / order) if np.isfinite(estimate) else 2.0
