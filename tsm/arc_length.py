@@ -12,14 +12,17 @@ K is solved for both right-hand sides at once, so its band is kept; the path pas
 
 from __future__ import annotations
 
+import math
 import time
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from tsm.contact_set import initial_state
 from tsm.elements.properties import Array
-from tsm.events import Event, EventKind, broken, margins
+from tsm.events import Event, EventKind, Margin, broken, margins
+from tsm.friction import regripped, slip_rates
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import PathTangent
@@ -116,7 +119,7 @@ class _Path:
     def __init__(self, model: Model, settings: Settings) -> None:
         self.model, self.settings = model, settings
         self.newton = Newton(model, settings)
-        self.here = self.newton.solve(initial_state(model))
+        self.here = self._start()
         per_beam = np.where(model.kind < 2, model.extent / model.length, 1.0) * self.newton.per_step
         self.weight = np.where(model.kind < 3, per_beam, 0.0) ** 2
         self.direction = self._direction(self.here, None)
@@ -132,10 +135,9 @@ class _Path:
             if self.growth < self.settings.smallest_step:
                 return self._record(self.here, cutbacks), self.failure
         there, direction = reached
-        before = margins(self.model, self.here, self.newton.tolerance)
-        if broken(before, margins(self.model, there, self.newton.tolerance)):
-            return self._record(there, cutbacks), Status.CONTACT_CHANGED
         assert self.direction is not None, "a step needs a direction"
+        if broken(self._margins(self.here, self.direction), self._margins(there, direction)):
+            return self._record(there, cutbacks), Status.CONTACT_CHANGED
         begin = self.direction.load
         turns = direction.load * begin < 0
         events = (self._limit_point(length, begin, direction.load),) if turns else ()
@@ -143,6 +145,20 @@ class _Path:
         self.here, self.direction = there, direction
         self.growth = min(2 * self.growth, 1.0)
         return self._record(there, cutbacks, events), Status.CONVERGED
+
+    def _margins(self, equilibrium: Equilibrium, direction: _Direction) -> list[Margin]:
+        velocities = self.newton.assembler.velocities(equilibrium.state.load_parameter)
+        rates = slip_rates(self.newton, equilibrium, velocities)
+        ahead = {k: math.copysign(rate, rate * direction.load) for k, rate in rates.items()}
+        return margins(self.model, equilibrium, self.newton.tolerance, ahead)
+
+    def _start(self) -> Equilibrium:
+        """Undeformed equilibrium whose contacts with friction slip or stick as the load grows."""
+        start = self.newton.solve(initial_state(self.model))
+        state = regripped(self.newton, start.state, self.newton.assembler.velocities(0.0))
+        if isinstance(state, Status):
+            return replace(start, status=state)
+        return replace(start, state=state, system=self.newton.assembler.linearise(state))
 
     def _record(self, equilibrium: Equilibrium, cutbacks: int, events: tuple[Event, ...] = ()) -> Step:
         return Step(

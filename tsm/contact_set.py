@@ -9,7 +9,8 @@ import numpy as np
 from tsm.contact import chord_owner, with_touches
 from tsm.events import ROUND_OFF, EventKind
 from tsm.model import Model, PairModel
-from tsm.state import State, Touch
+from tsm.projection import Projection
+from tsm.state import UNDECIDED, State, Touch
 from tsm.status import Status
 
 
@@ -18,6 +19,12 @@ def changed(model: Model, state: State, k: int, touch: Touch | None, *, armed: b
     touches, flags = list(state.touches), list(state.armed)
     touches[k], flags[k] = touch, armed
     return with_touches(model, replace(state, armed=tuple(flags)), tuple(touches))
+
+
+def closed_at(pair: PairModel, seen: Projection) -> Touch:
+    """Closed contact without force at the closest point."""
+    grip = UNDECIDED if pair.rubs else None
+    return Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0), grip=grip)
 
 
 def rearm(model: Model, state: State) -> State:
@@ -58,9 +65,7 @@ def initial_state(model: Model) -> State:
                 f"the node starts at {position}, {-seen.gap:.3g} behind the surface"
             )
         closed = over and seen.gap <= small
-        touches.append(
-            Touch(element=seen.element, xi=min(max(seen.xi, 0.0), 1.0), force=(0.0, 0.0)) if closed else None
-        )
+        touches.append(closed_at(pair, seen) if closed else None)
     return owned(model, with_touches(model, start, tuple(touches)))
 
 
@@ -76,6 +81,8 @@ def crowded(model: Model, state: State) -> bool:
 
 def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
     """Status that ends the march where a contact may not open."""
+    if kind is EventKind.LINE_CONTACT:
+        return Status.LINE_CONTACT
     if kind is EventKind.SLIP_OFF:
         end = "start" if arc < pair.target.beam.length / 2 else "end"
         node = model.end_node(f"{pair.target.beam.name}.{end}")

@@ -5,23 +5,26 @@ touch         the gap of an open pair falls below zero, its node on the stated s
 release       the force of a closed pair falls below zero
 slip-off      the position of a closed pair leaves the beam past an end
 pass-through  the owner of a closed pair changes from an element to its neighbour
+slip          the force of a pair that sticks reaches the edge of its cone ``|F_t| <= mu F_n``
+stick         the slip rate of a pair that slips falls to zero
 line-contact  the curvature of the beam at a closed pair reaches the contact surface's
 limit-point   the load parameter is stationary along the path
 bifurcation   another branch crosses the path, which goes on unstable
 ============= ==============================================================================
 
-The first three events change the set of closed contacts. Each of them, and line contact, has a margin: a number that is positive
-before the event and negative after it. The event is located at the root of its margin. A pass-through does not change the set of
+The first three events change the set of closed contacts, slip and stick the state of a contact with friction. Each of them, and line
+contact, has a margin: a number that is positive before the event and negative after it. The event is located at the root of its margin. A pass-through does not change the set of
 closed contacts; its load parameter is interpolated.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from tsm.friction import cone, rub
 from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
@@ -44,9 +47,15 @@ class EventKind(Enum):
     RELEASE = "release"
     SLIP_OFF = "slip-off"
     PASS_THROUGH = "pass-through"
+    SLIP = "slip"
+    STICK = "stick"
     LINE_CONTACT = "line-contact"
     LIMIT_POINT = "limit-point"
     BIFURCATION = "bifurcation"
+
+
+GRIPS = frozenset({EventKind.SLIP, EventKind.STICK})
+"""Events at which a contact stays closed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,10 +118,13 @@ class Margin:
 
 
 def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
-    """Contact force of closed pair k, positive where it pushes the beam away from the node's side."""
+    """Contact force of closed pair k, friction included, positive where it pushes the beam away from the node's side."""
     fx, fy = equilibrium.system.forces[k]
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
+    if touch.grip is not None:
+        across = rub(model, equilibrium.state, equilibrium.system, k).normal
+        return math.copysign(math.hypot(fx, fy), across)
     dx, dy = model.pairs[k].group.direction(touch, equilibrium.state.q)
     push = model.pairs[k].side * (fy * dx - fx * dy)
     size = float((fx * fx + fy * fy) ** 0.5)
@@ -160,8 +172,20 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]
     return events
 
 
-def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Margin]:
-    """Margins of the events that may come next; forces are measured by the tolerance of the solution."""
+def margins(
+    model: Model, equilibrium: Equilibrium, tolerance: float, slip_rates: Mapping[int, float]
+) -> list[Margin]:
+    """Margins of the events that may come next.
+
+    Parameters
+    ----------
+    model, equilibrium
+        Where.
+    tolerance : float
+        Tolerance of the solution, by which forces are measured.
+    slip_rates : mapping
+        Rates of the pairs that slip, positive the way they slip; a pair without a rate is taken to slip on.
+    """
     state = equilibrium.state
     upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
@@ -173,6 +197,12 @@ def margins(model: Model, equilibrium: Equilibrium, tolerance: float) -> list[Ma
             upcoming.append(
                 Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
             )
+            if touch.grip is not None and touch.grip.slip:
+                value = slip_rates.get(k, model.length) / model.length
+                upcoming.append(Margin(kind=EventKind.STICK, pair=k, value=value))
+            elif touch.grip is not None:
+                inside = cone(model, state, equilibrium.system, k) / model.force_scale
+                upcoming.append(Margin(kind=EventKind.SLIP, pair=k, value=inside))
             if pair.pair.offset > 0:
                 room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
                 upcoming.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))

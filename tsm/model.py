@@ -18,6 +18,7 @@ from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
 from tsm.rods.assembly import Rods
 from tsm.sizes import Sizes, joined_extents, sizes_of
+from tsm.state import Grip
 from tsm.structure import Beam, ContactPair, Pin, Structure
 
 _CONTACT_KINDS = np.arange(6, 10)
@@ -103,6 +104,25 @@ class PairModel:
         return self.side * self.pair.offset
 
     @property
+    def rubs(self) -> bool:
+        """Whether the contact has friction."""
+        return self.pair.friction > 0
+
+    @property
+    def lever(self) -> float:
+        """Distance of the face, on which friction acts, from the axis, positive to the right."""
+        return self.side * (self.pair.offset - self.pair.radius)
+
+    @property
+    def roll(self) -> float:
+        """Radius of a round pin, positive on the right."""
+        return self.side * self.pair.radius
+
+    def lean(self, grip: Grip) -> float:
+        """Tangent of the angle from the normal to the contact force in slip, positive clockwise; 0 in stick."""
+        return grip.slip * self.pair.friction * self.side
+
+    @property
     def slots(self) -> slice:
         """Positions of its unknowns among the contacts' unknowns."""
         return slice(self.slot, self.slot + self.element_type.contact_unknowns)
@@ -132,8 +152,10 @@ class Model:
         Number of banded equations.
     border : int
         Number of border unknowns: border equations, then the contacts' own unknowns.
+    rubbed : bool
+        Whether a contact has friction.
     turns : tuple of float
-        Load parameters at which the paths of the pins turn.
+        Load parameters at which the paths of the pins turn; with friction, every corner, since each may reverse a slip.
     sizes : Sizes
         Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
@@ -153,7 +175,10 @@ class Model:
         lengths = np.array([beam.length for beam in structure.beams])
         self.sizes = self.sizes_of(self.coordinates, lengths, sections[2])
         self.length, self.extent, self.force_scale, self.least_force = map(float, self.sizes)
-        self.turns = tuple(sorted({turn for pin in structure.pins for turn in pin.turns}))
+        self.rubbed = any(pair.rubs for pair in self.pairs)
+        self.turns = tuple(
+            sorted({turn for pin in structure.pins for turn in (pin.corners if self.rubbed else pin.turns)})
+        )
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
         self.beams: dict[str, BeamModel] = {}
@@ -259,6 +284,11 @@ class Model:
         units: Array = np.array([F, F, F * L, L, L, 1.0, L, L, F, 1.0])[self.kind]
         return units
 
+    @property
+    def stick_stiffness(self) -> float:
+        """Force over length, the unit of the rows of stick."""
+        return self.force_scale / self.length
+
     @cached_property
     def whole(self) -> bool:
         """Whether every beam is a single exact element, so that no contact passes from element to element."""
@@ -308,6 +338,11 @@ class Model:
             target = self.beams[pair.beam]
             element_type = ELEMENTS[target.beam.element]
             pin = pins.get(pair.node)
+            if pair.friction and not element_type.contact_unknowns:
+                raise ValueError(
+                    f"ContactPair({pair.name}).friction = {pair.friction!r}: "
+                    f'the force of an element "{target.beam.element}" is normal to its chord'
+                )
             self.pairs.append(
                 PairModel(
                     pair=pair,

@@ -304,8 +304,8 @@ class Newton:
         if pair.slot < 0:
             return chord_owner(self.model, pair, state, touch)
         dFx, dFy, ds, *turned = dz[pair.slots]
-        return Touch(
-            element=touch.element,
+        return replace(
+            touch,
             xi=touch.xi + ds / self.model.element[touch.element].l0,
             force=(touch.force[0] + dFx, touch.force[1] + dFy),
             angle=touch.angle + sum(turned),

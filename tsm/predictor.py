@@ -52,6 +52,4 @@ def _touch(pair: PairModel, weights: list[float], trail: list[Touch]) -> Touch:
     place = last.element - pair.target.first
     xi = (arc - pair.target.arcs[place]) / pair.target.lengths[place]
     x, y = (weighted(weights, [touch.force[c] for touch in trail]) for c in range(2))
-    return Touch(
-        element=last.element, xi=xi, force=(x, y), angle=weighted(weights, [touch.angle for touch in trail])
-    )
+    return replace(last, xi=xi, force=(x, y), angle=weighted(weights, [touch.angle for touch in trail]))

@@ -52,6 +52,9 @@ def arrays(result: Result) -> dict[str, Array]:
         named[f"{pair}.force"] = contact.force
         named[f"{pair}.arc_position"] = contact.arc_position
         named[f"{pair}.gap"] = contact.gap
+        if contact.friction is not None:
+            for name in ("tangential", "normal", "slip", "dissipated"):
+                named[f"{pair}.{name}"] = getattr(contact.friction, name)
     for beam, tip in result.tips.items():
         named[f"{beam}.tip"] = tip
     for beam, support in result.supports.items():

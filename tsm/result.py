@@ -14,6 +14,7 @@ from tsm.critical import CriticalPoint
 from tsm.deformation import Deformation, deformation
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
+from tsm.friction import grips, rub
 from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.projection import arc_position
@@ -36,11 +37,34 @@ class ContactHistory:
     gap : ndarray, shape (s,)
         Distance of the node from the contact surface; what Newton's method left where the pair is closed, nan
         where the node is not over the beam or has slipped past it.
+    friction : FrictionHistory or None
+        What friction does, None without friction.
     """
 
     force: Array
     arc_position: Array
     gap: Array
+    friction: FrictionHistory | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionHistory:
+    """Friction of a contact pair over the load.
+
+    Attributes
+    ----------
+    tangential, normal : ndarray, shape (s,)
+        Force on the beam along its tangent, positive from start to end, and across it away from the node; 0 where the pair is open.
+    slip : ndarray of int, shape (s,)
+        Sign of the slip rate, +1 towards the beam's end; 0 in stick and where the pair is open.
+    dissipated : ndarray, shape (s,)
+        Energy dissipated since the start.
+    """
+
+    tangential: Array
+    normal: Array
+    slip: Array
+    dissipated: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,6 +112,8 @@ class Result:
         where a contact has no energy.
     critical : tuple of CriticalPoint
         Critical points of the path, with their modes.
+    work : ndarray, shape (s,), or empty
+        Work of pins, supports and loads since the start; empty without friction, where the potential has it all.
     deformation : Deformation or None
         The most deformed element at every accepted step, also between the prescribed load parameters; None if all are exact.
     unknowns : int
@@ -107,6 +133,7 @@ class Result:
     events: tuple[Event, ...]
     index: Array
     critical: tuple[CriticalPoint, ...]
+    work: Array
     deformation: Deformation | None
     unknowns: int
     wall_seconds: float
@@ -217,7 +244,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         status=status,
         message=status.value + where,
         load_parameter=np.array([e.state.load_parameter for e in equilibria]),
-        contacts={pair.pair.name: _contact(model, equilibria, k) for k, pair in enumerate(model.pairs)},
+        contacts={pair.pair.name: _contact(model, requested, k) for k, pair in enumerate(model.pairs)},
         supports=_supports(model, equilibria),
         tips={
             name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
@@ -228,6 +255,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         events=tuple(event for step in steps for event in step.events),
         index=np.array([step.index for step in requested], dtype=np.int64),
         critical=tuple(point for step in steps for point in step.critical),
+        work=np.array([step.spent[0] for step in requested if len(step.spent)]),
         deformation=deformation(model, [step.equilibrium for step in steps]),
         unknowns=model.unknowns,
         wall_seconds=seconds,
@@ -241,10 +269,25 @@ def _position(model: Model, equilibrium: Equilibrium, node: int) -> Array:
     return position
 
 
-def _contact(model: Model, equilibria: tuple[Equilibrium, ...], k: int) -> ContactHistory:
-    rows = [_contact_at(model, equilibrium, k) for equilibrium in equilibria]
+def _contact(model: Model, steps: list[Step], k: int) -> ContactHistory:
+    rows = [_contact_at(model, step.equilibrium, k) for step in steps]
     force, arc, gap = np.array(rows).reshape(-1, 3).T
-    return ContactHistory(force=force, arc_position=arc, gap=gap)
+    friction = _friction(model, steps, k) if model.pairs[k].rubs else None
+    return ContactHistory(force=force, arc_position=arc, gap=gap, friction=friction)
+
+
+def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
+    rows = []
+    for step in steps:
+        state, system = step.equilibrium.state, step.equilibrium.system
+        grip = dict(grips(state)).get(k)
+        here = rub(model, state, system, k) if grip else None
+        force = (here.tangential, here.normal) if here else (0.0, 0.0)
+        rows.append((*force, grip.slip if grip else 0, step.spent[1 + k]))
+    tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T
+    return FrictionHistory(
+        tangential=tangential, normal=normal, slip=slip.astype(np.int64), dissipated=dissipated
+    )
 
 
 def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, float, float]:

@@ -72,8 +72,11 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     int
         Number of negative eigenvalues; a lower bound for an exact element with more than a few hundred modes. The index is -1, not
         defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose pivots leave the
-        diagonal. It is -1 also for closed contacts of the paper's elements: their force is normal to the chord and has no energy.
+        diagonal. It is -1 also for closed contacts of the paper's elements: their force is normal to the chord and has no energy, and
+        for contacts with friction, whose force has none either.
     """
+    if any(touch is not None and touch.grip is not None for touch in state.touches):
+        return UNDEFINED
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
             return hidden

@@ -3,11 +3,73 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from tsm.elements.properties import Array
 
 Cuts = tuple[tuple[int, tuple[int, ...]], ...]
 """Exact elements in contact: the number among the exact elements, and the contact pairs in order of arc position."""
+
+
+class Place(NamedTuple):
+    """Where a contact with friction lies on its beam, as far as it decides how far the surfaces have slipped.
+
+    Attributes
+    ----------
+    arc : float
+        Arc position on the beam.
+    shear : float
+        Angle psi from the section's normal to the mean tangent.
+    direction : float
+        Angle phi of the mean tangent.
+    stretch : float
+        Length A of the face for a unit of arc: that of the mean tangent, and the mean curvature times the face's distance.
+    """
+
+    arc: float
+    shear: float
+    direction: float
+    stretch: float
+
+
+class Rub(NamedTuple):
+    """Contact with friction at a configuration.
+
+    Attributes
+    ----------
+    tangential, normal : float
+        Force on the beam along its mean tangent, and across it away from the node.
+    place : Place
+        Where the contact lies.
+    """
+
+    tangential: float
+    normal: float
+    place: Place
+
+    @property
+    def way(self) -> int:
+        """Sign of the slip that the force goes with."""
+        return 1 if self.tangential >= 0 else -1
+
+
+class Grip(NamedTuple):
+    """State of a closed contact with friction.
+
+    Attributes
+    ----------
+    slip : int
+        Sign of the slip rate, 0 in stick.
+    held : Place or None
+        Where the stick began, None in slip.
+    """
+
+    slip: int
+    held: Place | None
+
+
+UNDECIDED = Grip(slip=0, held=None)
+"""State of a contact that has just closed; its force is normal to the surface until its state is known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,12 +86,15 @@ class Touch:
         Force on the beam (x, y).
     angle : float
         Angle of the section from the x axis, used by exact elements only.
+    grip : Grip or None
+        Slip or stick, None without friction.
     """
 
     element: int
     xi: float
     force: tuple[float, float]
     angle: float = 0.0
+    grip: Grip | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

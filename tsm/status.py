@@ -26,6 +26,9 @@ class Status(Enum):
         "the beam bends as much as a round pin: beyond, it touches along a line instead of at a point"
     )
     FALLING = "a structure that a contact slipped off was not found to come to rest"
+    JAMMED = "a contact with friction can neither stick nor slip as the load goes on"
+    TWO_SLIPS = "a contact with friction that has just closed could slip either way"
+    REST_UNKNOWN = "a structure fell onto contacts with friction: where it rests depends on its motion"
     LOST_CONTACT = "a contact that must persist was released"
     SLIPPED_OFF = "a contact that must persist slipped off the beam"
     FOLDED = "a contact reached the held end of its beam"

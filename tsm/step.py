@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from tsm.critical import CriticalPoint
+from tsm.elements.properties import Array
 from tsm.events import Event
 from tsm.newton import Equilibrium
 from tsm.status import Status
@@ -32,6 +35,8 @@ class Step:
         Critical points since the step before.
     index : int
         Index of the equilibrium, see `tsm.stability`.
+    spent : ndarray, shape (1 + pairs,)
+        Work of pins, supports and loads up to here, then the dissipation of every pair, see `tsm.energy`; empty without friction.
     """
 
     equilibrium: Equilibrium
@@ -42,16 +47,18 @@ class Step:
     events: tuple[Event, ...]
     critical: tuple[CriticalPoint, ...] = ()
     index: int = -1
+    spent: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(kw_only=True)
 class StepLog:
-    """Events, iterations and cut-backs since the last yielded step; attributes as in `Step`."""
+    """Events, iterations and cut-backs since the last yielded step, and what was spent since the start; attributes as in `Step`."""
 
     iterations: int = 0
     cutbacks: int = 0
     events: list[Event] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
+    spent: Array = field(default_factory=lambda: np.zeros(0))
 
     def hand_on(self, equilibrium: Equilibrium, requested: bool, status: Status, index: int) -> Step:
         """Return the step that ends here, and start anew."""
@@ -64,6 +71,7 @@ class StepLog:
             events=tuple(self.events),
             critical=tuple(self.critical),
             index=index,
+            spent=self.spent.copy(),
         )
         self.iterations = self.cutbacks = 0
         self.events, self.critical = [], []

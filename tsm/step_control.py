@@ -16,6 +16,7 @@ _NAMED = {
     Status.INACCURATE,
     Status.TWO_CONTACTS,
     Status.PING_PONG,
+    Status.JAMMED,
 }
 """Failures that are reported by their own status instead of the general status of a step at its floor."""
 

@@ -12,7 +12,9 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
-from tsm.contact_set import changed, crowded, forbidden, initial_state, rearm
+import numpy as np
+
+from tsm.contact_set import changed, closed_at, crowded, forbidden, initial_state, rearm
 from tsm.critical import (
     CriticalKind,
     critical_point,
@@ -21,7 +23,9 @@ from tsm.critical import (
 )
 from tsm.crossing import crossing
 from tsm.elements.properties import Array
+from tsm.energy import spent
 from tsm.events import (
+    GRIPS,
     ROUND_OFF,
     Event,
     EventKind,
@@ -33,15 +37,17 @@ from tsm.events import (
     passes,
 )
 from tsm.fall import Fall, descends, met
+from tsm.friction import grips, regripped, same, slip_rates, turned
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
 from tsm.projection import arc_position
 from tsm.settings import Settings
-from tsm.state import State, Touch
+from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step, StepLog
 from tsm.step_control import StepControl, allowed
+from tsm.structure import Point
 from tsm.track import FAR, Track
 
 _STRAIGHT = 0.02
@@ -71,6 +77,8 @@ class Stepper:
         Changes of every contact pair at every load parameter.
     target : float
         Next prescribed load parameter.
+    turned : float
+        Load parameter at which contacts with friction followed a corner of the pins' paths last.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
@@ -79,10 +87,12 @@ class Stepper:
         self.newton = Newton(model, settings)
         start = self.newton.solve(initial_state(model))
         self.track, self.log = Track(self.newton, start), StepLog()
+        if model.rubbed:
+            self.log.spent = np.zeros(1 + len(model.pairs))
         self.control = StepControl(settings, start.status)
+        self.target, self.turned = 0.0, -1.0
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.chatter: Counter[tuple[int, float]] = Counter()
-        self.target = 0.0
 
     @property
     def accepted(self) -> Equilibrium:
@@ -104,7 +114,13 @@ class Stepper:
         self.control.step = step
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
-        return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise))
+        rates = slip_rates(self.newton, equilibrium, self._velocities(equilibrium.state.load_parameter))
+        return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise), rates)
+
+    def _velocities(self, t: float) -> tuple[Point, ...]:
+        """Mean velocities of the pins on the way to t; at the last equilibrium, on the way ahead."""
+        begin = self.accepted.state.load_parameter
+        return self.newton.assembler.velocities(*((begin, t) if t > begin else (t, max(t, self.target))))
 
     def march(self, load_parameters: Array) -> Iterator[Step]:
         """Yield accepted steps up to the last load parameter or the first failure."""
@@ -149,17 +165,57 @@ class Stepper:
         apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + _NEAR]
         return sorted([*load_parameters, *apart])
 
+    def _turn_corner(self) -> Status:
+        """Let contacts with friction go on as the pins do, at the start and where a path has a corner."""
+        t = self.accepted.state.load_parameter
+        corner = t == 0 or any(abs(t - turn) <= _NEAR for turn in self.model.turns)
+        if not (self.model.rubbed and corner) or t == self.turned:
+            return Status.CONVERGED
+        self.turned = t
+        gripped = self._gripped(self.accepted)
+        if isinstance(gripped, Status):
+            return gripped
+        if gripped is not self.accepted:
+            self.track.history = []
+            self.track.accept(gripped)
+        self.margins = self._measure(self.accepted)
+        return Status.CONVERGED
+
+    def _gripped(self, equilibrium: Equilibrium) -> Equilibrium | Status:
+        """Equilibrium whose contacts with friction slip or stick from here; a change is an event."""
+        before = dict(grips(equilibrium.state))
+        if not before:
+            return equilibrium
+        state = regripped(self.newton, equilibrium.state, self._velocities(equilibrium.state.load_parameter))
+        if isinstance(state, Status) or state.touches == equilibrium.state.touches:
+            return state if isinstance(state, Status) else equilibrium
+        gripped = replace(equilibrium, state=state, system=self.newton.assembler.linearise(state))
+        for k, grip in grips(state):
+            if same(before[k], grip):
+                continue
+            touch, pair = state.touches[k], self.model.pairs[k]
+            assert touch is not None, "a grip is of a closed contact"
+            arc = arc_position(pair.target, touch.element, touch.xi)
+            kind = EventKind.SLIP if grip.slip else EventKind.STICK
+            self._note(kind, k, touch.element, arc, normal_force(self.model, gripped, k))
+        return gripped
+
     def _record(self, requested: bool, status: Status) -> Step:
         return self.log.hand_on(self.accepted, requested, status, self.track.tangent.index)
 
     def _attempt(self, goal: float) -> Status:
+        """Go to a load parameter or to the first event before it, past a corner where one is."""
+        turned = self._turn_corner()
+        return self._reach(goal) if turned is Status.CONVERGED else turned
+
+    def _reach(self, goal: float) -> Status:
         """Go to a load parameter or to the first event before it."""
         reached = self._solve(goal)
         if reached is None:
             return self.control.failure
         crossed = crossing(self.model, self.accepted.state, reached.state)
         if crossed is not None and crossed[0] > self.accepted.state.load_parameter:
-            return self._attempt(crossed[0])
+            return self._reach(crossed[0])
         if crossed is not None:
             touch = next(m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, crossed[1]))
             return self._switch(self.accepted, [touch])
@@ -183,6 +239,12 @@ class Stepper:
             if unexplained > _STRAIGHT:
                 return self.control.refuse()
             return self._meet_bifurcation(reached, tangent)
+        if self.model.rubbed:
+            velocities = self._velocities(reached.state.load_parameter)
+            more = spent(self.newton, self.track.history, (self.accepted, reached), velocities)
+            if more is None:
+                return self.control.refuse()
+            self.log.spent = self.log.spent + more
         self._accept(reached, tangent)
         self.control.grow(reached.state.load_parameter - before.load_parameter, fitting)
         return Status.CONVERGED
@@ -227,6 +289,8 @@ class Stepper:
                 rests.append((self.newton.potential(rest.state), rest))
         if not rests:
             return Status.FALLING
+        if any(grips(rest.state) for _, rest in rests):
+            return Status.REST_UNKNOWN
         least, rest = min(rests, key=lambda pair: pair[0])
         self.log.events[-1] = replace(self.log.events[-1], released=self.newton.potential(held) - least)
         self.track.history = []
@@ -253,6 +317,8 @@ class Stepper:
         t = self.accepted.state.load_parameter
         first: tuple[Equilibrium, Margin] | None = None
         for before, after in events:
+            if after.kind in GRIPS and before.value <= ROUND_OFF:
+                return self.control.fail(Status.JAMMED)
             if before.value <= ROUND_OFF:
                 located: tuple[Equilibrium, Margin] | None = (self.accepted, before)
             else:
@@ -294,11 +360,12 @@ class Stepper:
                 state = self._close(state, margin)
                 continue
             touch = state.touches[k]
-            assert touch is not None, "only a closed contact opens"
+            assert touch is not None, "only a closed contact opens, slips or sticks"
             arc = arc_position(pair.target, touch.element, touch.xi)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, event, k))
-            if margin.kind is EventKind.LINE_CONTACT:
-                return Status.LINE_CONTACT
+            if margin.kind in GRIPS:
+                state = turned(model, state, event.system, k)
+                continue
             refused = forbidden(model, margin.kind, pair, arc)
             if refused is not None:
                 return refused
@@ -317,9 +384,10 @@ class Stepper:
         if margin.value < -ROUND_OFF:
             return changed(self.model, state, k, None, armed=False)
         seen = pair.group.project(pair, state)
-        element, xi = seen.element, min(max(seen.xi, 0.0), 1.0)
-        self._note(EventKind.TOUCH, k, element, arc_position(pair.target, element, xi), 0.0)
-        return changed(self.model, state, k, Touch(element=element, xi=xi, force=(0.0, 0.0)), armed=True)
+        touch = closed_at(pair, seen)
+        arc = arc_position(pair.target, touch.element, touch.xi)
+        self._note(EventKind.TOUCH, k, touch.element, arc, 0.0)
+        return changed(self.model, state, k, touch, armed=True)
 
     def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
         """Find equilibrium with the changed contacts; contacts whose force would become tensile in a jump are released."""
@@ -349,9 +417,14 @@ class Stepper:
             state = changed(self.model, state, k, None, armed=True)
         if jump:
             self._note_release(began - energy)
+        if jump and grips(state):
+            return Status.REST_UNKNOWN
+        gripped = self._gripped(equilibrium)
+        if isinstance(gripped, Status):
+            return gripped
         self.track.history = []
         held = self.track.index
-        self._accept(equilibrium)
+        self._accept(gripped)
         if self.track.index > held and self.settings.branch != "primary":
             return self._meet_limit_point()
         return Status.CONVERGED

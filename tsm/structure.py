@@ -36,6 +36,8 @@ def _direction(a: Point, b: Point) -> float:
 
 LARGEST = 1e50
 """Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
+MOST_FRICTION = 100.0
+"""Largest coefficient of friction; the force then leans 89.4 degrees."""
 MOST = 1_000_000
 """Elements of a structure at most."""
 
@@ -294,6 +296,11 @@ class Pin:
         return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
 
     @property
+    def corners(self) -> tuple[float, ...]:
+        """Load parameters of the path's inner points."""
+        return tuple(done / self.length for done in self._reached[1:-1])
+
+    @property
     def turns(self) -> tuple[float, ...]:
         """Load parameters of the corners at which the path has turned by `TURN` since the last of them.
 
@@ -323,7 +330,7 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactPair:
-    """A node that may touch a beam, without friction and from one side only.
+    """A node that may touch a beam from one side only.
 
     Parameters
     ----------
@@ -337,6 +344,10 @@ class ContactPair:
         Distance from the axis to the contact surface [length], 0 for contact on the axis.
     keep : bool
         Whether the contact, once closed, must persist: a release or a slip-off then ends the solution by name.
+    friction : float
+        Coulomb's coefficient mu: the tangential force is at most mu times the normal force, and equal to it in slip.
+    radius : float
+        Radius of a round pin that does not turn, the part of `offset` that is not the beam's [length]. It matters with friction only.
     """
 
     node: str
@@ -344,6 +355,8 @@ class ContactPair:
     side: Side = "right"
     offset: float = 0.0
     keep: bool = False
+    friction: float = 0.0
+    radius: float = 0.0
 
     def __post_init__(self) -> None:
         _check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
@@ -354,6 +367,14 @@ class ContactPair:
             self.offset,
             "must not be negative",
         )
+        _check(
+            0 <= self.friction <= MOST_FRICTION,
+            self.name, "friction", self.friction, f"must lie between 0 and {MOST_FRICTION:g}",
+        )  # fmt: skip
+        _check(
+            0 <= self.radius <= self.offset,
+            self.name, "radius", self.radius, "must lie between 0 and the offset",
+        )  # fmt: skip
 
     @property
     def name(self) -> str:

@@ -51,10 +51,11 @@ def topology(structure: Structure) -> dict[str, Any]:
 
 
 def covered(structures: Sequence[Structure], model: Model) -> bool:
-    """Whether the structures can be solved at once: pins drive them, and every contact has its force as unknown."""
+    """Whether the structures can be solved at once: pins without friction drive them, and every contact has its force as unknown."""
     driven = any(
         structure.loads or any(s.ux or s.uy or s.rotation for s in structure.supports)
         for structure in structures
     )
     mixed = all(pair.slot >= 0 and not pair.cuts for pair in model.pairs)
-    return not driven and model.rods is None and len(model.pairs) > 0 and mixed
+    rubbed = any(pair.friction for structure in structures for pair in structure.contacts)
+    return not driven and not rubbed and model.rods is None and len(model.pairs) > 0 and mixed

@@ -9,7 +9,7 @@ from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
 from tsm.projection import Projection
 from tsm.rods.shape import Stations
-from tsm.state import State, Touch
+from tsm.state import Rub, State, Touch
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, Model, PairModel
@@ -109,6 +109,14 @@ class ElementGroup(ABC):
         self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
     ) -> tuple[Array, Array]:
         """Change of the nodal forces (6,) of the touched element, and of the contact's rows, as the pin moves."""
+
+    @abstractmethod
+    def rub(self, k: int, state: State, forces: Any) -> Rub:
+        """Force and place of closed pair k, which has friction."""
+
+    @abstractmethod
+    def slip_rate(self, k: int, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:
+        """Slip rate of closed pair k at rates of all degrees of freedom and of the contacts' unknowns."""
 
     @abstractmethod
     def energy(self, state: State) -> float:

@@ -26,7 +26,7 @@ from tsm.projection import (
     slide,
 )
 from tsm.rods.shape import Stations
-from tsm.state import State, Touch
+from tsm.state import Rub, State, Touch
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, PairModel
@@ -110,6 +110,16 @@ class ClosedFormGroup(ElementGroup):
         _, block = self.contact(pair, touch, state)
         moved = block[:, 6:8] @ np.array(velocity)
         return moved[:6], moved[8:]
+
+    def rub(self, k: int, state: State, _forces: ClosedFormForces) -> Rub:
+        """Force and place of a contact with friction."""
+        raise NotImplementedError
+
+    def slip_rate(
+        self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
+    ) -> float:
+        """Slip rate of a contact."""
+        raise NotImplementedError
 
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts."""

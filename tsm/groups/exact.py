@@ -18,7 +18,7 @@ from tsm.rods.assembly import RodBalance, Rods, RodTangent
 from tsm.rods.layout import OWN
 from tsm.rods.profile import alike, recut, undeformed
 from tsm.rods.shape import RodShape, Stations, pieces, tangent_at
-from tsm.state import Profile, State, Touch
+from tsm.state import Profile, Rub, State, Touch
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, PairModel
@@ -73,6 +73,17 @@ class ExactGroup(ElementGroup):
         rows = np.zeros(pair.element_type.contact_unknowns)
         rows[:2] = -np.array(velocity)
         return np.zeros(6), rows
+
+    def rub(self, k: int, _state: State, forces: RodBalance) -> Rub:
+        """Force and place of a contact with friction."""
+        contact = forces.entry.rubbing[k]
+        return Rub(contact.tangential, contact.normal, contact.place)
+
+    def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+        """Slip rate of a contact."""
+        part = next(part for part in tangent.cut if k in part.pairs)
+        own = dofs[self.dofs[:, part.element]]
+        return float(part.slip[k] @ np.concatenate([own, contacts[self.rods.slots(part.pairs)], [0.0]]))
 
     def energy(self, state: State) -> float:
         """Strain energy of the elements; contacts have none."""

@@ -16,7 +16,9 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.elements.rod import INPUTS, Arrival, Field, Flexibility, Segments
+from tsm.projection import arc_position
 from tsm.rods import contact_rows
+from tsm.rods.friction_rows import Rubbing, placed, rubbing
 from tsm.rods.layout import COLUMNS, CUT, FIXED, OWN, ROWS, Layout, chain, layout
 from tsm.state import Cuts, Profile, State, Touch
 
@@ -68,6 +70,8 @@ class Entry(NamedTuple):
         Moment at the end minus moment at the start.
     vector : ndarray, shape (2, s)
         Vector from start to end.
+    rubbing : dict of Rubbing
+        Contacts with friction, by pair.
     """
 
     place: Layout
@@ -78,6 +82,7 @@ class Entry(NamedTuple):
     moment: Array
     gain: Array
     vector: Array
+    rubbing: dict[int, Rubbing]
 
 
 class RodBalance(NamedTuple):
@@ -126,12 +131,15 @@ class CutElement(NamedTuple):
         Tangent over the unknowns of the element, then of the contacts. The last column is the contribution of the inner residual.
     inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
         Inputs of the segments by the same unknowns.
+    slip : dict of ndarray, shape (10 + 4 k,)
+        By pair with friction: its slip rate as a linear form over the same unknowns.
     """
 
     element: int
     pairs: tuple[int, ...]
     tangent: Array
     inputs: Array
+    slip: dict[int, Array]
 
 
 class RodTangent(NamedTuple):
@@ -212,10 +220,22 @@ class Rods:
         field = rod.field(segments)
         sums = field.sums[:, :, 0] * length
         gain = sums[0]
-        for element, _ in profile.cuts:
-            for s in range(place.first[element], place.last[element]):
+        rubbed: dict[int, Rubbing] = {}
+        for element, pairs in profile.cuts:
+            for s, k in enumerate(pairs, int(place.first[element])):
                 moment[s + 1] = moment[s] + gain[s]
-        return Entry(place, segments, field, start[:, None], end[:, None], moment[:, None], gain, sums[1:])
+                if touch_of(state, k).grip is not None:
+                    rubbed[k] = self._rubbing(state, k, segments, s, moment[s + 1])
+                    moment[s + 1] = moment[s + 1] - rubbed[k].couple
+        return Entry(
+            place, segments, field, start[:, None], end[:, None], moment[:, None], gain, sums[1:], rubbed
+        )
+
+    def _rubbing(self, state: State, k: int, segments: Segments, s: int, moment: Any) -> Rubbing:
+        """Contact with friction at the end of segment s, with the moment before it."""
+        pair, touch, bend = self.model.pairs[k], touch_of(state, k), segments.flexibility.bend[s, 0]
+        contact = rubbing(pair, touch.force, self._tangents(state, k, segments, s), touch.angle, bend)
+        return placed(contact, arc_position(pair.target, touch.element, touch.xi), moment)
 
     def _owned(self, cuts: Cuts) -> Owned:
         if cuts not in self._constants:
@@ -250,22 +270,24 @@ class Rods:
             for k in pairs:
                 dx, dy = entry.vector[:, s].tolist()
                 x, y = x + dx, y + dy
-                tangents[k] = self._tangents(state, k, entry, s)
+                tangents[k] = self._tangents(state, k, entry.segments, s)
                 pair, touch = self.model.pairs[k], touch_of(state, k)
                 cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
                 rows = contact_rows.residual((x - cx, y - cy), touch.force, tangents[k], pair.reach)
+                if touch.grip is not None:
+                    rows[2] = entry.rubbing[k].residual(touch.grip, self.model.stick_stiffness)
                 contacts[k] = [*rows, arrival.end_residual[s]]
                 residual[3:5, element] += entry.vector[:, s + 1]
                 s += 1
         largest = float(np.abs(arrival.inside).max())
         return RodBalance(entry, arrival, residual, contacts, tangents, largest)
 
-    def _tangents(self, state: State, k: int, entry: Entry, s: int) -> tuple[rod.Tangent, rod.Tangent]:
+    def _tangents(self, state: State, k: int, segments: Segments, s: int) -> tuple[rod.Tangent, rod.Tangent]:
         """Tangent vectors before and after the contact at the end of segment s."""
-        flexibility = entry.segments.flexibility
+        flexibility = segments.flexibility
         stretch, shear = float(flexibility.stretch[s, 0]), float(flexibility.shear[s, 0])
         angle = touch_of(state, k).angle
-        (x, y), (xx, yy) = (entry.segments.force[:, n, 0].tolist() for n in (s, s + 1))
+        (x, y), (xx, yy) = (segments.force[:, n, 0].tolist() for n in (s, s + 1))
         return rod.tangent(stretch, shear, (x, y), angle), rod.tangent(stretch, shear, (xx, yy), angle)
 
     def linearise(self, state: State, balance: RodBalance) -> RodTangent:
@@ -295,22 +317,32 @@ class Rods:
         first, count = int(balance.entry.place.first[element]), len(pairs)
         inputs, fixed, selectors = chain(count)
         inputs, tangent = inputs.astype(transfer.dtype), fixed.astype(transfer.dtype)
-        moved = tangent[3:5].copy()
+        moved, slip = tangent[3:5].copy(), {}
         for k in range(count):
             s, row = first + k, OWN + CUT * k
             out = transfer[s] @ inputs[k]
             inputs[k + 1, 1] = out[1]
             moved += out[2:]
             tangent[row : row + 2] = moved
-            pair, force = self.model.pairs[pairs[k]], touch_of(state, pairs[k]).force
+            pair, touch, tangents = (
+                self.model.pairs[pairs[k]],
+                touch_of(state, pairs[k]),
+                balance.tangents[pairs[k]],
+            )
             rows = tangent[row : row + 3]
-            contact_rows.differentiate(rows, force, balance.tangents[pairs[k]], pair.reach, selectors[k])
+            contact_rows.differentiate(rows, touch.force, tangents, pair.reach, selectors[k, :5])
+            if touch.grip is not None:
+                forms = balance.entry.rubbing[pairs[k]].differentiate(
+                    touch.grip, self.model.stick_stiffness, tangents, selectors[k], out[1]
+                )
+                rows[2], slip[pairs[k]] = forms.row, forms.slip
+                inputs[k + 1, 1] = out[1] - forms.couple
             tangent[row + 3] = out[0]
         out = transfer[first + count] @ inputs[count]
         tangent[3:5] = moved + out[2:]
         tangent[3, 6] = tangent[4, 7] = -1
         tangent[5], tangent[8] = out[0], out[1]
-        return CutElement(element, pairs, tangent, inputs)
+        return CutElement(element, pairs, tangent, inputs, slip)
 
     def inside(self, tangent: RodTangent, state: State, dq: Array, contacts: Array, constant: float) -> Array:
         """Change of the inner angles that follows from a change of all other unknowns.

@@ -61,17 +61,17 @@ def chain(count: int) -> tuple[Array, Array, Array]:
         Inputs of the segments by the element's unknowns, the moments at the cuts left open.
     tangent : ndarray, shape (unknowns, unknowns + 1)
         Tangent, all but the rows of arrival and of the contacts.
-    selectors : ndarray, shape (count, 5, unknowns + 1)
-        Angle, force before and contact force (x, y) of every cut by the unknowns.
+    selectors : ndarray, shape (count, 6, unknowns + 1)
+        Angle, force before (x, y), contact force (x, y) and arc position of every cut by the unknowns.
     """
     unknowns = OWN + CUT * count
     inputs = np.zeros((count + 1, INPUTS, unknowns + 1))
     inputs[:, 3, 3] = inputs[:, 4, 4] = inputs[:, 6, -1] = 1
     inputs[0, 0, 2] = inputs[0, 1, 5] = inputs[-1, 2, 8] = 1
-    selectors = np.zeros((count, 5, unknowns + 1))
+    selectors = np.zeros((count, 6, unknowns + 1))
     for k in range(count):
         own = OWN + CUT * k
-        selectors[k, [0, 3, 4], [own + 3, own, own + 1]] = 1
+        selectors[k, [0, 3, 4, 5], [own + 3, own, own + 1, own + 2]] = 1
         selectors[k, 1:3] = inputs[k, 3:5]
         inputs[k + 1 :, 3, own] = inputs[k + 1 :, 4, own + 1] = -1
         inputs[k, 5, own + 2] = inputs[k, 2, own + 3] = inputs[k + 1, 0, own + 3] = 1

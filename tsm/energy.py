@@ -1,0 +1,111 @@
+"""Work and dissipation of a structure whose contacts have friction.
+
+The work of pins, supports and loads is stored as strain energy or dissipated by friction. Both are integrals over the load parameter of
+a power that follows from the equilibrium and its rates, by Lobatto's rule inside every step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsm.elements.properties import Array
+from tsm.friction import grips, rates, rub, slip_rate
+from tsm.newton import Equilibrium, Newton
+from tsm.predictor import extrapolate
+from tsm.state import State
+from tsm.status import Status
+from tsm.structure import Point
+
+_PLACES = (0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5)
+"""Inner points of Lobatto's rule of order 8 in the unit interval."""
+_FIVE = np.array([9, 49, 64, 49, 9]) / 180
+_THREE = np.array([1, 0, 4, 0, 1]) / 6
+_APART = 1e-6
+"""Largest difference of the rules of five and three points, over EI/L; the error of the former is then about 1e-11."""
+_DEPTH = 20
+"""Number of times that a step is halved at most."""
+
+
+class _Span(NamedTuple):
+    """Interval of the load parameter with equilibria and powers at both ends."""
+
+    begin: float
+    end: float
+    first: Array
+    last: Array
+
+
+def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...]) -> Array | None:
+    """Work and dissipation for a unit of the load parameter.
+
+    Returns
+    -------
+    ndarray, shape (1 + pairs,) or None
+        Work of pins, supports and loads, then the dissipation of every pair; None where the tangent is singular.
+    """
+    model, state, system = newton.model, equilibrium.state, equilibrium.system
+    by = rates(newton, state, system, velocities)
+    if by is None:
+        return None
+    spent = np.zeros(1 + len(model.pairs))
+    q = newton.assembler.prescribed_rate()
+    spent[0] = system.nodal[model.fixed] @ q[model.fixed]
+    q[model.free] = by.unknowns[: model.equations]
+    spent[0] += state.load_parameter * float(model.load @ q)
+    for k, (fx, fy) in system.forces.items():
+        if model.pairs[k].pin is not None:
+            spent[0] += fx * velocities[k][0] + fy * velocities[k][1]
+    for k, grip in grips(state):
+        if grip.slip:
+            spent[1 + k] = rub(model, state, system, k).tangential * slip_rate(newton, state, by, k)
+    return spent
+
+
+def spent(
+    newton: Newton, history: list[State], ends: tuple[Equilibrium, Equilibrium], velocities: tuple[Point, ...]
+) -> Array | None:
+    """Work and dissipation, as for `power`, between two equilibria on a smooth part of the path.
+
+    Parameters
+    ----------
+    newton : Newton
+        Solver of the structure.
+    history : list of State
+        Earlier states with the same closed contacts, oldest first, from which the states between are predicted.
+    ends : tuple of Equilibrium
+        Where the interval begins and ends.
+    velocities : tuple of Point
+        Velocities of the pairs' pins, constant in between.
+    """
+    trail = [*(state for state in history if state is not ends[0].state), *(end.state for end in ends)]
+
+    def at(t: float) -> Array | None:
+        reached = newton.solve(newton.prescribed(extrapolate(newton.model, trail, t), t))
+        return power(newton, reached, velocities) if reached.status is Status.CONVERGED else None
+
+    first, last = (power(newton, end, velocities) for end in ends)
+    if first is None or last is None:
+        return None
+    times = [end.state.load_parameter for end in ends]
+    whole, total = [_Span(times[0], times[1], first, last)], np.zeros_like(first)
+    least = (times[1] - times[0]) / 2**_DEPTH
+    while whole:
+        span = whole.pop()
+        length = span.end - span.begin
+        inner = [at(span.begin + part * length) for part in _PLACES]
+        values = [span.first, *(value for value in inner if value is not None), span.last]
+        if len(values) < 5:
+            return None
+        powers = np.array(values)
+        apart = np.abs((_FIVE - _THREE) @ powers).max() * length
+        if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:
+            total += length * (_FIVE @ powers)
+        else:
+            middle = span.begin + length / 2
+            whole += [
+                _Span(span.begin, middle, span.first, powers[2]),
+                _Span(middle, span.end, powers[2], span.last),
+            ]
+    return total

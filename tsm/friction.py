@@ -1,0 +1,212 @@
+"""Slip and stick of contacts with friction: the rates of the slips, and the state in which a contact goes on.
+
+A contact without force, or whose force lies on the edge of the cone ``|F_t| <= mu F_n``, may stick or slip. Its next state follows from
+rates: those of the structure with the contact in that state, as the load parameter grows. Stick is admissible if the force stays in the
+cone, slip if the surfaces slip the way in which the friction was taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
+
+from tsm.elements.properties import Array
+from tsm.model import Model
+from tsm.newton import Equilibrium, Newton
+from tsm.state import UNDECIDED, Grip, Rub, State
+from tsm.status import Status
+from tsm.structure import Point
+from tsm.system import Linearisation
+
+_EDGE = 1e-9
+"""Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
+_STILL = 1e-9
+"""Slip rate, in longest beams per whole load, that counts as zero."""
+_FLAT = 1e-6
+"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the force moves along the cone."""
+_MOST = 729
+"""Combinations of states that are tried, six contacts at a time."""
+
+
+class Rates(NamedTuple):
+    """Derivatives in the load parameter.
+
+    Attributes
+    ----------
+    system : Linearisation
+        The configuration.
+    unknowns : ndarray, shape (equations + contact unknowns,)
+        Derivatives of the unknowns.
+    residual : ndarray, shape (equations + contact unknowns,)
+        Derivatives of the residual with all unknowns held.
+    """
+
+    system: Linearisation
+    unknowns: Array
+    residual: Array
+
+
+def rub(model: Model, state: State, system: Linearisation, k: int) -> Rub:
+    """Force and place of closed pair k, which has friction."""
+    pair = model.pairs[k]
+    return pair.group.rub(k, state, system.groups[pair.group.number])
+
+
+def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
+    """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
+    here = rub(model, state, system, k)
+    return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
+
+
+def rates(newton: Newton, state: State, system: Linearisation, velocities: tuple[Point, ...]) -> Rates | None:
+    """Derivatives in the load parameter while the pins have given velocities, None where the tangent is singular."""
+    residual = newton.assembler.rate(state, velocities)
+    solved = newton.assembler.solve(system, -residual)
+    return None if solved is None else Rates(system, solved[:, 1], residual)
+
+
+def slip_rate(newton: Newton, state: State, by: Rates, k: int) -> float:
+    """Slip rate of closed pair k."""
+    model = newton.model
+    pair = model.pairs[k]
+    dofs = newton.assembler.prescribed_rate()
+    dofs[model.free] = by.unknowns[: model.equations]
+    tangent = by.system.tangent.groups[pair.group.number]
+    return pair.group.slip_rate(k, state, tangent, dofs, by.unknowns[model.equations :])
+
+
+def slip_rates(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...]) -> dict[int, float]:
+    """Rates of all pairs that slip, positive the way they slip; none where the tangent is singular."""
+    state = equilibrium.state
+    slipping = [(k, grip.slip) for k, grip in grips(state) if grip.slip]
+    by = rates(newton, state, equilibrium.system, velocities) if slipping else None
+    return {} if by is None else {k: slip * slip_rate(newton, state, by, k) for k, slip in slipping}
+
+
+def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> State | Status:
+    """State in equilibrium whose contacts with friction slip or stick as the load parameter grows.
+
+    Parameters
+    ----------
+    newton : Newton
+        Solver of the structure.
+    state : State
+        Configuration in equilibrium.
+    velocities : tuple of Point
+        Velocities of the pairs' pins.
+
+    Returns
+    -------
+    State or Status
+        JAMMED if no state of the contacts is admissible, TWO_SLIPS if a contact without force could slip either way.
+    """
+    system = newton.assembler.linearise(state)
+    here = {k: rub(newton.model, state, system, k) for k, _ in grips(state)}
+    choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
+    for n, chosen in enumerate(product(*choices)):
+        if n == _MOST:
+            break
+        if not _admissible(newton, _with(state, chosen), velocities, here):
+            continue
+        for other in _reversed(newton.model, chosen, here):
+            if _admissible(newton, _with(state, other), velocities, here):
+                return Status.TWO_SLIPS
+        return _with(state, chosen)
+    return Status.JAMMED
+
+
+def turned(model: Model, state: State, system: Linearisation, k: int) -> State:
+    """State in which pair k sticks where it slipped, or slips the way of its force where it stuck."""
+    touch = state.touches[k]
+    assert touch is not None, "only a closed contact slips or sticks"
+    here = rub(model, state, system, k)
+    slips = touch.grip is not None and touch.grip.slip
+    return _with(state, ((k, Grip(0, here.place) if slips else Grip(here.way, None)),))
+
+
+def same(before: Grip, after: Grip) -> bool:
+    """Whether a contact goes on as before; one that has just closed has no state before."""
+    return before == UNDECIDED or before.slip == after.slip
+
+
+def grips(state: State) -> list[tuple[int, Grip]]:
+    """Numbers and states of the closed contacts with friction."""
+    return [
+        (k, touch.grip)
+        for k, touch in enumerate(state.touches)
+        if touch is not None and touch.grip is not None
+    ]
+
+
+def _with(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
+    touches = list(state.touches)
+    for k, grip in grips:
+        touch = touches[k]
+        assert touch is not None, "only a closed contact slips or sticks"
+        touches[k] = replace(touch, grip=grip)
+    return replace(state, touches=tuple(touches))
+
+
+def _idle(model: Model, here: Rub) -> bool:
+    return math.hypot(here.tangential, here.normal) <= _EDGE * model.force_scale
+
+
+def _choices(model: Model, k: int, grip: Grip, here: Rub) -> list[Grip]:
+    """States in which a contact may go on, the likely one first."""
+    stick = grip if grip.held is not None else Grip(0, here.place)
+    if _idle(model, here):
+        return [stick, Grip(1, None), Grip(-1, None)]
+    if model.pairs[k].pair.friction * here.normal - abs(here.tangential) > _EDGE * model.force_scale:
+        return [stick]
+    slip = Grip(here.way, None)
+    return [slip, stick] if grip.slip else [stick, slip]
+
+
+def _reversed(
+    model: Model, chosen: tuple[tuple[int, Grip], ...], here: dict[int, Rub]
+) -> Iterator[tuple[tuple[int, Grip], ...]]:
+    """The same states with the slip of one contact without force reversed."""
+    for n, (k, grip) in enumerate(chosen):
+        if grip.slip and _idle(model, here[k]):
+            yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
+
+
+def _admissible(newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Rub]) -> bool:
+    """Whether the structure can go on with its contacts as they are stated."""
+    model = newton.model
+    by = rates(newton, state, newton.assembler.linearise(state), velocities)
+    if by is None:
+        return not here
+    for k, grip in grips(state):
+        if grip.slip:
+            if grip.slip * slip_rate(newton, state, by, k) <= _STILL * model.length:
+                return False
+        elif _idle(model, here[k]):
+            if not _into_cone(model, k, here[k], by):
+                return False
+        elif cone(model, state, by.system, k) <= _EDGE * model.force_scale:
+            slipping = _with(state, ((k, Grip(here[k].way, None)),))
+            if here[k].way * _row_rate(newton, slipping, by, k) > _FLAT * model.force_scale:
+                return False
+    return True
+
+
+def _into_cone(model: Model, k: int, here: Rub, by: Rates) -> bool:
+    """Whether the force of a contact without force grows into its cone."""
+    pair = model.pairs[k]
+    fx, fy = by.unknowns[model.equations :][pair.slots][:2]
+    c, s = math.cos(here.place.direction), math.sin(here.place.direction)
+    tangential, normal = fx * c + fy * s, pair.side * (fy * c - fx * s)
+    return bool(abs(tangential) <= pair.pair.friction * normal + _EDGE * model.force_scale)
+
+
+def _row_rate(newton: Newton, slipping: State, by: Rates, k: int) -> float:
+    """Derivative of the row of slip along rates, without holding it at zero."""
+    model, slot = newton.model, newton.model.pairs[k].slot + 2
+    tangent, aside = newton.assembler.linearise(slipping).tangent, model.border_dofs
+    held = newton.assembler.rate(slipping)[model.equations + slot]
+    along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]
+    return float(held + along + tangent.corner[aside + slot, aside:] @ by.unknowns[model.equations :])
