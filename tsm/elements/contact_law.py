@@ -4,12 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from tsm.elements.properties import Array, Properties
 
 UPPER = [(a, b) for a in range(7) for b in range(a, 7)]
 """The 28 entries of the upper triangle of a matrix over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``, row by row."""
+
+
+class Surface(NamedTuple):
+    """Where a contact meets a beam.
+
+    Attributes
+    ----------
+    side : float
+        +1 where the node comes from the right, -1 from the left.
+    offset : float
+        Distance of the contacting node from the axis.
+    """
+
+    side: float
+    offset: float
+
+
+class Rub(NamedTuple):
+    """State of a contact with friction.
+
+    Attributes
+    ----------
+    lean : float
+        ``sigma mu side`` in slip, with the sign sigma of the slip rate; 0 in stick.
+    held : float or None
+        Travel at which the stick began, from the element's start; None in slip.
+    unit : float
+        Stiffness ``EI/L^2/L`` that makes the row of a stick a force.
+    face : float
+        Distance of the face, on which friction acts, from the axis; ``offset - radius``.
+    radius : float
+        Radius of a round pin, which does not turn.
+    """
+
+    lean: float
+    held: float | None
+    unit: float
+    face: float = 0.0
+    radius: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,8 +95,37 @@ class Coupling:
     crossing : callable
         ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over force (2) and arc position
         of the first contact, then of the second. The arguments are numbers, or arrays over many elements with ``xi <= eta``.
+    friction : Friction or None
+        The law with friction; None if it is frictionless only.
     """
 
     jet: Callable[[Properties, Any, Any, Any, Any, Any], tuple[Array, Array]]
     dent: Callable[[Properties, Any, Any], Any]
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any], tuple[Array, Array]]
+    friction: Friction | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """Coulomb friction in a contact law whose force and arc position are unknowns.
+
+    Attributes
+    ----------
+    response : callable
+        ``(p, x, lever, xi, force, surface, rub) -> (residual, tangent)`` as `ContactLaw.response`, without a symmetric tangent.
+    split : callable
+        ``(p, x, xi, force, surface, rub) -> (F_t, F_n, travel)``: forces along the beam and across it, and the travel, which is
+        constant in stick.
+    slip : callable
+        ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is the dissipated power.
+    energy : callable
+        As `ContactLaw.energy`, of the arguments of `response`.
+    crossing : callable
+        ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`.
+    """
+
+    response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
+    split: Callable[[Properties, Any, Any, Any, Surface, Rub], tuple[Any, Any, Any]]
+    slip: Callable[[Properties, Any, Any, Any, Surface, Rub], Array]
+    energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
+    crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]

@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from tsm.elements.contact_law import UPPER, ContactLaw, Coupling
+from tsm.elements.contact_law import UPPER
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 
@@ -289,7 +289,3 @@ def compliance(p: Properties, xi: Any) -> tuple[Any, Any, Any, Any]:
 def dent(p: Properties, xi: Any, eta: Any) -> Any:
     """Deflection at xi by a unit force at eta, both ends clamped."""
     return cross_compliance(p, xi, eta)[0]
-
-
-LAW = ContactLaw(response=response, energy=energy, coupling=Coupling(jet=jet, dent=dent, crossing=crossing))
-"""The contact law whose force and arc position are unknowns."""

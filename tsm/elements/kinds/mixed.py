@@ -2,13 +2,27 @@
 
 from tsm.elements import mixed_contact
 from tsm.elements.beam import bowed_coefficients, linear_coefficients
+from tsm.elements.contact_law import ContactLaw, Coupling
 from tsm.elements.element_type import ClosedForm
+from tsm.elements.mixed_friction import FRICTION
+
+LAW = ContactLaw(
+    response=mixed_contact.response,
+    energy=mixed_contact.energy,
+    coupling=Coupling(
+        jet=mixed_contact.jet,
+        dent=mixed_contact.dent,
+        crossing=mixed_contact.crossing,
+        friction=FRICTION,
+    ),
+)
+"""The contact law whose force and arc position are unknowns."""
 
 MIXED = ClosedForm(
     name="mixed",
     source="contact force as unknown, full derivative, strains of the Reissner rod to fourth order",
     coefficients=bowed_coefficients,
-    contact=mixed_contact.LAW,
+    contact=LAW,
     order=4,
     bearable_turn=2.0,
     shear_floor=(0.3, 3),
@@ -19,7 +33,7 @@ MIXED_NO_BOW = ClosedForm(
     name="mixed-no-bow",
     source="`mixed` with the linear strains of the paper's element",
     coefficients=linear_coefficients,
-    contact=mixed_contact.LAW,
+    contact=LAW,
     variant=True,
     colour="#009E73",
     marker="v",
