@@ -168,7 +168,11 @@ class ContactBlock:
         (one, a), (two, b) = first, second
         coupling = one.law.coupling
         assert coupling is not None, "both have unknowns"
-        gradient, block = coupling.crossing(p, (a.xi, b.xi), a.force, b.force)
+        if coupling.friction is not None and (a.grip is not None or b.grip is not None):
+            rubs = (one.rub(a), two.rub(b))
+            gradient, block = coupling.friction.crossing(p, (a.xi, b.xi), a.force, b.force, rubs)
+        else:
+            gradient, block = coupling.crossing(p, (a.xi, b.xi), a.force, b.force)
         rows = (one.slots, two.slots)
         parts = (slice(0, 3), slice(3, 6))
         for own, part in zip(rows, parts, strict=True):

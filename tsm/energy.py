@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.friction import grips, rates, rub, slip_rate
+from tsm.friction import grips, rates, slip_rate, traction
 from tsm.newton import Equilibrium, Newton
 from tsm.predictor import extrapolate
 from tsm.state import State
@@ -22,8 +22,8 @@ _PLACES = (0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5)
 """Inner points of Lobatto's rule of order 8 in the unit interval."""
 _FIVE = np.array([9, 49, 64, 49, 9]) / 180
 _THREE = np.array([1, 0, 4, 0, 1]) / 6
-_APART = 1e-6
-"""Largest difference of the rules of five and three points, over EI/L; the error of the former is then about 1e-11."""
+_APART = 1e-7
+"""Largest difference of the rules of five and three points, over EI/L; the error of the former is then about 1e-12."""
 _DEPTH = 20
 """Number of times that a step is halved at most."""
 
@@ -59,7 +59,7 @@ def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...
             spent[0] += fx * velocities[k][0] + fy * velocities[k][1]
     for k, grip in grips(state):
         if grip.slip:
-            spent[1 + k] = rub(model, state, system, k).tangential * slip_rate(newton, state, by, k)
+            spent[1 + k] = traction(model, state, system, k).tangential * slip_rate(newton, state, by, k)
     return spent
 
 
@@ -78,6 +78,11 @@ def spent(
         Where the interval begins and ends.
     velocities : tuple of Point
         Velocities of the pairs' pins, constant in between.
+
+    Returns
+    -------
+    ndarray, shape (1 + pairs,) or None
+        None where a tangent is singular at an end. A part in which no equilibrium is found counts by the mean of its ends.
     """
     trail = [*(state for state in history if state is not ends[0].state), *(end.state for end in ends)]
 
@@ -97,7 +102,8 @@ def spent(
         inner = [at(span.begin + part * length) for part in _PLACES]
         values = [span.first, *(value for value in inner if value is not None), span.last]
         if len(values) < 5:
-            return None
+            total += length * (span.first + span.last) / 2
+            continue
         powers = np.array(values)
         apart = np.abs((_FIVE - _THREE) @ powers).max() * length
         if apart <= _APART * newton.model.force_scale * newton.model.length or length <= least:

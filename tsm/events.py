@@ -24,7 +24,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from tsm.friction import cone, rub
+from tsm.friction import cone, traction
 from tsm.line_contact import curvature
 from tsm.model import Model
 from tsm.newton import Equilibrium
@@ -123,7 +123,7 @@ def normal_force(model: Model, equilibrium: Equilibrium, k: int) -> float:
     touch = equilibrium.state.touches[k]
     assert touch is not None, "a closed pair has a touch"
     if touch.grip is not None:
-        across = rub(model, equilibrium.state, equilibrium.system, k).normal
+        across = traction(model, equilibrium.state, equilibrium.system, k).normal
         return math.copysign(math.hypot(fx, fy), across)
     dx, dy = model.pairs[k].group.direction(touch, equilibrium.state.q)
     push = model.pairs[k].side * (fy * dx - fx * dy)

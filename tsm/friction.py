@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tsm.elements.properties import Array
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
-from tsm.state import UNDECIDED, Grip, Rub, State
+from tsm.state import UNDECIDED, Grip, State, Traction
 from tsm.status import Status
 from tsm.structure import Point
 from tsm.system import Linearisation
@@ -49,15 +49,15 @@ class Rates(NamedTuple):
     residual: Array
 
 
-def rub(model: Model, state: State, system: Linearisation, k: int) -> Rub:
+def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
     """Force and place of closed pair k, which has friction."""
     pair = model.pairs[k]
-    return pair.group.rub(k, state, system.groups[pair.group.number])
+    return pair.group.traction(k, state, system.groups[pair.group.number])
 
 
 def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
     """Distance of the force of closed pair k from the edge of its cone, ``mu F_n - |F_t|``."""
-    here = rub(model, state, system, k)
+    here = traction(model, state, system, k)
     return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
@@ -104,7 +104,7 @@ def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> St
         JAMMED if no state of the contacts is admissible, TWO_SLIPS if a contact without force could slip either way.
     """
     system = newton.assembler.linearise(state)
-    here = {k: rub(newton.model, state, system, k) for k, _ in grips(state)}
+    here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
     choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
     for n, chosen in enumerate(product(*choices)):
         if n == _MOST:
@@ -122,7 +122,7 @@ def turned(model: Model, state: State, system: Linearisation, k: int) -> State:
     """State in which pair k sticks where it slipped, or slips the way of its force where it stuck."""
     touch = state.touches[k]
     assert touch is not None, "only a closed contact slips or sticks"
-    here = rub(model, state, system, k)
+    here = traction(model, state, system, k)
     slips = touch.grip is not None and touch.grip.slip
     return _with(state, ((k, Grip(0, here.place) if slips else Grip(here.way, None)),))
 
@@ -150,11 +150,11 @@ def _with(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
     return replace(state, touches=tuple(touches))
 
 
-def _idle(model: Model, here: Rub) -> bool:
+def _idle(model: Model, here: Traction) -> bool:
     return math.hypot(here.tangential, here.normal) <= _EDGE * model.force_scale
 
 
-def _choices(model: Model, k: int, grip: Grip, here: Rub) -> list[Grip]:
+def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
     """States in which a contact may go on, the likely one first."""
     stick = grip if grip.held is not None else Grip(0, here.place)
     if _idle(model, here):
@@ -166,7 +166,7 @@ def _choices(model: Model, k: int, grip: Grip, here: Rub) -> list[Grip]:
 
 
 def _reversed(
-    model: Model, chosen: tuple[tuple[int, Grip], ...], here: dict[int, Rub]
+    model: Model, chosen: tuple[tuple[int, Grip], ...], here: dict[int, Traction]
 ) -> Iterator[tuple[tuple[int, Grip], ...]]:
     """The same states with the slip of one contact without force reversed."""
     for n, (k, grip) in enumerate(chosen):
@@ -174,7 +174,9 @@ def _reversed(
             yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
 
 
-def _admissible(newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Rub]) -> bool:
+def _admissible(
+    newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Traction]
+) -> bool:
     """Whether the structure can go on with its contacts as they are stated."""
     model = newton.model
     by = rates(newton, state, newton.assembler.linearise(state), velocities)
@@ -194,7 +196,7 @@ def _admissible(newton: Newton, state: State, velocities: tuple[Point, ...], her
     return True
 
 
-def _into_cone(model: Model, k: int, here: Rub, by: Rates) -> bool:
+def _into_cone(model: Model, k: int, here: Traction, by: Rates) -> bool:
     """Whether the force of a contact without force grows into its cone."""
     pair = model.pairs[k]
     fx, fy = by.unknowns[model.equations :][pair.slots][:2]
@@ -204,9 +206,10 @@ def _into_cone(model: Model, k: int, here: Rub, by: Rates) -> bool:
 
 
 def _row_rate(newton: Newton, slipping: State, by: Rates, k: int) -> float:
-    """Derivative of the row of slip along rates, without holding it at zero."""
+    """Derivative of ``F_t - sigma mu F_n``, times a positive number, along rates that do not hold it at zero."""
     model, slot = newton.model, newton.model.pairs[k].slot + 2
     tangent, aside = newton.assembler.linearise(slipping).tangent, model.border_dofs
     held = newton.assembler.rate(slipping)[model.equations + slot]
     along = tangent.below[aside + slot, : model.equations] @ by.unknowns[: model.equations]
-    return float(held + along + tangent.corner[aside + slot, aside:] @ by.unknowns[model.equations :])
+    row = held + along + tangent.corner[aside + slot, aside:] @ by.unknowns[model.equations :]
+    return float(row) * model.pairs[k].group.slip_sign

@@ -14,11 +14,12 @@ import numpy as np
 
 from tsm.elements import ELEMENTS, ClosedForm, ContactLaw, ElementType
 from tsm.elements.beam import Coefficients
+from tsm.elements.contact_law import Rub
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
 from tsm.rods.assembly import Rods
 from tsm.sizes import Sizes, joined_extents, sizes_of
-from tsm.state import Grip
+from tsm.state import Grip, Touch
 from tsm.structure import Beam, ContactPair, Pin, Structure
 
 _CONTACT_KINDS = np.arange(6, 10)
@@ -121,6 +122,15 @@ class PairModel:
     def lean(self, grip: Grip) -> float:
         """Tangent of the angle from the normal to the contact force in slip, positive clockwise; 0 in stick."""
         return grip.slip * self.pair.friction * self.side
+
+    def rub(self, touch: Touch) -> Rub:
+        """State of the friction for the contact law, the travel counted from the element's start."""
+        grip, lean = touch.grip, self.lean(touch.grip) if touch.grip else 0.0
+        start = self.target.arcs[touch.element - self.target.first]
+        held = None if grip is None or grip.held is None else grip.held.arc - start
+        face, beam = self.pair.offset - self.pair.radius, self.target.beam
+        unit = beam.section.EI / beam.length**3
+        return Rub(lean, held, unit, face, self.pair.radius)
 
     @property
     def slots(self) -> slice:
@@ -338,10 +348,10 @@ class Model:
             target = self.beams[pair.beam]
             element_type = ELEMENTS[target.beam.element]
             pin = pins.get(pair.node)
-            if pair.friction and not element_type.contact_unknowns:
+            if pair.friction and not element_type.rubs:
                 raise ValueError(
                     f"ContactPair({pair.name}).friction = {pair.friction!r}: "
-                    f'the force of an element "{target.beam.element}" is normal to its chord'
+                    f'elements "{target.beam.element}" have contacts without friction only'
                 )
             self.pairs.append(
                 PairModel(

@@ -14,7 +14,7 @@ from tsm.critical import CriticalPoint
 from tsm.deformation import Deformation, deformation
 from tsm.elements.properties import Array
 from tsm.events import Event, normal_force
-from tsm.friction import grips, rub
+from tsm.friction import grips, traction
 from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.projection import arc_position
@@ -281,7 +281,7 @@ def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
     for step in steps:
         state, system = step.equilibrium.state, step.equilibrium.system
         grip = dict(grips(state)).get(k)
-        here = rub(model, state, system, k) if grip else None
+        here = traction(model, state, system, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
         rows.append((*force, grip.slip if grip else 0, step.spent[1 + k]))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T

@@ -32,7 +32,7 @@ class Place(NamedTuple):
     stretch: float
 
 
-class Rub(NamedTuple):
+class Traction(NamedTuple):
     """Contact with friction at a configuration.
 
     Attributes

@@ -116,6 +116,8 @@ class Friction:
     split : callable
         ``(p, x, xi, force, surface, rub) -> (F_t, F_n, travel)``: forces along the beam and across it, and the travel, which is
         constant in stick.
+    direction : callable
+        ``(p, x, xi, force, surface, rub) -> number``: angle of the mean tangent from the x axis.
     slip : callable
         ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is the dissipated power.
     energy : callable
@@ -126,6 +128,7 @@ class Friction:
 
     response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
     split: Callable[[Properties, Any, Any, Any, Surface, Rub], tuple[Any, Any, Any]]
+    direction: Callable[[Properties, Any, Any, Any, Surface, Rub], Any]
     slip: Callable[[Properties, Any, Any, Any, Surface, Rub], Array]
     energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]

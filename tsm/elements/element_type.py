@@ -47,6 +47,11 @@ class ElementType(ABC):
     def contact_unknowns(self) -> int:
         """Number of unknowns that a closed contact adds to the system."""
 
+    @property
+    @abstractmethod
+    def rubs(self) -> bool:
+        """Whether its contacts may have friction."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(ElementType):
@@ -61,6 +66,11 @@ class Integrated(ElementType):
     def contact_unknowns(self) -> int:
         """Number of unknowns that a closed contact adds to the system."""
         return 4
+
+    @property
+    def rubs(self) -> bool:
+        """True."""
+        return True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +108,11 @@ class ClosedForm(ElementType):
     def contact_unknowns(self) -> int:
         """Number of unknowns that a closed contact adds to the system."""
         return self.contact.unknowns
+
+    @property
+    def rubs(self) -> bool:
+        """Whether its contact law has friction."""
+        return self.contact.coupling is not None and self.contact.coupling.friction is not None
 
     def constants(self, p: Properties) -> Properties:
         """Return the section's constants as this element has them."""

@@ -76,6 +76,12 @@ def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, _rub: Ru
     return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
 
 
+def direction(p: Properties, x: Any, xi: Any, force: Any, _surface: Surface, _rub: Rub) -> Any:
+    """Angle of the mean tangent from the x axis."""
+    (Tx, Ty), _ = _mean_tangent(p, x, xi, force)
+    return np.arctan2(Ty, Tx)
+
+
 def slip(p: Properties, x: Any, xi: Any, force: Any, _surface: Surface, _rub: Rub) -> Array:
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
     (Tx, Ty), _ = _mean_tangent(p, x, xi, force)
@@ -142,5 +148,7 @@ def _mean_tangent(p: Properties, x: Any, xi: Any, force: Any) -> tuple[tuple[Any
     return T, full
 
 
-FRICTION = Friction(response=response, split=split, slip=slip, energy=energy, crossing=crossing)
+FRICTION = Friction(
+    response=response, split=split, direction=direction, slip=slip, energy=energy, crossing=crossing
+)
 """Friction of the contact law whose force and arc position are unknowns."""

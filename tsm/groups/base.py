@@ -9,7 +9,7 @@ from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
 from tsm.projection import Projection
 from tsm.rods.shape import Stations
-from tsm.state import Rub, State, Touch
+from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, Model, PairModel
@@ -84,10 +84,13 @@ class ElementGroup(ABC):
         Whether an element has a force and a moment as degrees of freedom, and further unknowns inside, which are eliminated.
     past_node : float
         Part of an element's length by which a contact may lie past its end.
+    slip_sign : float
+        Sign of the row of slip: of the row, in ``F_t - sigma mu F_n``.
     """
 
     internal: ClassVar[bool]
     past_node: ClassVar[float]
+    slip_sign: ClassVar[float]
 
     def __init__(self, model: Model, number: int, elements: Array, dofs: Array) -> None:
         self.model, self.number, self.elements, self.dofs = model, number, elements, dofs
@@ -111,7 +114,7 @@ class ElementGroup(ABC):
         """Change of the nodal forces (6,) of the touched element, and of the contact's rows, as the pin moves."""
 
     @abstractmethod
-    def rub(self, k: int, state: State, forces: Any) -> Rub:
+    def traction(self, k: int, state: State, forces: Any) -> Traction:
         """Force and place of closed pair k, which has friction."""
 
     @abstractmethod

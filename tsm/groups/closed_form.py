@@ -12,6 +12,7 @@ from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import PointForce, deflected_axes
 from tsm.elements.beam import Coefficients
+from tsm.elements.contact_law import Friction, Surface
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 from tsm.groups.base import Change, ElementGroup
@@ -26,7 +27,7 @@ from tsm.projection import (
     slide,
 )
 from tsm.rods.shape import Stations
-from tsm.state import Rub, State, Touch
+from tsm.state import Place, State, Touch, Traction
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, PairModel
@@ -70,6 +71,7 @@ class ClosedFormGroup(ElementGroup):
 
     internal = False
     past_node = AT_NODE
+    slip_sign = -1.0
 
     @cached_property
     def coefficients(self) -> Coefficients:
@@ -111,15 +113,36 @@ class ClosedFormGroup(ElementGroup):
         moved = block[:, 6:8] @ np.array(velocity)
         return moved[:6], moved[8:]
 
-    def rub(self, k: int, state: State, _forces: ClosedFormForces) -> Rub:
-        """Force and place of a contact with friction."""
-        raise NotImplementedError
+    def traction(self, k: int, state: State, _forces: ClosedFormForces) -> Traction:
+        """Force and place of a contact with friction; only its arc position and the direction of its tangent are known."""
+        pair, touch, friction = self._rubbed(k, state)
+        p, x, _ = self._lever(pair, touch.element, state)
+        surface, rub = Surface(pair.side, pair.pair.offset), pair.rub(touch)
+        tangential, normal, _ = friction.split(p, x, touch.xi, touch.force, surface, rub)
+        direction = friction.direction(p, x, touch.xi, touch.force, surface, rub)
+        arc = arc_position(pair.target, touch.element, touch.xi)
+        return Traction(float(tangential), float(normal), Place(arc, 0.0, float(direction), 1.0))
 
     def slip_rate(
         self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
     ) -> float:
         """Slip rate of a contact."""
-        raise NotImplementedError
+        pair, touch, friction = self._rubbed(k, state)
+        p, x, _ = self._lever(pair, touch.element, state)
+        surface = Surface(pair.side, pair.pair.offset)
+        form = friction.slip(p, x, touch.xi, touch.force, surface, pair.rub(touch))
+        own = np.concatenate([dofs[self.model.dofs[:, touch.element]], [0.0, 0.0], contacts[pair.slots]])
+        return float(form @ own)
+
+    def _rubbed(self, k: int, state: State) -> tuple[PairModel, Touch, Friction]:
+        pair, touch = self.model.pairs[k], state.touches[k]
+        assert touch is not None, "a contact with friction is closed"
+        return pair, touch, self._rubbed_law(pair)
+
+    def _rubbed_law(self, pair: PairModel) -> Friction:
+        friction = pair.law.coupling.friction if pair.law.coupling else None
+        assert friction is not None, "the law has friction, see `Model`"
+        return friction
 
     def energy(self, state: State) -> float:
         """Strain energy of elements and contacts."""
@@ -129,7 +152,11 @@ class ClosedFormGroup(ElementGroup):
                 continue
             p, x, lever = self._lever(pair, touch.element, state)
             coupling = pair.law.coupling
-            total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
+            if touch.grip is not None:
+                friction, surface = self._rubbed_law(pair), Surface(pair.side, pair.pair.offset)
+                total += friction.energy(p, x, lever, touch.xi, touch.force, surface, pair.rub(touch))
+            else:
+                total += pair.law.energy(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
             for other in state.touches[:k]:
                 if coupling and other is not None and other.element == touch.element:
                     dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
@@ -139,6 +166,9 @@ class ClosedFormGroup(ElementGroup):
     def contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:
         """Gradient and tangent of a closed contact, see `ContactLaw.response`."""
         p, x, lever = self._lever(pair, touch.element, state)
+        if touch.grip is not None:
+            friction, surface = self._rubbed_law(pair), Surface(pair.side, pair.pair.offset)
+            return friction.response(p, x, lever, touch.xi, touch.force, surface, pair.rub(touch))
         return pair.law.response(p, x, lever, touch.xi, touch.force, pair.side, pair.pair.offset)
 
     def _lever(

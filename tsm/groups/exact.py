@@ -18,7 +18,7 @@ from tsm.rods.assembly import RodBalance, Rods, RodTangent
 from tsm.rods.layout import OWN
 from tsm.rods.profile import alike, recut, undeformed
 from tsm.rods.shape import RodShape, Stations, pieces, tangent_at
-from tsm.state import Profile, Rub, State, Touch
+from tsm.state import Profile, State, Touch, Traction
 
 if TYPE_CHECKING:
     from tsm.model import BeamModel, PairModel
@@ -36,6 +36,7 @@ class ExactGroup(ElementGroup):
 
     internal = True
     past_node = 0.0
+    slip_sign = 1.0
 
     @cached_property
     def rods(self) -> Rods:
@@ -74,10 +75,10 @@ class ExactGroup(ElementGroup):
         rows[:2] = -np.array(velocity)
         return np.zeros(6), rows
 
-    def rub(self, k: int, _state: State, forces: RodBalance) -> Rub:
+    def traction(self, k: int, _state: State, forces: RodBalance) -> Traction:
         """Force and place of a contact with friction."""
         contact = forces.entry.rubbing[k]
-        return Rub(contact.tangential, contact.normal, contact.place)
+        return Traction(contact.tangential, contact.normal, contact.place)
 
     def slip_rate(self, k: int, _state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
         """Slip rate of a contact."""
