@@ -18,6 +18,7 @@ from comparisons.response import (
     ContactHistory,
     CriticalPoint,
     Deformation,
+    FrictionHistory,
     Grid,
     Response,
     SupportHistory,
@@ -63,6 +64,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
+        work=result.work if result.model.rubbed else None,
         deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
     )
 
@@ -99,7 +101,7 @@ def _event(event: Any) -> ContactEvent:
 
 
 def _beam_contacts(response: Response, result: Any) -> dict[str, ContactHistory]:
-    """Add the force vectors and the first slip-off of each pair."""
+    """Add the force vectors, the first slip-off of each pair, and its friction."""
     slipped = {
         event.pair: event.load_parameter for event in reversed(result.events) if event.kind.name == "SLIP_OFF"
     }
@@ -108,9 +110,14 @@ def _beam_contacts(response: Response, result: Any) -> dict[str, ContactHistory]
             history,
             slip_off=slipped.get(pair, np.nan),
             vector=_rows([state.system.forces.get(number, (0.0, 0.0)) for state in result.equilibria], 2),
+            friction=_friction(result.contacts[pair].friction),
         )
         for number, (pair, history) in enumerate(response.contacts.items())
     }
+
+
+def _friction(history: Any) -> FrictionHistory | None:
+    return None if history is None else FrictionHistory(**vars(history))
 
 
 def _by_beam(scene: Scene, reaction: Callable[[SupportSpec], SupportHistory]) -> dict[str, SupportHistory]:

@@ -6,7 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import ContactEvent, ContactHistory, CriticalPoint, Response, SupportHistory
+from comparisons.response import (
+    ContactEvent,
+    ContactHistory,
+    CriticalPoint,
+    FrictionHistory,
+    Response,
+    SupportHistory,
+)
 from comparisons.response.axis import SampledAxes, no_grid
 from comparisons.scene.rules import MISSING, FieldError
 from comparisons.scene.tables import InputError, read_text
@@ -83,6 +90,7 @@ def restated(data: Any) -> Response:
         ),
         grid=no_grid,
         events=_events(data),
+        work=None if data.get("work") is None else _numbers(data, "work", (steps,)),
         index=_given(data, "index", (steps,)),
         critical=tuple(_critical(point) for point in _list(data, "critical")),
     )
@@ -171,7 +179,23 @@ def _contact(data: dict[str, Any], prefix: str, steps: int) -> ContactHistory:
     vector = None if data.get("vector") is None else _numbers(data, "vector", (steps, 2), prefix)
     slip = data.get("slip_off")
     slip_off = float(slip) if isinstance(slip, int | float) else np.nan
-    return ContactHistory(force=force, arc_position=arc, gap=gap, vector=vector, slip_off=slip_off)
+    friction = _friction(data["friction"], f"{prefix}friction.", steps) if data.get("friction") else None
+    return ContactHistory(
+        force=force, arc_position=arc, gap=gap, vector=vector, slip_off=slip_off, friction=friction
+    )
+
+
+def _friction(data: Any, prefix: str, steps: int) -> FrictionHistory:
+    table = _table({prefix: data}, prefix)
+    tangential, normal, dissipated = (
+        _numbers(table, key, (steps,), prefix) for key in ("tangential", "normal", "dissipated")
+    )
+    slip = _numbers(table, "slip", (steps,), prefix)
+    if not np.isin(slip, (-1, 0, 1)).all():
+        raise FieldError(f"{prefix}slip", MISSING, "must be a list of -1, 0 and 1")
+    return FrictionHistory(
+        tangential=tangential, normal=normal, slip=slip.astype(np.int64), dissipated=dissipated
+    )
 
 
 def _support(data: dict[str, Any], prefix: str, steps: int) -> SupportHistory:

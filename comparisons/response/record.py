@@ -31,6 +31,8 @@ class ContactHistory:
         Load parameter at which the node left the beam over its free end; nan if it did not.
     vector : ndarray, shape (s, 2), optional
         The contact force on the beam, where the model states it.
+    friction : FrictionHistory, optional
+        What friction does; None without friction.
     """
 
     force: Array
@@ -39,6 +41,27 @@ class ContactHistory:
     compliance: float | Array = 0.0
     slip_off: float = np.nan
     vector: Array | None = None
+    friction: "FrictionHistory | None" = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrictionHistory:
+    """Friction of one contact pair over the load parameters.
+
+    Attributes
+    ----------
+    tangential, normal : ndarray, shape (s,)
+        Force on the beam along its tangent, positive from start to end, and across it, away from the node; 0 where the pair is open.
+    slip : ndarray of int, shape (s,)
+        Sign of the slip rate: +1 where the node slips towards the beam's end, -1 towards its start, 0 in stick and where the pair is open.
+    dissipated : ndarray, shape (s,)
+        Energy that friction has dissipated since the start; nan where the model does not state it.
+    """
+
+    tangential: Array
+    normal: Array
+    slip: NDArray[np.int64]
+    dissipated: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,7 +92,7 @@ class ContactEvent:
     Attributes
     ----------
     kind : str
-        ``touch``, ``release``, ``slip-off`` or ``pass-through``. In a pass-through the contact point passes a beam node and moves on to the
+        ``touch``, ``release``, ``slip-off``, ``slip``, ``stick`` or ``pass-through``. In a pass-through the contact point passes a beam node and moves on to the
         next element.
     load_parameter : float
         Load parameter of the event.
@@ -196,6 +219,8 @@ class Response:
     integration_error : float
         Estimated error of the integration inside exact elements: the largest error of positions over the longest beam, of angles,
         and of forces over ``EI/L^2``.
+    work : ndarray, shape (s,), optional
+        Work of pins, supports and loads since the start, of a model that states it for a scene with friction.
     deformation : Deformation, optional
         Deformation of the most deformed element; None for models without approximating elements.
     index : ndarray of int, shape (s,), optional
@@ -228,6 +253,7 @@ class Response:
     continuum: bool = False
     outside: bool = False
     integration_error: float = 0.0
+    work: Array | None = None
     deformation: Deformation | None = None
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()

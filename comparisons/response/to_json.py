@@ -52,6 +52,7 @@ def as_dict(response: Response) -> dict[str, Any]:
                 "arc_position": contact.arc_position,
                 "gap": contact.gap,
                 "slip_off": contact.slip_off,
+                **({} if contact.friction is None else {"friction": vars(contact.friction)}),
             }
             for pair, contact in response.contacts.items()
         },
@@ -62,6 +63,7 @@ def as_dict(response: Response) -> dict[str, Any]:
             for beam, arc in axes.arc_length.items()
         },
         "events": None if response.events is None else [asdict(event) for event in response.events],
+        **({} if response.work is None else {"work": response.work}),
         "index": response.index,
         "critical": [
             {"kind": point.kind, "load_parameter": point.load_parameter, "mode": point.mode}

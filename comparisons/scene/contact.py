@@ -11,6 +11,7 @@ from typing import Annotated
 from comparisons.scene import rules
 from comparisons.scene.rules import (
     FieldError,
+    Friction,
     Name,
     Point,
     Positive,
@@ -22,7 +23,7 @@ from comparisons.scene.rules import (
 
 @dataclass(frozen=True, kw_only=True)
 class PinSpec:
-    """A frictionless point, or a round pin, on a prescribed path, traversed at constant speed by the load parameter.
+    """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ class PinSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactSpec:
-    """A frictionless contact of a node with a beam.
+    """A contact of a node with a beam.
 
     Parameters
     ----------
@@ -104,6 +105,8 @@ class ContactSpec:
         the penalty alone bounds the penetration.
     keep : bool
         Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.
+    friction : float
+        Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.
     """
 
     node: Annotated[str, rules.text]
@@ -113,6 +116,7 @@ class ContactSpec:
     penalty: Positive | None = None
     penetration: Positive | None = None
     keep: Annotated[bool, rules.truth] = False
+    friction: Friction = 0.0
 
     def __post_init__(self) -> None:
         apply_rules(self)

@@ -21,6 +21,7 @@ END: Schema = {"enum": ["start", "end"]}
 OF_RULES: dict[Rule, Schema] = {
     rules.number: NUMBER,
     rules.positive: {"type": "number", "exclusiveMinimum": 0},
+    rules.friction: {"type": "number", "minimum": 0, "maximum": rules.MOST_FRICTION},
     rules.poissons_ratio: {"type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5},
     rules.whole_number: COUNT,
     rules.parts: {

@@ -20,6 +20,8 @@ LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
 RANGE = (1e-100, 1e100)
 """Range of positive quantities: moduli, dimensions of sections, stiffnesses."""
+MOST_FRICTION = 100.0
+"""Largest coefficient of friction; the force then leans 89.4 degrees."""
 
 
 class RuleError(ValueError):
@@ -115,6 +117,14 @@ def positive(value: object) -> float:
         raise RuleError("must be positive")
     if not RANGE[0] <= result <= RANGE[1]:
         raise RuleError(f"must lie between {RANGE[0]:g} and {RANGE[1]:g}")
+    return result
+
+
+def friction(value: object) -> float:
+    """Accept a coefficient of friction, between 0 and 100."""
+    result = number(value)
+    if not 0.0 <= result <= MOST_FRICTION:
+        raise RuleError(f"must lie between 0 and {MOST_FRICTION:g}")
     return result
 
 
@@ -300,6 +310,7 @@ def exactly_one_of(given: Mapping[str, object], groups: tuple[tuple[str, ...], .
 
 Number = Annotated[float, number]
 Positive = Annotated[float, positive]
+Friction = Annotated[float, friction]
 Count = Annotated[int, whole_number]
 Vector = Annotated[Point, point]
 Name = Annotated[str, name]

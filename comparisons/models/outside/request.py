@@ -58,6 +58,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
                 "side": item.side,
                 "offset": scene.offset(item),
                 "keep": item.keep,
+                "friction": item.friction,
             }
             for item in scene.contacts
         ],

@@ -53,6 +53,8 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
                 side="left" if contact.side == "left" else "right",
                 offset=scene.offset(contact),
                 keep=contact.keep,
+                friction=contact.friction,
+                radius=scene.radius(contact),
             )
             for contact in scene.contacts
         ),
