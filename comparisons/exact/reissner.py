@@ -90,10 +90,10 @@ def loaded_part(q: ArrayLike, ell: ArrayLike, flexibility: Flexibility, upto: Ar
     lower, upper = A * np.sin(psi / 2.0) ** 2 / 2.0, A * np.cos(psi / 2.0) ** 2 / 2.0
     w = wc + 2.0 * lower
     sine, cosine = np.sin(w), np.cos(w)
-    root = np.sqrt(_sinc(lower) * _sinc(upper) * (1.0 - F * c * (sine + S) / 2.0))
+    root = np.sqrt(sinc(lower) * sinc(upper) * (1.0 - F * c * (sine + S) / 2.0))
     rate = np.sqrt(2.0) * ell * upto * _WEIGHTS / root
     across = F * flexibility.shear * cosine**2 - (1.0 - F * flexibility.stretch * sine) * sine
-    along = ell * upto * A * _sinc(psi) * root / np.sqrt(2.0)
+    along = ell * upto * A * sinc(psi) * root / np.sqrt(2.0)
     return LoadedPart(
         force=F[..., 0],
         direction=(wc + A * np.sin(np.sqrt(q) / 2.0) ** 2)[..., 0],
@@ -116,7 +116,7 @@ def normal(part: LoadedPart) -> Array:
     return np.stack([-np.sin(part.direction), np.cos(part.direction)], axis=-1)
 
 
-def _sinc(x: Array) -> Array:
+def sinc(x: Array) -> Array:
     """Return `sin x/x`; near zero a series in `x^2`, with which a complex step in `q = psi^2` is exact at `q = 0`."""
     small = np.abs(x) < 1e-3
     return np.where(small, 1.0 - x**2 / 6.0 * (1.0 - x**2 / 20.0), np.sin(x) / np.where(small, 1.0, x))

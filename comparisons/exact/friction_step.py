@@ -1,0 +1,181 @@
+"""Steps of a contact with friction along a straight piece of the pin's path, and the first event in a step."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from comparisons.exact.friction_law import Equations, Linear, Phase, Real, linearise, margins
+
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_GAUSS, _WEIGHTS = (_GAUSS + 1.0) / 2.0, _WEIGHTS / 2.0
+_FEWER = np.linalg.solve(np.vander(_GAUSS[[0, 1, 3, 4, 6, 7]], increasing=True).T, 1.0 / np.arange(1, 7))
+_DIFFERENCE = _WEIGHTS.copy()
+_DIFFERENCE[[0, 1, 3, 4, 6, 7]] -= _FEWER
+"""Weights of the difference between eight points and six of them: the accuracy of a step's integrals is far better."""
+_ALLOWED_DIFFERENCE = 1e-9
+
+
+class Ending(Enum):
+    """Why a phase ends, in the order of `margins`."""
+
+    FRICTION = 0
+    RELEASE = 1
+    SLIP_OFF = 2
+
+
+class Piece(NamedTuple):
+    """Straight piece of the pin's path from `start` (2,) at the load parameter `begin` with `velocity` (2,) per load parameter."""
+
+    start: Real
+    velocity: Real
+    begin: float
+
+    def pin(self, t: float) -> Real:
+        """Position of the pin."""
+        return self.start + (t - self.begin) * self.velocity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """Equations and coefficient of friction."""
+
+    equations: Equations
+    friction: float
+
+    def solve(self, z: Real, pin: Real, phase: Phase) -> tuple[Real, Linear] | None:
+        """Unknowns at a position of the pin from nearby ones by Newton's method; None without convergence."""
+        last = 0.5
+        for _ in range(14):
+            linear = linearise(self.equations, z, pin, phase, self.friction)
+            if not (np.all(np.isfinite(linear.tangent)) and np.all(np.isfinite(linear.residual))):
+                return None
+            try:
+                change = np.linalg.solve(linear.tangent, -linear.residual)
+            except np.linalg.LinAlgError:
+                return None
+            size = float(np.max(np.abs(change) / (1.0 + np.abs(z))))
+            if size < 1e-9:
+                z = z + change
+                return z, linearise(self.equations, z, pin, phase, self.friction)
+            if not size <= last:
+                return None
+            z, last = z + change, max(size / 2.0, 1e-9)
+        return None
+
+
+class Node(NamedTuple):
+    """Equilibrium at a load parameter: unknowns (n,), their rates (n,), margins (3,), power of the pin and dissipation."""
+
+    t: float
+    z: Real
+    rates: Real
+    margins: Real
+    power: float
+    dissipation: float
+
+
+class Step(NamedTuple):
+    """Equilibrium at the end of a step, work and dissipation in it, and why the phase ends there, or None."""
+
+    node: Node
+    work: float
+    dissipated: float
+    ending: Ending | None
+
+
+def node_at(problem: Problem, piece: Piece, phase: Phase, t: float, guess: Real) -> Node | None:
+    """Equilibrium at a load parameter from nearby unknowns; None without convergence."""
+    pin = piece.pin(t)
+    solution = problem.solve(guess, pin, phase)
+    if solution is None:
+        return None
+    z, linear = solution
+    rates = linear.rates(piece.velocity)
+    contact = linear.contact
+    dissipation = float(contact.tangential * (linear.slip @ rates)) if phase.sense else 0.0
+    return Node(
+        t,
+        z,
+        rates,
+        margins(linear, rates, phase, problem.friction),
+        float(contact.force @ piece.velocity),
+        dissipation,
+    )
+
+
+def take(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) -> Step | None:
+    """Take a step up to a load parameter or the first event before it; None where the step must be shorter."""
+    nodes = _nodes(problem, piece, phase, start, end)
+    if nodes is None:
+        return None
+    before = start
+    for node in nodes:
+        if np.any(node.margins < 0.0):
+            return _up_to_event(problem, piece, phase, start, (before, node))
+        before = node
+    return _integrate(start, nodes, None)
+
+
+def _nodes(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) -> list[Node] | None:
+    """Equilibria at the Gauss points of a step and at its end."""
+    nodes = [start]
+    for t in start.t + (end - start.t) * np.append(_GAUSS, 1.0):
+        last = nodes[-1]
+        node = node_at(problem, piece, phase, float(t), last.z + (t - last.t) * last.rates)
+        if node is None:
+            return None
+        nodes.append(node)
+    return nodes[1:]
+
+
+def _integrate(start: Node, nodes: list[Node], ending: Ending | None) -> Step | None:
+    """Work and dissipation of a step; None where the step is too long for them."""
+    length = nodes[-1].t - start.t
+    values = np.array([[node.power, node.dissipation] for node in nodes[:-1]])
+    if np.max(np.abs(_DIFFERENCE @ values)) * length > _ALLOWED_DIFFERENCE:
+        return None
+    work, dissipated = length * (_WEIGHTS @ values)
+    return Step(nodes[-1], float(work), float(dissipated), ending)
+
+
+def _up_to_event(
+    problem: Problem, piece: Piece, phase: Phase, start: Node, bracket: tuple[Node, Node]
+) -> Step | None:
+    """Step up to the first root of a margin between two equilibria; None where the first one is an event itself."""
+    before, after = bracket
+
+    def at(t: float) -> Node | None:
+        share = (t - before.t) / (after.t - before.t)
+        return node_at(problem, piece, phase, t, before.z + share * (after.z - before.z))
+
+    roots: list[tuple[float, Ending]] = []
+    for ending in Ending:
+        k = ending.value
+        if after.margins[k] >= 0.0:
+            continue
+        if before.margins[k] <= 0.0:
+            return None
+        root = _root(at, k, bracket)
+        if root is None:
+            return None
+        roots.append((root, ending))
+    t, ending = min(roots, key=lambda item: item[0])
+    nodes = _nodes(problem, piece, phase, start, t)
+    return None if nodes is None else _integrate(start, nodes, ending)
+
+
+def _root(at: Callable[[float], Node | None], k: int, bracket: tuple[Node, Node]) -> float | None:
+    """Load parameter at which a margin vanishes; None where Newton's method fails."""
+
+    def margin(t: float) -> float:
+        node = at(t)
+        return float(node.margins[k]) if node is not None else np.nan
+
+    try:
+        return float(brentq(margin, bracket[0].t, bracket[1].t, xtol=1e-15))
+    except ValueError:
+        return None
