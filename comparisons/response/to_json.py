@@ -56,6 +56,7 @@ def as_dict(response: Response) -> dict[str, Any]:
             for pair, contact in response.contacts.items()
         },
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
+        "material_force": response.material_force,
         "tips": response.tips,
         "axes": {
             beam: {"arc_length": arc, "position": axes.position[beam]}
@@ -95,6 +96,10 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
             if support.other_end is not None:
                 x, y = support.other_end.force[-1]
                 rows.append((f"{beam} other end's force", f"({x:.9g}, {y:.9g}) {force}"))
+        rows += [
+            (f"{beam} material force", f"{values[-1]:.3g} {force}")
+            for beam, values in response.material_force.items()
+        ]
         rows += [
             (f"{beam} tip", f"({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g}) {length}")
             for beam, tip in response.tips.items()
