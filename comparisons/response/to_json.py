@@ -97,10 +97,6 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
                 x, y = support.other_end.force[-1]
                 rows.append((f"{beam} other end's force", f"({x:.9g}, {y:.9g}) {force}"))
         rows += [
-            (f"{beam} material force", f"{values[-1]:.3g} {force}")
-            for beam, values in response.material_force.items()
-        ]
-        rows += [
             (f"{beam} tip", f"({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g}) {length}")
             for beam, tip in response.tips.items()
         ]
