@@ -6,7 +6,8 @@ the reference, positions to the length of their beam.
 
 A value that is not a number has an infinite error. The arc position has an infinite error where its pair is open in one response
 and closed in the other. The error of the arc position is nan where the pair is open in both, and where the scene has no contact. The
-error of the moment is nan if no support has a moment.
+error of the moment is nan if no support has a moment. The friction is treated like the arc position; it has an infinite error if only
+one of the responses has a material force.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from comparisons.quantities import KEPT, QUANTITIES, SCOPES
 from comparisons.response import Array, Response, SupportHistory
 from comparisons.response.axis import STATIONS, axes_at_stations
+from comparisons.response.material import frictions
 from comparisons.scene import Scene
 
 AWAY = 1.5
@@ -194,6 +196,18 @@ def _arc(pair: _Pair) -> Columns:
     return columns
 
 
+def _friction(pair: _Pair) -> Columns:
+    ours, theirs = frictions(pair.response, pair.scene), frictions(pair.reference, pair.scene)
+    columns = {}
+    for beam in ours.keys() | theirs.keys():
+        if beam not in ours or beam not in theirs:
+            columns[beam] = np.full(len(pair.ours), np.inf)
+            continue
+        own, exact = ours[beam][pair.ours], theirs[beam][pair.theirs]
+        columns[beam] = np.where(np.isfinite(own) == np.isfinite(exact), np.abs(own - exact), np.inf)
+    return columns
+
+
 def _tip(pair: _Pair) -> Columns:
     ours, theirs = pair.response.tips, pair.reference.tips
     return {
@@ -241,6 +255,7 @@ def _face_stress(response: Response, scene: Scene, k: int) -> Array:
 _MEASURES: dict[str, Callable[[_Pair], Columns]] = {
     "force": _force,
     "arc": _arc,
+    "friction": _friction,
     "moment": _moment,
     "tip": _tip,
     "shape": lambda pair: _shape(pair, np.max),

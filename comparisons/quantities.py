@@ -4,6 +4,7 @@ QUANTITIES = {
     "force": "contact forces, of a scene without contact the support forces, over the largest",
     "arc": "arc positions of the contacts over the length",
     "moment": "support moments over the largest",
+    "friction": "material force at the clamp of a beam with a free end, over the contact forces on the beam",
     "tip": "positions of the beams' ends over the length",
     "shape": "deflected axes at equal arc lengths, the largest distance over the length",
     "shape_mean": "deflected axes at equal arc lengths, the mean distance over the length",

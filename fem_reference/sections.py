@@ -1,4 +1,4 @@
-"""Section forces from the stress in the solid, and strains of the faces."""
+"""Section forces and material forces from the stress in the solid, and strains of the faces."""
 
 from dataclasses import dataclass
 
@@ -28,6 +28,9 @@ class SectionForces:
         Rotation of the section from the global x axis [rad].
     force
         Resultant of N and V in the global frame, ``(m, 2)`` [N].
+    material_force
+        J-integral ``integral (P_i1 F_i1 - W) dA`` [N]. It is constant between contacts and differs on the two sides of a contact by
+        the tangential force. It vanishes beyond the last contact of a free end.
     """
 
     stations: Floats
@@ -36,6 +39,7 @@ class SectionForces:
     M: Floats
     rotation: Floats
     force: Floats
+    material_force: Floats
 
 
 def section_forces(result: Result, strip: str, k: int, stations: Floats | None = None) -> SectionForces:
@@ -60,7 +64,9 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     weights = body.strip.width * heights[:, None] * shares
     u = result.states[k].u[part]
     sampled = sample(body.mesh, points)
-    P = body.law.stress(sampled.deformation_gradient(u))
+    F = sampled.deformation_gradient(u)
+    P = body.law.stress(F)
+    eshelby = (P[:, 0] * F[:, 0]).sum(axis=0) - body.law.energy(F)
     x = points + sampled.rows(len(u)) @ u
     shape = (X.size, -1)
     p = P[:, 0].T.reshape(*shape, 2)
@@ -79,6 +85,7 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
         M=(weights * (arm[:, :, 0] * p[:, :, 1] - arm[:, :, 1] * p[:, :, 0])).sum(axis=1),
         rotation=rotation + np.arctan2(*body.strip.frame[::-1, 0]),
         force=f @ body.strip.frame.T,
+        material_force=(weights * eshelby.reshape(shape)).sum(axis=1),
     )
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import ModelError, Options
+from comparisons.response.material import UNDEFINED, clamped
 from comparisons.scene import Scene
 
 STOCKY = 0.1
@@ -61,6 +62,8 @@ def required(
         raise ModelError(refused)
     if quantity == "stress" and len(loaded.beams) > 1:
         raise ModelError("quantity = stress: is defined for a scene with one beam, this one has more")
+    if quantity == "friction" and not clamped(loaded):
+        raise ModelError(f"quantity = friction: {UNDEFINED}")
     options = Options(element=element) if element is not None else chosen.reference or Options()
     TSM.element(options)
     return Requirement(scene=loaded, model=chosen, options=options, decisions=said)

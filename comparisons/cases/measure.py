@@ -53,8 +53,6 @@ class Measurement:
     verdict : str
         Verdict of the certificate for the last load parameter and the neighbours of events, ``CERTIFIED`` or another. It is empty if no
         load parameter was reached or no run is timed.
-    friction : float
-        Largest spurious friction at these load parameters, see `comparisons.referee.material.friction`; nan where it is undefined.
     process_seconds : float
         Processor time of a whole process of ``crossval solve`` without certificate, imports included [s]; nan if it was not asked for.
     """
@@ -64,7 +62,6 @@ class Measurement:
     repeats: int = 0
     peak_memory: int = 0
     verdict: str = ""
-    friction: float = np.nan
     process_seconds: float = np.nan
 
     @property
@@ -108,9 +105,6 @@ def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measureme
         repeats=len(seconds),
         peak_memory=peak,
         verdict="" if found is None else found.verdict.name,
-        friction=np.nan
-        if found is None
-        else float(np.fmax.reduce([np.nan, *(item.friction for item in found.judged)])),
         process_seconds=_process_seconds(case) if process else np.nan,
     )
 

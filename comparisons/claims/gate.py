@@ -8,9 +8,10 @@ from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quant
 from comparisons.claims.junit import junit_text
 from comparisons.errors import difference
 from comparisons.models import ROD, certified, find, solve
-from comparisons.models.options import Options
+from comparisons.models.options import ModelError, Options
 from comparisons.models.registry import COARSE
 from comparisons.response import Response
+from comparisons.response.material import UNDEFINED, clamped
 from comparisons.scene import Scene
 
 
@@ -68,8 +69,10 @@ def gate(
     Raises
     ------
     ModelError
-        If a model cannot state the scene.
+        If a model cannot state the scene, or the scene has no material force for a bound on the friction.
     """
+    if "friction" in bounds and not clamped(scene):
+        raise ModelError(f"friction: {UNDEFINED}")
     allowance = max(COARSE, *bounds.values())
     reference = certified(_reference(scene, against), scene)
     response = certified(solve(scene, model, options), scene, allowance=allowance)

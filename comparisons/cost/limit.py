@@ -40,6 +40,7 @@ def extrapolated(responses: Sequence[Response]) -> Response:
             beam: _supported(replace(support, moment=moment[beam]), beam, force)
             for beam, support in best.supports.items()
         },
+        material_force=limit(lambda one: one.material_force),
         tips=limit(lambda one: one.tips),
         axis_line=SampledAxes(
             arc_length=sampled_axes(best).arc_length, position=limit(lambda one: sampled_axes(one).position)

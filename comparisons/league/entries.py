@@ -20,7 +20,7 @@ from comparisons.scene import Scene
 
 MOST = 5
 """Largest number of resolutions of a program."""
-QUANTITIES = ("force", "arc", "moment", "tip")
+QUANTITIES = ("force", "arc", "moment", "tip", "friction")
 """The quantities whose errors are stated."""
 
 
@@ -66,7 +66,6 @@ class Entry:
             "setting": self.case.label,
             "outcome": self.outcome,
             **{f"error_{name}": self.errors[name] for name in QUANTITIES},
-            "spurious_friction": self.measured.friction,
             "seconds": self.measured.seconds,
             "process_seconds": self.measured.process_seconds,
             "unknowns": response.unknowns,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models.base import Model
+from comparisons.models.j_integral import j_integrals
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch, unwatched
 from comparisons.models.solid import SOLID
@@ -197,6 +198,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         contacts=contacts,
         tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
         supports=_by_beam(scene, lambda support: supports[support.node]),
+        material_force=j_integrals(scene, result),
         deformation=deformation,
     )
 

@@ -56,6 +56,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         If the model cannot state the scene or an option does not belong to it.
     """
     from comparisons.models.verify import verified
+    from comparisons.response.material import material_forces
 
     chosen, given = find(model), options or Options()
     for option, value in vars(given).items():
@@ -63,6 +64,9 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
             raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
     try:
         response = chosen.solve(scene, given, watch)
+        if not response.continuum:
+            forces = material_forces(response, scene, strains=chosen.rod)
+            response = replace(response, material_force=forces)
         reported = response.completed or response.reported_success
         return replace(verified(response, scene), reported_success=reported)
     except ValueError as error:

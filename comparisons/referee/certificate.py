@@ -38,8 +38,6 @@ class Judgement:
         Index of the exact equilibrium; -1 without one.
     residual : float
         Estimated relative error of the exact equilibrium itself.
-    friction : float
-        Sum of the tangential contact forces over the largest contact force, see `comparisons.referee.material.friction`.
     exact : Equilibrium or None
         The exact equilibrium.
     """
@@ -50,7 +48,6 @@ class Judgement:
     distance: Distance | None = None
     index: int = -1
     residual: float = math.nan
-    friction: float = math.nan
     exact: Equilibrium | None = field(default=None, repr=False)
 
 
@@ -112,7 +109,6 @@ def _as_dict(item: Judgement) -> dict[str, Any]:
         "distance": None if item.distance is None else asdict(item.distance),
         "index": item.index,
         "residual": item.residual,
-        "friction": item.friction,
     }
     if exact is not None and exact.status is SearchStatus.FOUND:
         values["exact"] = {

@@ -10,7 +10,6 @@ from comparisons.referee.balance import unbalanced
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, distance, least_force
 from comparisons.referee.equilibrium import SearchStatus
-from comparisons.referee.material import friction
 from comparisons.referee.start import AnswerState, answer_state
 from comparisons.referee.state import Equilibrium, equilibrium
 from comparisons.response import ContactHistory, Response
@@ -62,7 +61,6 @@ def judged(
         distance=differences,
         index=exact.index,
         residual=exact.error,
-        friction=friction(scene, answer, exact),
         exact=exact,
     )
 

@@ -66,6 +66,7 @@ def restated(data: Any) -> Response:
         beam: _support(item, f"supports.{beam}.", steps) for beam, item in _tables(data, "supports").items()
     }
     tips = _table(data, "tips")
+    material = _table({"material_force": {}, **data}, "material_force")
     iterations = _given(data, "newton_iterations", (steps,))
     return Response(
         model=_text(data, "model"),
@@ -79,6 +80,7 @@ def restated(data: Any) -> Response:
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,
+        material_force={beam: _numbers(material, beam, (steps,), "material_force.") for beam in material},
         tips={beam: _numbers(tips, beam, (steps, 2), "tips.") for beam in tips},
         newton_iterations=np.zeros(steps, dtype=np.int64) if iterations is None else iterations,
         cutbacks=_whole(data, "cutbacks"),

@@ -230,6 +230,9 @@ class Response:
         Critical points that the model met.
     certificate : Certificate, optional
         Verdict of the referee on the answer.
+    material_force : dict of ndarray, shape (s,)
+        Sum of the tangential contact forces on a beam, positive away from its clamp, by beam: see `comparisons.response.material`. Empty
+        without such a clamp, and for a solid of another program.
     reported_success : bool
         Whether the model itself reported a complete solution, whatever the checks found.
     """
@@ -258,6 +261,7 @@ class Response:
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()
     certificate: "Certificate | None" = None
+    material_force: dict[str, Array] = field(default_factory=dict)
     reported_success: bool = False
 
     @property

@@ -57,6 +57,7 @@ def as_dict(response: Response) -> dict[str, Any]:
             for pair, contact in response.contacts.items()
         },
         "supports": {beam: _support(support) for beam, support in response.supports.items()},
+        "material_force": response.material_force,
         "tips": response.tips,
         "axes": {
             beam: {"arc_length": arc, "position": axes.position[beam]}

@@ -57,7 +57,7 @@ def write_comparison_page(
 def _errors(rows: Sequence[Row], reference: str) -> Section:
     caption = (
         f"Largest error over all load parameters against the {reference}; forces and moments over their largest, positions "
-        "over the length. Newton iterations and wall seconds of the whole path."
+        "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
     )
     return Section(title="Errors", html=table(caption, HEADER, map(cells, rows)))
 

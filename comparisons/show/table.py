@@ -26,11 +26,12 @@ HEADER = (
     "arc position",
     "moment",
     "tip",
+    "friction",
     "stable",
     "iterations",
     "seconds",
 )
-SHOWN = ("force", "arc", "moment", "tip")
+SHOWN = ("force", "arc", "moment", "tip", "friction")
 """The quantities of the middle columns."""
 
 
@@ -45,7 +46,7 @@ def table_text(rows: list[Row], reference: str) -> str:
     )
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
-        "largest, positions to the length; Newton iterations and seconds for the whole path"
+        "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
     )
     return "\n".join([title, "", first, "-" * len(first), *rest])
 

@@ -13,6 +13,7 @@ from comparisons.models.outside.status import ProgramError, ProgramStatus
 from comparisons.response import ContactHistory, Grid, Response, SupportHistory
 from comparisons.response.axis import SampledAxes
 from comparisons.response.from_json import restated
+from comparisons.response.material import clamped
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 
@@ -185,10 +186,12 @@ def _contradictions(response: Response, scene: Scene) -> Iterator[str]:
     axes = response.axis_line
     assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
     beams = {beam.name for beam in scene.beams}
+    driven = response.material_force.keys()
     for what, own, wanted in (
         ("contacts", response.contacts.keys(), {spec.pair for spec in scene.contacts}),
         ("supports", response.supports.keys(), {spec.beam for spec in scene.all_supports}),
         ("tips", response.tips.keys(), beams),
+        ("material_force", driven, driven & clamped(scene).keys()),
         ("axes", axes.arc_length.keys(), beams),
     ):
         if own != wanted:

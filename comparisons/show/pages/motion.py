@@ -1,6 +1,6 @@
 """Shapes under a slider and histories beside them: the data of a section that moves, and its markup."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from comparisons.errors import error_columns, forces, moments, size
 from comparisons.response import Array, Response
+from comparisons.response.material import frictions
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.pages.markup import scrolling, text
@@ -46,9 +47,9 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return forces and arc positions of all contact pairs and the moments of all supports, with the errors of `comparisons.errors`.
+    """Return forces, arc positions, moments and frictions over the load parameters, with the errors of `comparisons.errors`.
 
-    A scene without contact has the forces of its supports. Moments that vanish in all responses are left out.
+    A scene without contact has the forces of its supports. What vanishes in all responses is left out.
 
     Parameters
     ----------
@@ -62,10 +63,11 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
     force, length = _units(scene)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     acting = "contact force" if scene.contacts else "support force"
-    quantities = {
+    quantities: dict[str, tuple[str, str, str, Callable[[Response], Mapping[str, Array]]]] = {
         "force": (acting, force, "the largest force", forces),
         "arc": ("arc position", length, "the length", _arcs),
         "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
+        "friction": ("friction", "1", "the contact forces", lambda response: frictions(response, scene)),
     }
     found = []
     for quantity, (title, unit, scale, read) in quantities.items():
@@ -76,21 +78,25 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
             if label != reference and reference in shown
         }
         names = list(dict.fromkeys(name for one in values.values() for name in one))
-        names = [name for name in names if any(one[name].any() for one in values.values())]
+        names = [name for name in names if any(np.any(one.get(name, 0.0)) for one in values.values())]
         found += [
             Track(
                 title=f"{title} {_node(name, scene)}" if len(names) > 1 else title,
                 unit=unit,
-                values={
-                    label: size(one[name]) if one[name].ndim > 1 else one[name]
-                    for label, one in values.items()
-                },
+                values={label: _numbers(one.get(name), shown[label]) for label, one in values.items()},
                 errors={label: one[name] for label, one in errors.items() if name in one},
                 error_title=f"error against the {reference}, over {scale}",
             )
             for name in names
         ]
     return found
+
+
+def _numbers(values: Array | None, response: Response) -> Array:
+    """Return numbers, shape (s,): of vectors the magnitudes, and nan of a quantity that the response does not have."""
+    if values is None:
+        return np.full(len(response.load_parameter), np.nan)
+    return size(values) if values.ndim > 1 else values
 
 
 def _arcs(response: Response) -> dict[str, Array]:

@@ -124,6 +124,7 @@ def test_an_empty_history_keeps_its_shape() -> None:
         load_parameter=np.empty(0),
         contacts={},
         supports={beam: replace(support, force=support.force[:0], moment=support.moment[:0])},
+        material_force={},
         tips={beam: response.tips[beam][:0]},
         axis_line=SampledAxes(arc_length={}, position={}),
         newton_iterations=response.newton_iterations[:0],

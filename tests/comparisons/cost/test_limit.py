@@ -28,6 +28,7 @@ def response_of(h: float, order: float = 2.0) -> Response:
         load_parameter=TIMES,
         contacts={PAIR: ContactHistory(force=s * (1.0 + off), arc_position=arc, gap=0.0 * s)},
         supports={BEAM: SupportHistory(force=np.zeros((5, 2)), moment=-2.0 * (s + off))},
+        material_force={BEAM: off * s},
         tips={BEAM: np.stack([s, 1.0 - off * s], axis=-1)},
         axis_line=SampledAxes(arc_length={BEAM: STATIONS}, position={BEAM: axis}),
     )
@@ -40,6 +41,7 @@ def test_limit_of_a_series_of_any_order(order: float) -> None:
     assert contact.force == pytest.approx(limit.force, abs=1e-12)
     assert contact.arc_position == pytest.approx(limit.arc_position, abs=1e-12, nan_ok=True)
     assert found.supports[BEAM].moment == pytest.approx(exact.supports[BEAM].moment, abs=1e-12)
+    assert found.material_force[BEAM] == pytest.approx(exact.material_force[BEAM], abs=1e-12)
     assert found.tips[BEAM] == pytest.approx(exact.tips[BEAM], abs=1e-12)
     for k in range(5):
         assert found.axis_line(BEAM, k)[1] == pytest.approx(exact.axis_line(BEAM, k)[1], abs=1e-12)
@@ -76,6 +78,7 @@ def test_errors_are_relative_to_the_reference_and_the_length() -> None:
         {
             "force": 0.01,
             "arc": 0.05,
+            "friction": 0.01 / 1.01,
             "moment": 0.002,
             "tip": 0.05,
             "shape": 0.01 * np.sqrt(2.0),

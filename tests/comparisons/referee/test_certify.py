@@ -89,20 +89,6 @@ def test_the_error_of_mixed_is_judged_within_a_hundredth_of_it(elements: int) ->
         assert judgement.distance.tip == pytest.approx(tip, rel=1e-2)
 
 
-@pytest.mark.slow
-def test_friction_of_the_answers_by_material_force() -> None:
-    """H/F at the clamp, frictionless: 1e-6 of `mixed` with 10 elements, 2e-12 of `exact`, 1.3e-2 of the paper's element."""
-    shown = {}
-    for element in ("mixed", "exact", "timoshenko"):
-        response = solve(load_scene("ks-cantilever"), "tsm", Options(element=element, elements=10))
-        shown[element] = (
-            certify(response, load_scene("ks-cantilever"), at=[-1], allowance=1.0).judged[0].friction
-        )
-    assert shown["mixed"] == pytest.approx(1e-6, rel=0.5)
-    assert shown["exact"] < 1e-11
-    assert shown["timoshenko"] == pytest.approx(1.3e-2, rel=0.1)
-
-
 def tripled(r: Response) -> Response:
     vector, force = r.contacts[PAIR].vector, r.contacts[PAIR].force
     assert vector is not None

@@ -17,6 +17,7 @@ from comparisons.cli import main
 from comparisons.models import find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.program_file import ProgramFileError, read_program
+from comparisons.response.material import frictions
 from comparisons.scene import load_scene
 from tests.comparisons.models.outside.conftest import KS, PAIR
 
@@ -50,6 +51,11 @@ FAILURES = {
         "support['other_end'] = dict(support)",
         "INVALID_RESPONSE",
         "supports.cantilever.other_end:",
+    ),
+    "another material force": (
+        "answer['material_force'] = {'other': contact['force']}",
+        "INVALID_RESPONSE",
+        "material_force: must have none, has other",
     ),
     "a force less": ("contact['force'].pop()", "INVALID_RESPONSE", "must be a list of 5 numbers"),
     "a word": ("contact['force'][0] = 'many'", "INVALID_RESPONSE", "must be a list of 5 numbers"),
@@ -144,6 +150,17 @@ def test_load_parameters_with_few_digits_are_those_of_the_scene(program: Make) -
     )
     assert response.completed, response.message
     assert tuple(response.load_parameter) == scene.times
+
+
+def test_the_material_force_of_a_rod_is_computed_and_of_a_solid_stated(program: Make) -> None:
+    """A program's own value of a rod does not count; a solid that states none has none."""
+    rods = solve(KS, program("answer['material_force'] = {'cantilever': contact['force']}"))
+    assert np.abs(frictions(rods, KS)["cantilever"]).max() < 1e-11
+    assert solve(KS, program()).material_force.keys() == {"cantilever"}
+    solid = "answer['continuum'] = True"
+    stated = solve(KS, program(f"{solid}; answer['material_force'] = {{'cantilever': contact['force']}}"))
+    assert frictions(stated, KS)["cantilever"] == pytest.approx(1.0)
+    assert solve(KS, program(solid)).material_force == {}
 
 
 def test_a_penetration_is_that_of_a_penalty(program: Make) -> None:

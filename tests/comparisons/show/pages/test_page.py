@@ -24,15 +24,17 @@ def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Pat
     assert "report.html" in summary["files"]
     (data,) = block(html).values()
     runs = {run["label"]: run for run in summary["runs"]}
-    force, arc, moment = data["tracks"]
+    force, arc, moment, friction = data["tracks"]
     assert set(force["values"]) == set(runs) == {run["label"] for run in data["runs"]}
     for label, run in runs.items():
         assert data["load_parameter"] == run["load_parameter"]
         assert force["values"][label] == run["contacts"]["pin->cantilever"]["force"]
         assert arc["values"][label] == run["contacts"]["pin->cantilever"]["arc_position"]
         assert moment["values"][label] == run["supports"]["cantilever"]["moment"]
+        size = np.array(run["contacts"]["pin->cantilever"]["force"])
+        assert friction["values"][label] == pytest.approx(run["material_force"]["cantilever"] / size)
         if run["errors"]:
-            stated = [run["errors"]["path"][name] for name in ("force", "arc", "moment")]
+            stated = [run["errors"]["path"][name] for name in ("force", "arc", "moment", "friction")]
             assert [max(track["errors"][label]) for track in data["tracks"]] == stated
     for drawn in data["runs"]:
         tips = [lines[0][-1] for lines in drawn["lines"]]

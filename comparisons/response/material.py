@@ -1,0 +1,119 @@
+"""Material force: the sum of the tangential contact forces on a beam, from the reactions at its only clamp.
+
+Along a uniform Reissner rod without distributed load
+
+    H = m^2/2EI + N + N^2/2EA + Q^2/2GA
+
+is constant between contacts. A contact force F on the axis changes it by ``H_- - H_+ = F . (r'_- + r'_+)/2``, the tangential force times
+a factor that differs from 1 by a strain. At a free end H = 0. At the clamp of a beam with one free end H is therefore the sum of the
+tangential contact forces, positive away from the clamp: physical friction or, without friction, an error of the contact's direction.
+"""
+
+import math
+
+import numpy as np
+
+from comparisons.response.record import Array, Response
+from comparisons.scene import BeamSpec, Scene, SupportSpec
+
+UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
+"""Reason why a scene has no material force."""
+
+
+def clamped(scene: Scene) -> dict[str, SupportSpec]:
+    """Return the clamps at which the material force is the sum of the tangential contact forces, by beam.
+
+    Such a beam is touched, and it is held by one clamp alone. It has no load, no joint, and no end that touches another beam.
+    """
+    found = {}
+    for beam in scene.beams:
+        supports = scene.supports_of(beam.name)
+        touched = any(contact.beam == beam.name for contact in scene.contacts)
+        if touched and len(supports) == 1 and len(supports[0].held) == 3 and _otherwise_free(scene, beam):
+            found[beam.name] = supports[0]
+    return found
+
+
+def _otherwise_free(scene: Scene, beam: BeamSpec) -> bool:
+    """Whether neither load nor joint nor another beam acts on the ends of a beam."""
+    acting = {load.beam for load in scene.loads} | {contact.node.split(".")[0] for contact in scene.contacts}
+    ends = {end for other in scene.beams if other is not beam for end in (other.start, other.end)}
+    return beam.name not in acting and ends.isdisjoint((beam.start, beam.end))
+
+
+def material_forces(response: Response, scene: Scene, *, strains: bool = True) -> dict[str, Array]:
+    """Return the material force of a rod at the clamps of `clamped`, shape (s,) by beam [force].
+
+    Parameters
+    ----------
+    response : Response
+        Response of a model of rods, with the reactions of the clamps.
+    scene : Scene
+        The scene that was solved.
+    strains : bool
+        Whether the model has the stretch and the shear of Reissner's rod; without them EA and GA are infinite.
+    """
+    found = {}
+    for name, clamp in clamped(scene).items():
+        beam, support = scene.beam(name), response.supports.get(name)
+        if support is None:
+            continue
+        EA, GA = (beam.EA, beam.GA) if strains else (math.inf, math.inf)
+        turn = math.atan2(*beam.direction[::-1]) + response.load_parameter * (clamp.motion[2] or 0.0)
+        x, y = (-1.0 if clamp.end == "start" else 1.0) * support.force.T
+        N, Q = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
+        found[name] = support.moment**2 / (2.0 * beam.EI) + N + N**2 / (2.0 * EA) + Q**2 / (2.0 * GA)
+    return found
+
+
+def frictions(response: Response, scene: Scene) -> dict[str, Array]:
+    """Return the material force over the sum of the contact forces on its beam, shape (s,) by beam; nan without contact force."""
+    found = {}
+    for name, force in response.material_force.items():
+        pressing = _pressing(response, scene, name)
+        found[name] = np.divide(force, pressing, out=np.full(len(force), np.nan), where=pressing > 0.0)
+    return found
+
+
+def _pressing(response: Response, scene: Scene, beam: str) -> Array:
+    """Sum of the magnitudes of the contact forces on a beam, shape (s,)."""
+    own = [
+        np.abs(response.contacts[contact.pair].force) for contact in scene.contacts if contact.beam == beam
+    ]
+    return np.asarray(np.sum(own, axis=0))
+
+
+def friction_coefficient(force: Array, material_force: Array, beam: BeamSpec, *, lever: float = 0.0) -> Array:
+    """Return the tangential force of a beam's only contact over its normal force, positive away from the clamp, shape (s,).
+
+    Let g be the mean ``(r'_- + r'_+)/2`` of the tangents at the contact, and c the cosine of the angle from the free tail to the contact
+    force F. The free tail has neither stretch nor shear, hence
+
+        F . g = F c + F^2 (c^2/EA + (1 - c^2)/GA)/2 = T |g|,   H = T |g| + (T e)^2/2EI
+
+    with the tangential force T and its lever e. The equations give c and T without further approximation.
+
+    Parameters
+    ----------
+    force : ndarray, shape (s,)
+        Magnitude of the whole contact force; the coefficient is nan where it is zero.
+    material_force : ndarray, shape (s,)
+        H at the clamp.
+    beam : BeamSpec
+        The beam.
+    lever : float
+        Distance of the contact from the axis [length]: zero on the axis, half the height on a face.
+    """
+    F = np.where(force > 0.0, force, np.nan)
+    stretch, shear, curl = F / beam.EA, F / beam.GA, lever**2 / (2.0 * beam.EI)
+    size = np.ones_like(F)
+    for _ in range(_ROUNDS):
+        T = 2.0 * material_force / (size + np.sqrt(size**2 + 4.0 * curl * material_force))
+        rest, unequal = T * size / F - shear / 2.0, stretch - shear
+        c = 2.0 * rest / (1.0 + np.sqrt(1.0 + 2.0 * unequal * rest))
+        size = np.hypot(1.0 + stretch * c / 2.0, shear / 2.0 * np.sqrt(np.maximum(1.0 - c**2, 0.0)))
+    return np.asarray(T / np.sqrt(F**2 - T**2))
+
+
+_ROUNDS = 30
+"""Iterations for the length of g; each one reduces its error by a strain."""
