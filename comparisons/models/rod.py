@@ -43,6 +43,10 @@ class Rod(Model):
             local = to_rod(scene)
         except ModelError:
             return solve_network(scene, self.name, watch)
+        if any(contact.friction for contact in scene.contacts):
+            from comparisons.models.rod_friction import solve_rod_with_friction
+
+            return solve_rod_with_friction(scene, local)
         return solve_rod(scene, local)
 
     def styles(self) -> dict[str, Style]:
