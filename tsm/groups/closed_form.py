@@ -114,14 +114,15 @@ class ClosedFormGroup(ElementGroup):
         return moved[:6], moved[8:]
 
     def traction(self, k: int, state: State, _forces: ClosedFormForces) -> Traction:
-        """Force and place of a contact with friction; only its arc position and the direction of its tangent are known."""
+        """Force and place of a contact with friction."""
         pair, touch, friction = self._rubbed(k, state)
         p, x, _ = self._lever(pair, touch.element, state)
         surface, rub = Surface(pair.side, pair.pair.offset), pair.rub(touch)
         tangential, normal, _ = friction.split(p, x, touch.xi, touch.force, surface, rub)
-        direction = friction.direction(p, x, touch.xi, touch.force, surface, rub)
+        here = friction.hold(p, x, touch.xi, touch.force, surface, rub)
         arc = arc_position(pair.target, touch.element, touch.xi)
-        return Traction(float(tangential), float(normal), Place(arc, 0.0, float(direction), 1.0))
+        place = Place(arc, float(here.shear), float(here.slope), float(here.path))
+        return Traction(float(tangential), float(normal), place)
 
     def slip_rate(
         self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
