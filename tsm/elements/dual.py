@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from tsm.elements.properties import Array
 
 
-@dataclass(frozen=True, slots=True)
 class Dual:
     """A value and its gradient over a list of variables.
 
@@ -22,8 +20,10 @@ class Dual:
         Derivatives.
     """
 
-    value: Any
-    gradient: Array
+    __slots__ = ("gradient", "value")
+
+    def __init__(self, value: Any, gradient: Array) -> None:
+        self.value, self.gradient = value, gradient
 
     def __add__(self, other: Any) -> Dual:
         if isinstance(other, Dual):

@@ -28,6 +28,7 @@ whose rate is ``A_s ds/dt + side h dpsi/dt + side radius dphi/dt``: what frictio
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -107,7 +108,7 @@ def response(
     tangent : ndarray, shape (11, 11)
         Its derivative, not symmetric.
     """
-    beam = _loaded(p, x, xi, force, surface.side, rub)
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     (Fx, Fy), (Tx, Ty), (rx, ry) = beam.force, beam.tangent, beam.place
     reach = surface.side * surface.offset
     if reach:
@@ -127,14 +128,14 @@ def response(
 
 def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
     """Force along the beam, force across it, positive where the contact pushes, and arc position from the element's start."""
-    beam = _loaded(p, x, xi, force, surface.side, rub)
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     (Fx, Fy), (Tx, Ty), size = force, (beam.tangent[0].value, beam.tangent[1].value), beam.stretch.value
     return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
 
 
 def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Array:
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
-    beam = _loaded(p, x, xi, force, surface.side, rub)
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     form = surface.side * (rub.face * beam.shear.gradient + rub.radius * beam.slope.gradient)
     form[6] += beam.stretch.value + surface.side * rub.face * beam.curvature.value
     rate: Array = form @ REDUCE
@@ -143,14 +144,14 @@ def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub)
 
 def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
     """State of the friction where a stick begins, here and now."""
-    beam = _loaded(p, x, xi, force, surface.side, rub)
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     path = beam.stretch.value + surface.side * rub.face * beam.curvature.value
     return rub._replace(lean=0.0, held=xi * p.l0, path=path, shear=beam.shear.value, slope=beam.slope.value)
 
 
 def energy(p: Properties, x: Any, _lever: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Any:
     """Contribution of the contact to the strain energy."""
-    return _loaded(p, x, xi, force, surface.side, rub).energy.value
+    return _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face).energy.value
 
 
 def crossing(
@@ -198,7 +199,9 @@ def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
     return (path + rub.path) / 2 * crept + rolled
 
 
-def _loaded(p: Properties, x: Any, xi: Any, force: Any, side: float, rub: Rub) -> Loaded:
+@lru_cache(maxsize=16)
+def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], lever: float) -> Loaded:
+    """Loaded element; solution, margins and energies ask for the same one in turn."""
     curve, l0 = Curve(p, x), p.l0
     dx, dy, Fx, Fy, arc = (
         Dual(value, row)
@@ -227,13 +230,13 @@ def _loaded(p: Properties, x: Any, xi: Any, force: Any, side: float, rub: Rub) -
     rho = softness * z * (1 + p.Phi / 2 - 3 * z)
     across, along = rho, -K * bend
     sloped = (along * c - across * s, along * s + across * c)
-    M = _couple((Fx, Fy), tangent, sloped, side * rub.face)
+    M = _couple((Fx, Fy), tangent, sloped, lever)
     tangent = (tangent[0] + M * sloped[0], tangent[1] + M * sloped[1])
     across, along = C * N + K * M, A * S
     a, by_phi = Fy * dx - Fx * dy, -S * ((C - A) * N + K * M)
     nodal = [part * Fx + a * wx + w * Fy, part * Fy + a * wy - w * Fx, a * wi, a * wj]
     nodal = [load + by_phi * turn for load, turn in zip(nodal, phi_x, strict=True)]
-    if rub.face:
+    if lever:
         nodal = [
             load + M * (turn - strain) for load, turn, strain in zip(nodal, phi_x, gamma_x[:4], strict=True)
         ]
