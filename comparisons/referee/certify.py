@@ -126,8 +126,8 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
 
 
 def _certified_reason(states: Sequence[Judgement], steps: int) -> str:
-    name, size = max((item.distance.largest for item in states if item.distance), key=lambda item: item[1])
-    return f"{name} off by {size:.2g}, index 0, admissible, at {len(states)} of {steps} load parameters"
+    worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
+    return f"{worst.line()}, index 0, admissible, at {len(states)} of {steps} load parameters"
 
 
 def _path(response: Response, scene: Scene) -> Iterator[str]:
