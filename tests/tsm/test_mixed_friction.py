@@ -221,3 +221,22 @@ def test_two_contacts_on_an_element():
         expected, hessian = mixed_contact.crossing(p, tuple(xi), *forces)
         assert np.abs(residual - expected).max() <= 1e-14 * np.abs(expected).max()
         assert np.abs(tangent - hessian).max() <= 1e-14 * np.abs(hessian).max()
+
+
+def test_rows_of_two_contacts_are_the_cones_of_their_tilted_tangents():
+    """Each third row vanishes where the force along the beam, tilted by the other force, is ``sigma mu F_n``."""
+    rng = np.random.default_rng(11)
+    for _ in range(50):
+        p, x, lever, _, _, _, _ = drawn(rng, stick=False)
+        sides, xi = rng.choice([-1.0, 1.0], 2), rng.uniform(0.05, 0.95, 2)
+        forces = 0.3 * rng.normal(size=(2, 2)) * p.EI / p.l0**2 / (1 + p.Phi)
+        rubs = drawn_rub(rng, p, stick=False), drawn_rub(rng, p, stick=False)
+        shared, _ = mixed_friction.crossing(p, tuple(xi), *forces, rubs)
+        for own, other in ((0, 1), (1, 0)):
+            surface, force = Surface(sides[own], 0.0), forces[own]
+            residual, _ = mixed_friction.response(p, x, lever, xi[own], force, surface, rubs[own])
+            rub = rubs[own]._replace(tilt=mixed_friction.tilt(p, xi[own], xi[other]) * forces[other])
+            F_t, F_n, _ = mixed_friction.split(p, x, xi[own], force, surface, rub)
+            size = mixed_friction.slip(p, x, xi[own], force, surface, rub)[10]
+            expected = size * (rub.lean * sides[own] * F_n - F_t)
+            assert residual[10] + shared[3 * own + 2] == pytest.approx(expected, rel=1e-9)

@@ -128,7 +128,7 @@ def response(
 def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
     """Force along the beam, force across it, positive where the contact pushes, and arc position from the element's start."""
     beam = _loaded(p, x, xi, force, surface.side, rub)
-    (Fx, Fy), (Tx, Ty), size = force, (beam.tangent[0].value, beam.tangent[1].value), beam.stretch.value
+    (Fx, Fy), (Tx, Ty), size = force, *_tilted(beam, rub)
     return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
 
 
@@ -136,9 +136,14 @@ def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub)
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
     beam = _loaded(p, x, xi, force, surface.side, rub)
     form = surface.side * (rub.face * beam.shear.gradient + rub.radius * beam.slope.gradient)
-    form[6] += beam.stretch.value + surface.side * rub.face * beam.curvature.value
+    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * beam.curvature.value
     rate: Array = form @ REDUCE
     return rate
+
+
+def tilt(p: Properties, xi: Any, eta: Any) -> Any:
+    """Change of the mean tangent at xi by a unit force at eta, per undeformed length, in the direction of the force."""
+    return cross_compliance(p, xi, eta)[1] / p.l0
 
 
 def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
@@ -185,6 +190,12 @@ def crossing(
         for k in range(2):
             tangent[row + 2, 3 * k + 2] = -bend[own][k] * dot / l0**2
     return residual, tangent
+
+
+def _tilted(beam: Loaded, rub: Rub) -> tuple[tuple[Any, Any], Any]:
+    """Mean tangent with the deflection by other contacts on the element, and its length."""
+    Tx, Ty = (part.value + more for part, more in zip(beam.tangent, rub.tilt, strict=True))
+    return (Tx, Ty), np.sqrt(Tx * Tx + Ty * Ty)
 
 
 def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
@@ -285,5 +296,7 @@ def _angle(cross: Dual, dot: Dual) -> Dual:
     return Dual(chord_rotation(cross.value, dot.value), rate)
 
 
-FRICTION = Friction(response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing)
+FRICTION = Friction(
+    response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing, tilt=tilt
+)
 """Friction of the contact law whose force and arc position are unknowns."""
