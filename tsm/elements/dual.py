@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,11 +9,10 @@ import numpy as np
 from tsm.elements.properties import Array
 
 
-@dataclass(frozen=True, slots=True)
 class Dual:
     """A value and its gradient over a list of variables.
 
-    Attributes
+    Parameters
     ----------
     value : float or complex
         Value.
@@ -22,8 +20,11 @@ class Dual:
         Derivatives.
     """
 
-    value: Any
-    gradient: Array
+    __slots__ = ("gradient", "value")
+
+    def __init__(self, value: Any, gradient: Array) -> None:
+        self.value = value
+        self.gradient = gradient
 
     def __add__(self, other: Any) -> Dual:
         if isinstance(other, Dual):
