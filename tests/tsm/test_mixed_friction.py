@@ -221,3 +221,61 @@ def test_two_contacts_on_an_element():
         expected, hessian = mixed_contact.crossing(p, tuple(xi), *forces)
         assert np.abs(residual - expected).max() <= 1e-14 * np.abs(expected).max()
         assert np.abs(tangent - hessian).max() <= 1e-14 * np.abs(hessian).max()
+
+
+def test_rows_of_two_contacts_are_the_cones_of_their_tilted_tangents():
+    """Each third row vanishes where the force along the beam, tilted by the other force, is ``sigma mu F_n``."""
+    rng = np.random.default_rng(11)
+    for _ in range(50):
+        p, x, lever, _, _, _, _ = drawn(rng, stick=False)
+        sides, xi = rng.choice([-1.0, 1.0], 2), rng.uniform(0.05, 0.95, 2)
+        forces = 0.3 * rng.normal(size=(2, 2)) * p.EI / p.l0**2 / (1 + p.Phi)
+        rubs = drawn_rub(rng, p, stick=False), drawn_rub(rng, p, stick=False)
+        shared, _ = mixed_friction.crossing(p, tuple(xi), *forces, rubs)
+        for own, other in ((0, 1), (1, 0)):
+            surface, force = Surface(sides[own], 0.0), forces[own]
+            residual, _ = mixed_friction.response(p, x, lever, xi[own], force, surface, rubs[own])
+            rub = rubs[own]._replace(tilt=mixed_friction.tilt(p, xi[own], xi[other]) * forces[other])
+            F_t, F_n, _ = mixed_friction.split(p, x, xi[own], force, surface, rub)
+            size = mixed_friction.slip(p, x, xi[own], force, surface, rub)[10]
+            expected = size * (rub.lean * sides[own] * F_n - F_t)
+            assert residual[10] + shared[3 * own + 2] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("place", ["face", "round", "round on the face"])
+def test_a_stick_dissipates_of_third_order_in_its_size(place):
+    """Work of F_t on the slip rate along a stick that rolls, for a path of the element's ends and of the node, and for its half."""
+    rng = np.random.default_rng(12)
+    ratios = []
+    for _ in range(10):
+        l0 = 1.0
+        p = Properties(l0, 0.0, l0, 1e3, 1.0, float(10 ** rng.uniform(-2, 0)))
+        x = 0.3 * rng.normal(size=6)
+        face, radius = PLACES[place]
+        surface = Surface(float(rng.choice([-1.0, 1.0])), face + radius)
+        xi, force = float(rng.uniform(0.3, 0.7)), rng.normal(size=2)
+        begin = Rub(0.0, None, 1.0, face, radius)
+        rub = mixed_friction.hold(p, x, xi, force, surface, begin)
+        residual, _ = mixed_friction.response(p, x, (0.0, 0.0), xi, force, surface, rub)
+        lever, rate = residual[8:10], rng.normal(size=8)
+        works = [_stick_work(size * rate, p, x, lever, xi, force, surface, rub) for size in (2e-4, 1e-4)]
+        ratios.append(works[0] / works[1])
+    assert np.median(ratios) == pytest.approx(8, rel=0.1)
+
+
+def _stick_work(way, p, x, lever, xi, force, surface, rub):
+    """Integral of F_t times the slip rate while ends and node move by `way`, by Gauss's rule on solved states."""
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    total = 0.0
+    for part, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
+        moved, now = x + part * way[:6], lever + part * (way[:2] - way[6:])
+        place, pushed = xi, force
+        for _ in range(12):
+            residual, tangent = mixed_friction.response(p, moved, now, place, pushed, surface, rub)
+            step = np.linalg.solve(tangent[8:, 8:], -residual[8:])
+            pushed, place = pushed + step[:2], place + step[2] / p.l0
+        change = np.linalg.solve(tangent[8:, 8:], -tangent[8:, :8] @ way)
+        F_t, _, _ = mixed_friction.split(p, moved, place, pushed, surface, rub)
+        slip = mixed_friction.slip(p, moved, place, pushed, surface, rub)
+        total += weight * F_t * (slip @ np.concatenate([way, change]))
+    return total

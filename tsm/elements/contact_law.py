@@ -45,6 +45,9 @@ class Rub(NamedTuple):
     path, shear, slope : float
         Where the stick began: length of the face per arc position, shear angle and slope angle, see `Friction.hold`. Without face and
         radius they do not matter.
+    tilt : tuple of 2 floats
+        Change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their forces. Only `Friction.split`
+        and `Friction.slip` take it; `Friction.crossing` has its part in the rows.
     """
 
     lean: float
@@ -55,6 +58,7 @@ class Rub(NamedTuple):
     path: float = 1.0
     shear: float = 0.0
     slope: float = 0.0
+    tilt: tuple[Any, Any] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,6 +134,8 @@ class Friction:
         As `ContactLaw.energy`, of the arguments of `response`.
     crossing : callable
         ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`.
+    tilt : callable
+        ``(p, xi, eta) -> number``: change of the mean tangent at xi by a unit force at eta.
     """
 
     response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
@@ -138,3 +144,4 @@ class Friction:
     hold: Callable[[Properties, Any, Any, Any, Surface, Rub], Rub]
     energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]
+    tilt: Callable[[Properties, Any, Any], Any]

@@ -12,7 +12,7 @@ from tsm.elements.properties import Array
 class Dual:
     """A value and its gradient over a list of variables.
 
-    Attributes
+    Parameters
     ----------
     value : float or complex
         Value.
@@ -23,7 +23,8 @@ class Dual:
     __slots__ = ("gradient", "value")
 
     def __init__(self, value: Any, gradient: Array) -> None:
-        self.value, self.gradient = value, gradient
+        self.value = value
+        self.gradient = gradient
 
     def __add__(self, other: Any) -> Dual:
         if isinstance(other, Dual):

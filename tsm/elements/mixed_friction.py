@@ -129,7 +129,7 @@ def response(
 def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
     """Force along the beam, force across it, positive where the contact pushes, and arc position from the element's start."""
     beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
-    (Fx, Fy), (Tx, Ty), size = force, (beam.tangent[0].value, beam.tangent[1].value), beam.stretch.value
+    (Fx, Fy), (Tx, Ty), size = force, *_tilted(beam, rub)
     return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
 
 
@@ -137,9 +137,14 @@ def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub)
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
     beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
     form = surface.side * (rub.face * beam.shear.gradient + rub.radius * beam.slope.gradient)
-    form[6] += beam.stretch.value + surface.side * rub.face * beam.curvature.value
+    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * beam.curvature.value
     rate: Array = form @ REDUCE
     return rate
+
+
+def tilt(p: Properties, xi: Any, eta: Any) -> Any:
+    """Change of the mean tangent at xi by a unit force at eta, per undeformed length, in the direction of the force."""
+    return cross_compliance(p, xi, eta)[1] / p.l0
 
 
 def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
@@ -188,6 +193,12 @@ def crossing(
     return residual, tangent
 
 
+def _tilted(beam: Loaded, rub: Rub) -> tuple[tuple[Any, Any], Any]:
+    """Mean tangent with the deflection by other contacts on the element, and its length."""
+    Tx, Ty = (part.value + more for part, more in zip(beam.tangent, rub.tilt, strict=True))
+    return (Tx, Ty), np.sqrt(Tx * Tx + Ty * Ty)
+
+
 def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
     """Path of the face along the node since the stick began."""
     crept = Dual(arc - rub.held, np.eye(7)[6])
@@ -201,56 +212,98 @@ def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
 
 @lru_cache(maxsize=16)
 def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], lever: float) -> Loaded:
-    """Loaded element; solution, margins and energies ask for the same one in turn."""
+    """The element under a contact's force and couple, see the module's text.
+
+    Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take the axes n and t of the unloaded curve with them, which turn by its curvature.
+    """
     curve, l0 = Curve(p, x), p.l0
     dx, dy, Fx, Fy, arc = (
         Dual(value, row)
         for value, row in zip((curve.dx, curve.dy, *force, xi * l0), np.eye(7)[[0, 1, 4, 5, 6]], strict=True)
     )
     part = arc / l0
-    w, (wx, wy, wi, wj, ws) = _lifted(curve.deflection_jet(xi), l0)
+    w, (wx, wy, wi, wj, slope) = _lifted(curve.deflection_jet(xi), l0)
     phi, (*phi_x, bend) = _lifted(curve.slope_angle_jet(xi), l0)
     gamma, gamma_x = _lifted(curve.shear_strain_jet(), l0)
     c, s = phi.cos(), phi.sin()
     N, S = Fy * c - Fx * s, Fx * c + Fy * s
-    C, dC, ddC, _ = compliance(p, xi)
-    C, dC = Dual(C, dC / l0 * arc.gradient), Dual(dC / l0, ddC / l0**2 * arc.gradient)
-    z, dz = part * (1 - part), (1 - 2 * part) / l0
-    A, dA = l0 / p.EA * z, l0 / p.EA * dz
-    excess = (C - A) * bend
-    # mean tangent without the couple, and the slope that a unit couple makes
-    along, across = dA * S - excess * N, dC * N - excess * S
-    tangent = (
-        dx / l0 - ws * dy + (along * c - across * s) / 2,
-        dy / l0 + ws * dx + (along * s + across * c) / 2,
+    a = _flexibility(p, xi, arc)
+    turned = (a.C - a.A) * bend
+    along, across = (a.A_s * S - turned * N) / 2, (a.C_s * N - turned * S) / 2
+    free = (
+        dx / l0 - slope * dy + along * c - across * s,
+        dy / l0 + slope * dx + along * s + across * c,
     )
-    softness = l0 / (p.EI * (1 + p.Phi))
-    K = (softness * l0**2 / 2) * z * z * dz
-    R = softness * z * (1 + p.Phi - 3 * z)
-    rho = softness * z * (1 + p.Phi / 2 - 3 * z)
-    across, along = rho, -K * bend
+    along, across = -a.K * bend, a.rho
     sloped = (along * c - across * s, along * s + across * c)
-    M = _couple((Fx, Fy), tangent, sloped, lever)
-    tangent = (tangent[0] + M * sloped[0], tangent[1] + M * sloped[1])
-    across, along = C * N + K * M, A * S
-    a, by_phi = Fy * dx - Fx * dy, -S * ((C - A) * N + K * M)
-    nodal = [part * Fx + a * wx + w * Fy, part * Fy + a * wy - w * Fx, a * wi, a * wj]
-    nodal = [load + by_phi * turn for load, turn in zip(nodal, phi_x, strict=True)]
-    if lever:
-        nodal = [
-            load + M * (turn - strain) for load, turn, strain in zip(nodal, phi_x, gamma_x[:4], strict=True)
-        ]
-    kink = _angle(tangent[1] * c - tangent[0] * s, tangent[0] * c + tangent[1] * s)
+    M, T = _couple((Fx, Fy), free, sloped, lever)
+    Tx, Ty = T
+    along, across = a.A * S, a.C * N + a.K * M
+    arm, by_phi = Fy * dx - Fx * dy, N * along - S * across
+    nodal = (part * Fx + arm * wx + w * Fy, part * Fy + arm * wy - w * Fx, arm * wi, arm * wj)
+    kink = _angle(Ty * c - Tx * s, Tx * c + Ty * s)
     return Loaded(
         force=(Fx, Fy),
-        tangent=tangent,
-        stretch=(tangent[0] * tangent[0] + tangent[1] * tangent[1]).sqrt(),
+        tangent=T,
+        stretch=(Tx * Tx + Ty * Ty).sqrt(),
         place=(part * dx - w * dy + along * c - across * s, part * dy + w * dx + along * s + across * c),
-        nodal=tuple(nodal),
-        energy=(C * N * N + A * S * S + R * M * M) / 2 + K * N * M,
-        curvature=bend - softness / 2 * z * (p.Phi + 4 * z) * N + softness / 2 * dz * (1 + p.Phi - 6 * z) * M,
-        shear=gamma + kink - K * N - R * M,
+        nodal=tuple(
+            load + (by_phi + M) * turn - M * strain
+            for load, turn, strain in zip(nodal, phi_x, gamma_x[:4], strict=True)
+        ),
+        energy=(a.C * N * N + a.A * S * S + a.R * M * M) / 2 + a.K * N * M,
+        curvature=bend + a.kappa * N + a.R_s * M / 2,
+        shear=gamma + kink - a.K * N - a.R * M,
         slope=phi + kink,
+    )
+
+
+class Flexibility(NamedTuple):
+    """Response of an element with held ends to a unit force and a unit couple at a point, there; over seven variables.
+
+    Attributes
+    ----------
+    C, C_s : Dual
+        Deflection by a force across the element, and its derivative in the arc position.
+    A, A_s : Dual
+        Displacement by a force along the element, and its derivative.
+    K : Dual
+        Deflection by a couple, rotation by a force.
+    R, R_s : Dual
+        Rotation by a couple, and its derivative.
+    rho : Dual
+        Slope of the centre line by a couple, ``R`` and the shear strain.
+    kappa : Dual
+        Curvature by a force, so that ``dK/ds = rho + kappa``.
+    """
+
+    C: Dual
+    C_s: Dual
+    A: Dual
+    A_s: Dual
+    K: Dual
+    R: Dual
+    R_s: Dual
+    rho: Dual
+    kappa: Dual
+
+
+def _flexibility(p: Properties, xi: Any, arc: Dual) -> Flexibility:
+    l0, Phi = p.l0, p.Phi
+    C, dC, ddC, _ = compliance(p, xi)
+    part = arc / l0
+    z, dz = part * (1 - part), (1 - 2 * part) / l0
+    soft = l0 / (p.EI * (1 + Phi))
+    return Flexibility(
+        C=Dual(C, dC / l0 * arc.gradient),
+        C_s=Dual(dC / l0, ddC / l0**2 * arc.gradient),
+        A=l0 / p.EA * z,
+        A_s=l0 / p.EA * dz,
+        K=soft * l0**2 / 2 * z * z * dz,
+        R=soft * z * (1 + Phi - 3 * z),
+        R_s=soft * dz * (1 + Phi - 6 * z),
+        rho=soft * z * (1 + Phi / 2 - 3 * z),
+        kappa=-soft / 2 * z * (Phi + 4 * z),
     )
 
 
@@ -264,22 +317,33 @@ def _lifted(jet: Jet, l0: Any) -> tuple[Dual, list[Dual]]:
     return Dual(jet.value, gradient @ spread), [Dual(value, row) for value, row in first]
 
 
-def _couple(force: Pair, tangent: Pair, sloped: Pair, lever: float) -> Dual:
-    """Couple ``M = lever F . T/|T|`` with the mean tangent ``T + M sloped``."""
+def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Dual, Pair]:
+    """Couple ``M = lever F . T/|T|`` and the mean tangent ``T = free + M sloped``, by Newton's method.
+
+    The last step is made with derivatives: from the solution it has those of the solution.
+    """
     M = Dual(0.0, np.zeros(7))
     if not lever:
-        return M
+        return M, free
+    values = [[part.value for part in pair] for pair in (force, free, sloped)]
     for _ in range(_ITERATIONS):
-        Tx, Ty = tangent[0] + M * sloped[0], tangent[1] + M * sloped[1]
-        size = (Tx * Tx + Ty * Ty).sqrt()
-        along = lever * (force[0] * Tx + force[1] * Ty) / size
-        across = lever * (force[1] * Tx - force[0] * Ty) / size
-        turn = (sloped[1] * Tx - sloped[0] * Ty) / (size * size)
-        step = (along - M) / (1 - across * turn)
-        M = M + step
-        if abs(step.value) <= _LAST * abs(M.value):
+        step = _couple_step(M.value, values, lever)
+        M.value += step
+        if abs(step) <= _LAST * abs(M.value):
             break
-    return M
+    M = M + _couple_step(M, (force, free, sloped), lever)
+    return M, (free[0] + M * sloped[0], free[1] + M * sloped[1])
+
+
+def _couple_step(M: Any, pairs: Any, lever: float) -> Any:
+    """Step of Newton's method for the couple, for numbers or with derivatives."""
+    (Fx, Fy), (x, y), (slope_x, slope_y) = pairs
+    Tx, Ty = x + M * slope_x, y + M * slope_y
+    square = Tx * Tx + Ty * Ty
+    size = np.sqrt(square)
+    along, across = Fx * Tx + Fy * Ty, Fy * Tx - Fx * Ty
+    turn = (slope_y * Tx - slope_x * Ty) / square
+    return (along * lever / size - M) / (1 - across * lever / size * turn)
 
 
 def _angle(cross: Dual, dot: Dual) -> Dual:
@@ -288,5 +352,7 @@ def _angle(cross: Dual, dot: Dual) -> Dual:
     return Dual(chord_rotation(cross.value, dot.value), rate)
 
 
-FRICTION = Friction(response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing)
+FRICTION = Friction(
+    response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing, tilt=tilt
+)
 """Friction of the contact law whose force and arc position are unknowns."""

@@ -14,11 +14,8 @@ from comparisons.models.outside.status import ProgramError, ProgramStatus
 from comparisons.response import ContactHistory, Grid, Response, SupportHistory
 from comparisons.response.axis import SampledAxes
 from comparisons.response.from_json import restated
-<<<<<<< HEAD
 from comparisons.response.material import clamped
-=======
 from comparisons.response.to_json import as_dict
->>>>>>> fcdc6bfd84130c2bec9b97d3cb2e3ee2c736a173
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
