@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from comparisons.exact.checks import path_points
 from comparisons.exact.friction_law import Equations, Linear, Phase, Real, linearise
 from comparisons.exact.friction_result import FrictionEvent, FrictionPath, FrictionState
-from comparisons.exact.friction_step import Ending, Piece, Problem, node_at, take
+from comparisons.exact.friction_step import AT_ONCE, Ending, Piece, Problem, node_at, take
 
 _TOUCH = 1e-12  # distance, in lengths of the rod, below which the pin touches
 _FIRST_STEP, _SMALLEST_STEP = 0.05, 1e-11  # of the path
@@ -112,17 +112,17 @@ class _Walk:
 
     def along(self, standing: Standing, finish: float) -> Standing:
         """Equilibrium at the end of the piece."""
-        step = _FIRST_STEP
-        while standing.t < finish and not standing.state.ends:
+        step, growth = _FIRST_STEP, 2.0
+        while finish - standing.t > AT_ONCE and not standing.state.ends:
             if not standing.state.touches:
                 standing = self._until_touch(standing, finish)
                 continue
             assert standing.phase is not None
             start = node_at(self.problem, self.piece, standing.phase, standing.t, standing.z)
-            end = min(standing.t + step, finish)
+            end = finish if finish - standing.t <= 1.001 * step else standing.t + step
             found = None if start is None else take(self.problem, self.piece, standing.phase, start, end)
             if found is None:
-                step = (end - standing.t) / 4.0
+                step, growth = (end - standing.t) / 3.0, 1.0
                 if step < _SMALLEST_STEP:
                     standing = self._change(standing, FrictionState.LOST)
                 continue
@@ -135,7 +135,7 @@ class _Walk:
             )
             if found.ending is not None:
                 standing = self._after(standing, found.ending)
-            step = 2.0 * step
+            step, growth = growth * step, 2.0
         return replace(standing, t=finish)
 
     def _until_touch(self, standing: Standing, finish: float) -> Standing:
@@ -217,7 +217,7 @@ class _Walk:
     def _one_of(self, standing: Standing, possible: list[tuple[int, Real]]) -> Standing:
         """Return the only possible state."""
         if len(possible) != 1:
-            return self._change(standing, FrictionState.TWO_SLIPS if possible else FrictionState.JAMMED)
+            return self._change(standing, FrictionState.JAMMED)
         sense, z = possible[0]
         old = standing.phase
         if standing.state.touches and old is not None and sense == old.sense:
@@ -227,11 +227,11 @@ class _Walk:
 
     def _begin(self, z: Real, t: float, sense: int) -> tuple[Phase, Linear]:
         """Phase that begins at unknowns, and the equations in it."""
-        pin, phase = self.piece.pin(t), Phase(sense=sense or 1)
+        pin, phase = self.piece.pin(t), Phase(sense=sense or 1, since=t)
         linear = linearise(self.problem.equations, z, pin, phase, self.problem.friction)
         if sense:
             return phase, linear
-        phase = Phase(sense=0, start=linear.contact)
+        phase = Phase(sense=0, since=t, start=linear.contact)
         return phase, linearise(self.problem.equations, z, pin, phase, self.problem.friction)
 
     def _rates(self, linear: Linear) -> Real | None:
