@@ -20,7 +20,7 @@ _ALLOWED_DIFFERENCE = 1e-6
 _LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
 _ROUND_OFF, _NOISE = 1e-14, 1e-5
 """A residual at round-off, and the correction that it may leave where the equations are stiff."""
-_TOGETHER, AT_ONCE, _EDGE = 1e-9, 1e-14, 1e-12
+_TOGETHER, AT_ONCE, EDGE = 1e-9, 1e-14, 1e-12
 """Load parameters nearer than the first are one event (a pin that leaves square to the rod ends its slip where it leaves), nearer
 than the second are one; a margin within the third is at its edge."""
 
@@ -121,7 +121,7 @@ def take(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) 
         return None
     before = start
     for node in nodes:
-        if np.any(node.margins < -_EDGE):
+        if np.any(node.margins < -EDGE):
             return _up_to_event(problem, piece, phase, start, (before, node))
         before = node
     return _integrate(start, nodes, None)
@@ -175,9 +175,10 @@ def _up_to_event(
     roots: list[tuple[float, Ending]] = []
     for ending in Ending:
         k = ending.value
-        if after.margins[k] >= -_EDGE:
+        if after.margins[k] >= -EDGE:
             continue
-        if before is start and start.margins[k] <= _EDGE and start.t - phase.since > _TOGETHER:
+        goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF
+        if before is start and start.margins[k] <= EDGE and goes_on:
             return Step(start, 0.0, 0.0, ending)
         if before.margins[k] <= 0.0:
             return None
