@@ -160,7 +160,11 @@ def _advance(model: Model, target: float, progress: _Progress, settings: Setting
         attempt = equilibrium(model, predict(model, progress.track, goal, progress.order), settings)
         progress.iterations += attempt.iterations
         progress.cause, progress.pair = attempt.status, attempt.pair
-        candidate = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
+        candidate = (
+            accept(model, attempt.state, settings, progress.last)
+            if attempt.status is Status.CONVERGED
+            else None
+        )
         ended = _accept_or_shorten(model, progress, candidate, goal, settings)
         if ended is None and progress.failures:
             ended = _find_obstacle(model, progress, attempt, goal, target, settings)

@@ -6,15 +6,14 @@ such event, so that the answer does not depend on the load steps.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, nan
 
 from fem_reference.active_set import equilibrium
-from fem_reference.friction import slip_gradient
+from fem_reference.dissipation import slip_rates
 from fem_reference.model import Model
 from fem_reference.settings import Settings
 from fem_reference.state import State, with_conditions
 from fem_reference.status import Status
-from fem_reference.tangent import pin_motion
 from fem_reference.track import Accepted, accept, predict
 
 _MAX_STEPS = 60
@@ -56,12 +55,10 @@ def first_slip_event(
     return min(events, key=lambda event: event.at.state.t) if events else None
 
 
-def slip_rate(at: Accepted, pair: int, before: float, after: float) -> float:
-    """Slip of a closed contact per load parameter, with the mean velocity of its pin between two load parameters [m]."""
-    touch = at.state.touches[pair]
-    assert touch.friction is not None, "an open contact does not slip"
-    motion = touch.slopes.T @ at.rate(before, after).u.ravel() + pin_motion(touch, before, after)
-    return float(slip_gradient(touch.pair, touch.projection, touch.friction) @ motion)
+def _slip_rate(at: Accepted, pair: int, *, forward: bool) -> float:
+    """Rate of slip of a closed contact [m]; nan if it is singular."""
+    rates = slip_rates(at.tangent, pair, forward=forward)
+    return nan if rates is None else rates[0]
 
 
 def _event(
@@ -74,7 +71,7 @@ def _event(
     if before.friction is None:
         expected = _touch(model, last, pair)
     elif before.friction.direction:
-        expected = _rest(last, candidate, pair, settings)
+        expected = _rest(last, candidate, pair)
     else:
         expected = _start(pair, after.friction.direction)
     if expected is None:
@@ -102,14 +99,13 @@ def _touch(model: Model, last: Accepted, pair: int) -> Expected | None:
     return None if touch.gap <= touching else (lambda at: at.state.touches[pair].gap, None)
 
 
-def _rest(last: Accepted, candidate: Accepted, pair: int, settings: Settings) -> Expected | None:
+def _rest(last: Accepted, candidate: Accepted, pair: int) -> Expected | None:
     """Return the rate of a slip that comes to rest between two states; None if it does not."""
     (_, sign), (_, following) = (at.state.contact_set[pair] for at in (last, candidate))
-    h, first, end = settings.min_step, last.state.t, candidate.state.t
-    turns = following != sign or sign * slip_rate(candidate, pair, end - h, end) < 0
-    if not turns or sign * slip_rate(last, pair, first, first + h) <= 0:
+    turns = following != sign or sign * _slip_rate(candidate, pair, forward=False) < 0
+    if not turns or sign * _slip_rate(last, pair, forward=True) <= 0:
         return None
-    return lambda at: sign * slip_rate(at, pair, at.state.t - h, at.state.t), 0
+    return lambda at: sign * _slip_rate(at, pair, forward=False), 0
 
 
 def _start(pair: int, direction: int) -> Expected | None:
@@ -164,4 +160,4 @@ def _root(
 def _same_set(model: Model, last: Accepted, t: float, settings: Settings) -> Accepted | None:
     """Equilibrium at ``t`` with the contact set of a state before; None if it does not converge."""
     attempt = equilibrium(model, predict(model, (last,), t, 1), settings, keep_set=True)
-    return accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
+    return accept(model, attempt.state, settings, last) if attempt.status is Status.CONVERGED else None
