@@ -6,7 +6,7 @@ such event, so that the answer does not depend on the load steps.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf, nan
+from math import inf, isfinite, nan
 
 from fem_reference.active_set import equilibrium
 from fem_reference.dissipation import slip_rates
@@ -16,8 +16,8 @@ from fem_reference.state import State, with_conditions
 from fem_reference.status import Status
 from fem_reference.track import Accepted, accept, predict
 
-_MAX_STEPS = 60
-_PRECISION = 1e-10
+_MAX_STEPS = 80
+_PRECISION = 1e-14
 """Interval of the load parameter at which a search ends."""
 _VANISHED = 1e-9
 """Value at which a search ends, relative to the one at the beginning of the step."""
@@ -77,7 +77,7 @@ def _event(
     if expected is None:
         return None
     value, direction = expected
-    at = _root(model, last, candidate.state.t, value, settings)
+    at = last if value(last) <= 0 else _root(model, last, candidate.state.t, value, settings)
     if at is None or direction is None:
         return None if at is None else SlipEvent(pair=pair, direction=None, at=at)
     conditions = list(at.state.conditions)
@@ -100,12 +100,12 @@ def _touch(model: Model, last: Accepted, pair: int) -> Expected | None:
 
 
 def _rest(last: Accepted, candidate: Accepted, pair: int) -> Expected | None:
-    """Return the rate of a slip that comes to rest between two states; None if it does not."""
+    """Return the rate of a slip that comes to rest, at the last state at a corner of a pin's path; None if it does not."""
     (_, sign), (_, following) = (at.state.contact_set[pair] for at in (last, candidate))
-    turns = following != sign or sign * _slip_rate(candidate, pair, forward=False) < 0
-    if not turns or sign * _slip_rate(last, pair, forward=True) <= 0:
-        return None
-    return lambda at: sign * _slip_rate(at, pair, forward=False), 0
+    rests = (
+        sign * _slip_rate(candidate, pair, forward=False) < 0 < sign * _slip_rate(last, pair, forward=True)
+    )
+    return (lambda at: sign * _slip_rate(at, pair, forward=True), 0) if rests or following != sign else None
 
 
 def _start(pair: int, direction: int) -> Expected | None:
@@ -126,22 +126,21 @@ def _root(
     value: Callable[[Accepted], float],
     settings: Settings,
 ) -> Accepted | None:
-    """Accepted state with the contact set of ``last`` at which a positive ``value`` vanishes before ``end``; None without one.
+    """Accepted state with the contact set of ``last`` at which a positive ``value`` vanishes up to ``end``; None without one.
 
     Regula falsi in Illinois' form between the states with a positive and a negative value. A state that does not converge
     counts as one beyond the root.
     """
     low, v_low, high, v_high = last, value(last), end, -inf
-    scale, side = abs(v_low), 0
+    vanished, side = _VANISHED * v_low, 0
     for _ in range(_MAX_STEPS):
         width = high - low.state.t
         if width <= _PRECISION:
             break
-        share = v_low / (v_low - v_high) if v_low > 0 and v_high > -inf else 0.5
+        share = v_low / (v_low - v_high) if isfinite(v_high) else 0.5
         t = end if _ == 0 else low.state.t + min(max(share, 1e-6), 1 - 1e-6) * width
         at = _same_set(model, low, t, settings)
         v = -inf if at is None else value(at)
-        scale = max(scale, abs(v)) if v > -inf else scale
         if at is not None and v > 0:
             if t == end:
                 return None
@@ -152,7 +151,7 @@ def _root(
             high, v_high = t, v
             v_low = v_low / 2 if side < 0 else v_low
             side = -1
-        if at is not None and abs(v) <= _VANISHED * scale:
+        if at is not None and abs(v) <= vanished:
             return at
     return low
 
