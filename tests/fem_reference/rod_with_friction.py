@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from tests.fem_reference.conftest import B, E, NU
+from tests.fem_reference.conftest import NU, B, E
 
 EA, GA, EI = E * B * 0.02, 5 / 6 * E / (2 * (1 + NU)) * B * 0.02, E * B * 0.02**3 / 12
 
