@@ -55,10 +55,15 @@ def _closed_if_penetrated(model: Model, touch: Touch) -> Condition:
     """Close an open contact that is penetrated by more than round-off. With friction it first slips as it did while open."""
     if touch.closed or not _penetrated(model, touch):
         return touch.condition
+    return replace(slipping(touch), closed=True)
+
+
+def slipping(touch: Touch) -> Condition:
+    """Condition of a contact that slips as it has slid since the last accepted state."""
     friction = touch.condition.friction
-    if friction is not None:
-        friction = replace(friction, direction=int(np.sign(touch.slip)))
-    return replace(touch.condition, closed=True, friction=friction)
+    if friction is None:
+        return touch.condition
+    return replace(touch.condition, friction=replace(friction, direction=int(np.sign(touch.slip))))
 
 
 def _revised_state(model: Model, state: State, settings: Settings) -> State:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem_reference.friction import slip_gradient
+from fem_reference.friction import force_before_slip, slip_gradient
 from fem_reference.state import State, with_conditions
 from fem_reference.tangent import Tangent, pin_motion
 
@@ -53,7 +53,8 @@ def _work(last: Tangent, tangent: Tangent, pair: int) -> float:
     before, after = a.condition.friction, b.condition.friction
     assert before is not None, "a contact keeps its friction"
     assert after is not None, "a contact keeps its friction"
-    change = np.array([after.slip - before.slip, after.force - before.force])
+    begin = force_before_slip(after, before.force)
+    change = np.array([after.slip - before.slip, after.force - begin])
     ends = slip_rates(tangent, pair, forward=False)
     final = change if ends is None else span * np.array(ends)
     slips = a.closed and before.direction == after.direction
@@ -64,5 +65,5 @@ def _work(last: Tangent, tangent: Tangent, pair: int) -> float:
     for x, w in zip((1 + points) / 2, weights / 2, strict=True):
         slope = 6 * x * (1 - x) * change + (1 - x) * (1 - 3 * x) * initial + x * (3 * x - 2) * final
         value = x * x * (3 - 2 * x) * change + x * (1 - x) ** 2 * initial + x * x * (x - 1) * final
-        total += w * (before.force + value[1]) * slope[0]
+        total += w * (begin + value[1]) * slope[0]
     return float(total)

@@ -79,9 +79,10 @@ def friction_at(at: Projection) -> Friction:
 def settled(pair: Pair, at: Projection, friction: Friction, *, closed: bool) -> Friction:
     """Friction after a state was accepted: its slip and its dissipated energy are added, and slip counts from there.
 
-    The energy is ``(T_n + T) (xi - xi_n) / 2`` in slip.
+    The energy is ``(T_n + T) (xi - xi_n) / 2`` in slip, see `force_before_slip` for T_n.
     """
     slip = float(slip_increment(pair, at, friction)) if closed and friction.direction else 0.0
+    begin = force_before_slip(friction, friction.last_force)
     return replace(
         friction,
         zeta=float(at.zeta),
@@ -89,8 +90,16 @@ def settled(pair: Pair, at: Projection, friction: Friction, *, closed: bool) -> 
         stretch=float(at.stretch),
         last_force=friction.force,
         slip=friction.slip + slip,
-        dissipated=friction.dissipated + (friction.last_force + friction.force) * slip / 2,
+        dissipated=friction.dissipated + (begin + friction.force) * slip / 2,
     )
+
+
+def force_before_slip(friction: Friction, last: float) -> float:
+    """Tangential force at which a present slip began since a state with the force ``last`` [N].
+
+    It is that force, or the present one where the contact has turned in between: it slips only after that.
+    """
+    return friction.force if friction.direction * last < 0 else last
 
 
 def _point(vector: Floats) -> Point:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fem_reference.active_set import equilibrium
+from fem_reference.active_set import equilibrium, slipping
 from fem_reference.arrays import Floats
 from fem_reference.critical import (
     CriticalPoint,
@@ -324,7 +324,24 @@ def _after_slip(
         _condition_after(model, touch, strip if free else None, number == attempt.pair)
         for number, touch in enumerate(before.touches)
     ]
-    return equilibrium(model, build_state(model, u, goal, tuple(conditions), before.tie_forces), settings)
+    guess = build_state(model, u, goal, tuple(conditions), before.tie_forces)
+    return equilibrium(model, _slid_without_friction(model, guess, settings), settings)
+
+
+def _slid_without_friction(model: Model, guess: State, settings: Settings) -> State:
+    """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
+    if not guess.rubbing:
+        return guess
+    smooth = tuple(replace(condition, friction=None) for condition in guess.conditions)
+    slid = equilibrium(model, build_state(model, guess.u, guess.t, smooth, guess.tie_forces), settings)
+    if slid.status is not Status.CONVERGED:
+        return guess
+    conditions = tuple(
+        replace(now, friction=before.friction)
+        for now, before in zip(slid.state.conditions, guess.conditions, strict=True)
+    )
+    state = build_state(model, slid.state.u, guess.t, conditions, slid.state.tie_forces)
+    return with_conditions(state, tuple(slipping(touch) for touch in state.touches))
 
 
 def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost: bool) -> Condition:

@@ -105,7 +105,9 @@ def _rest(last: Accepted, candidate: Accepted, pair: int) -> Expected | None:
     rests = (
         sign * _slip_rate(candidate, pair, forward=False) < 0 < sign * _slip_rate(last, pair, forward=True)
     )
-    return (lambda at: sign * _slip_rate(at, pair, forward=True), 0) if rests or following != sign else None
+    if not rests and following == sign:
+        return None
+    return lambda at: sign * _slip_rate(at, pair, forward=at is last), 0
 
 
 def _start(pair: int, direction: int) -> Expected | None:
