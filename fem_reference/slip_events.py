@@ -77,7 +77,7 @@ def _event(
     if expected is None:
         return None
     value, direction = expected
-    at = last if value(last) <= 0 else _root(model, last, candidate.state.t, value, settings)
+    at = last if value(last) < 0 else _root(model, last, candidate.state.t, value, settings)
     if at is None or direction is None:
         return None if at is None else SlipEvent(pair=pair, direction=None, at=at)
     conditions = list(at.state.conditions)
