@@ -1,7 +1,8 @@
-"""A Reissner cantilever under a sharp pin with friction, by shooting: the reference of the friction's tests.
+"""A Reissner cantilever under a pin with friction, by shooting: the reference of the friction's tests.
 
 From the contact at s to the clamp the internal force is the contact force F, and beyond the contact the rod is free. The pin
-touches along the mean of both tangents, ``t ~ r'_- + r'_+``, from the right, ``F = N n + T t``.
+touches along the mean of both tangents, ``t ~ r'_- + r'_+``, from the right, ``F = N n + T t``. It touches the axis, or a face
+at the distance `lever` from it.
 """
 
 from dataclasses import dataclass
@@ -35,33 +36,36 @@ def _strained(force, angle):
     return np.exp(1j * angle) * (1 + local.real / EA + 1j * local.imag / GA)
 
 
-def _force(at):
+def _frame(at):
+    """Contact force and unit tangent, as complex numbers."""
     tangent = _strained(0.0, at.angle)
     for _ in range(20):  # the tangent depends on the force by a strain
         force = (1j * at.N + at.T) * tangent / abs(tangent)
         tangent = _strained(force, at.angle) + np.exp(1j * at.angle)
-    return force
+    return force, tangent / abs(tangent)
 
 
-def _misses(at, pin):
+def _misses(at, pin, lever=0.0, radius=0.0):
     """Position, and angle, of the rod's start relative to the clamp."""
-    force = _force(at)
+    force, tangent = _frame(at)
+    touched = pin + radius * 1j * tangent
+    axis = touched + lever * 1j * tangent
 
     def slope(_, y):
-        moment = ((pin - (y[0] + 1j * y[1])).conjugate() * force).imag
+        moment = ((touched - (y[0] + 1j * y[1])).conjugate() * force).imag
         r1 = _strained(force, y[2])
         return [-r1.real, -r1.imag, -moment / EI]
 
-    start = [pin.real, pin.imag, at.angle]
+    start = [axis.real, axis.imag, at.angle]
     return solve_ivp(slope, (0, at.s), start, rtol=1e-11, atol=1e-13, method="DOP853").y[:, -1]
 
 
-def slipping(pin, mu, guess):
+def slipping(pin, mu, guess, **touch):
     """Equilibrium with the pin at a complex position and ``T = mu N``; mu has the sign of the slip."""
     scale = guess.N
 
     def equations(x):
-        return _misses(Touch(N=x[0] * scale, T=mu * x[0] * scale, s=x[1], angle=x[2]), pin)
+        return _misses(Touch(N=x[0] * scale, T=mu * x[0] * scale, s=x[1], angle=x[2]), pin, **touch)
 
     found = root(equations, [1.0, guess.s, guess.angle], tol=1e-12)
     assert np.abs(found.fun).max() < 1e-9
