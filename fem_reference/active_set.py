@@ -32,14 +32,14 @@ def equilibrium(model: Model, guess: State, settings: Settings, *, keep_set: boo
         if attempt.status is not Status.CONVERGED:
             return attempt
         state = attempt.state
-        revised = state if keep_set else _revised_state(model, state, settings)
-        if revised.contact_set != state.contact_set:
-            changed = next(i for i, now in enumerate(revised.contact_set) if now != state.contact_set[i])
-            if revised.contact_set in tried:
+        following = state if keep_set else revised(model, state, settings)
+        if following.contact_set != state.contact_set:
+            changed = next(i for i, now in enumerate(following.contact_set) if now != state.contact_set[i])
+            if following.contact_set in tried:
                 return replace(attempt, status=Status.CYCLING, pair=changed)
             if len(tried) > settings.max_contact_changes:
                 return replace(attempt, status=Status.UNDECIDED_CONTACT, pair=changed)
-            state = revised
+            state = following
             tried.append(state.contact_set)
             continue
         deep = [number for number, touch in enumerate(state.touches) if _exceeds_penetration(model, touch)]
@@ -66,8 +66,8 @@ def slipping(touch: Touch) -> Condition:
     return replace(touch.condition, friction=replace(friction, direction=int(np.sign(touch.slip))))
 
 
-def _revised_state(model: Model, state: State, settings: Settings) -> State:
-    """Revise every contact after convergence."""
+def revised(model: Model, state: State, settings: Settings) -> State:
+    """Return a converged state with contacts that open, close, stick or slip where their conditions do not hold."""
     allowed = settings.tolerance * force_scale(model, state)
     slip = allowed / model.axial_stiffness + model.length_round_off
     return with_conditions(state, tuple(_revised(model, touch, (slip, allowed)) for touch in state.touches))

@@ -479,6 +479,15 @@ def test_limit_load_of_three_point_bending(mu, limit, at):
     assert slips * at == pytest.approx(5 * mu * 0.01**2 / 12, rel=1e-2)
 
 
+@pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.890538486811), (0.3, 1.007848170943)])
+def test_dead_load_on_a_rough_support_ends_at_its_limit_point(mu, limit):
+    """Within 1e-4 of the elastica; 4e-5 measured."""
+    result = bending(mu, (1e-12,), 5, load=1.1 * BENDING)
+    assert result.status is Status.LIMIT_POINT
+    assert result.critical[0].kind == "limit point"
+    assert 1.1 * result.reached == pytest.approx(limit, rel=1e-4)
+
+
 def test_limit_load_of_three_point_bending_pushed_back():
     contact = bending(0.2, (0.6, 0.1), 44).contacts["pin->half"]
     back = contact.vector[contact.direction == -1, 1] / BENDING
@@ -490,8 +499,11 @@ def test_limit_load_of_three_point_bending_pushed_back():
 BENDING = 2.1e4 * 0.02 * 0.01**3 / 12
 
 
-def bending(mu, depths, n):
-    """Half a beam on a pin at the distance 1 from the middle, which the pin lifts to the given depths in turn."""
+def bending(mu, depths, n, load=0.0):
+    """Half a beam on a pin at the distance 1 from the middle, which the pin lifts to the given depths in turn.
+
+    With a ``load`` on it, the middle is free to move down.
+    """
     half = make_strip(
         name="half",
         end=(1.6, 0.0),
@@ -505,9 +517,10 @@ def bending(mu, depths, n):
         strips=(half,),
         pins=(fr.Pin(name="pin", path=((1.0, 0.0), *((1.0, depth) for depth in depths))),),
         contacts=(fr.Contact(node="pin", strip="half", friction=mu),),
-        supports=(fr.Support(strip="half", end="start"),),
+        supports=(fr.Support(strip="half", end="start", motion=(0.0, None if load else 0.0, 0.0)),),
+        loads=(fr.EndLoad(strip="half", end="start", force=(0.0, -load)),) if load else (),
     )
-    return fr.solve(problem, loads(n))
+    return fr.solve(problem, loads(n), throw=not load)
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.5])
