@@ -39,6 +39,8 @@ class Rod(Model):
         from comparisons.models.translate import to_rod
 
         del options
+        if any(spec.friction for spec in scene.contacts):
+            return solve_network(scene, self.name, watch)
         try:
             local = to_rod(scene)
         except ModelError:

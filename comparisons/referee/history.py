@@ -84,8 +84,26 @@ class History:
                 held[pair] = self._grip(spec, number)
         return held
 
+    def around(self, t: float) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts at load parameter t; contacts that change there, as before.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no equilibrium is found where a stick begins.
+        """
+        return self._around(None, t)
+
+    def closed(self, t: float) -> set[str]:
+        """Return the contacts that are closed at load parameter t, those that touch there included."""
+        return {
+            pair
+            for pair, own in self.phases.items()
+            if [phase for phase in own if phase.begin <= t + SAME][-1].slip != OPEN
+        }
+
     def begin(self, pair: str, number: int) -> Begin:
-        """Return where a phase of a contact begins, for a phase that is neither the first nor open, and not at an unknown slip.
+        """Return where a phase of a contact begins; not for the first phase, nor for a slip-off, where a part has no length.
 
         Raises
         ------
@@ -142,7 +160,7 @@ class History:
                 raise UnknownFrictionError(
                     f"no equilibrium was found where {spec.pair} {_does(phase)} at {t:.6g}"
                 )
-            return _margin(self.scene, now, spec, own)
+            return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
 
         if any(abs(phase.begin - corner) <= SAME for pin in self.scene.pins for corner in pin.corners):
             margin(phase.begin)
@@ -150,7 +168,7 @@ class History:
         begin = _secant(margin, phase) if math.isfinite(phase.stated) else _bisected(margin, phase, spec.pair)
         return Begin(load_parameter=begin, solution=now)
 
-    def _around(self, spec: ContactSpec, t: float) -> dict[str, Grip]:
+    def _around(self, spec: ContactSpec | None, t: float) -> dict[str, Grip]:
         """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there."""
         held = {}
         for pair, other in self.specs.items():
@@ -167,18 +185,10 @@ class History:
                 held[pair] = self._grip(other, number)
         return held
 
-    def _closed(self, t: float) -> set[str]:
-        """Contacts that are closed at load parameter t, those that touch there included."""
-        return {
-            pair
-            for pair, own in self.phases.items()
-            if [phase for phase in own if phase.begin <= t + SAME][-1].slip != OPEN
-        }
-
     def _near(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
         """Return an equilibrium in a given state, near the beginning of a phase."""
         phase, times = self.phases[spec.pair][number], self.response.load_parameter
-        closed = self._closed(phase.begin)
+        closed = self.closed(phase.begin)
         after = int(np.searchsorted(times, phase.begin))
         for k in (after - 1, after, after + 1):
             if not 0 <= k < len(times):
@@ -195,7 +205,7 @@ class History:
 
 
 def _does(phase: Phase) -> str:
-    return "slips" if phase.slip else "sticks"
+    return {0: "sticks", OPEN: "opens"}.get(phase.slip, "slips")
 
 
 def _at_rest(scene: Scene, spec: ContactSpec) -> Hold:
@@ -209,14 +219,14 @@ def _at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     return Hold(load_parameter=0.0, arc_position=arc, stretch=1.0, shear=angle, direction=angle)
 
 
-def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip) -> float:
-    """A dimensionless number that is zero where a state ends: push at a touch, slip rate in slip, distance from the cone in stick."""
+def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens: bool) -> float:
+    """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
     touch: Touch = next(item for item in now.layout.touches if item.spec is spec)
-    if own.friction and own.slip:
+    if own.friction and own.slip and not opens:
         rate = rates(scene, now)
         return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
     contact = touching(now, touch)
-    if not own.friction:
+    if opens or not own.friction:
         return contact.push / now.layout.force
     return (own.friction * contact.push - abs(contact.drag)) / now.layout.force
 

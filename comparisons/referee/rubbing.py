@@ -6,6 +6,8 @@ import numpy as np
 
 from comparisons.referee.certificate import Judgement
 from comparisons.referee.distance import least_force
+from comparisons.referee.energy import dissipated
+from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.history import History, UnknownFrictionError
 from comparisons.referee.layout import Touch
 from comparisons.referee.march import rates, slip_rate, speed
@@ -127,19 +129,38 @@ def _unpaid(response: Response, k: int, exact: Equilibrium, tolerance: float) ->
         yield f"the work is not strain energy and dissipation at load parameter {t:.6g}, off by {missing / largest:.2g}"
 
 
+def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
+    """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
+    response = history.response
+    if response.work is None:
+        return
+    stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
+    largest = max(abs(float(response.work[k])), exact.strain_energy)
+    for pair, own in dissipated(history, k, exact).items():
+        if pair in stated:
+            spent = stated[pair].dissipated
+            missing = float(spent[k] - (spent[k - 1] if k else 0.0)) - own
+            if abs(missing) > tolerance * largest:
+                t = response.load_parameter[k]
+                yield f"the dissipation of {pair} up to load parameter {t:.6g} is off by {missing / largest:.2g} of the work"
+
+
 def rubs_wrongly_on_the_way(
     history: History, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
 ) -> Iterator[str]:
     """Yield violations between load parameters.
 
-    They are dissipation that falls, changes of slip and stick that are not stated or elsewhere, and work that is not the exact strain
-    energy and the dissipation at the judged load parameters.
+    They are dissipation that falls, changes of slip and stick that are not stated or elsewhere, work that is not the exact strain
+    energy and the dissipation at the judged load parameters, and dissipation up to the last of them that is not the exact one.
     """
     response = history.response
     apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
     for k, item in zip(numbers, states, strict=True):
-        if item.exact is not None:
+        if item.exact is not None and item.exact.status is SearchStatus.FOUND:
             yield from _unpaid(response, k, item.exact, ENERGY + _SPREAD * apart)
+    for k, item in list(zip(numbers, states, strict=True))[-_MOST:]:
+        if item.exact is not None and item.exact.status is SearchStatus.FOUND:
+            yield from _misspent(history, k, item.exact, ENERGY + _SPREAD * apart)
     for spec in history.scene.contacts:
         friction = response.contacts[spec.pair].friction
         if spec.friction and friction is not None:
