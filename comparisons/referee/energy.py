@@ -23,32 +23,37 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     times = history.response.load_parameter
     begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
     pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
+    corners = [t for pin in history.scene.pins for t in pin.corners if begin < t < end]
     try:
-        ends = sorted([*_cuts(history, k), (end, exact.solution)], key=lambda item: item[0])
-        spent = dict.fromkeys(pairs, 0.0)
-        for (first, _), (last, there) in pairwise([(begin, exact.solution), *ends]):
+        cuts = dict.fromkeys([begin, *corners]) | _cuts(history, k) | {end: exact.solution}
+        spent, there = dict.fromkeys(pairs, 0.0), exact.solution
+        for first, last in reversed(list(pairwise(sorted(cuts)))):
+            there = cuts[last] or there
             if last - first > _LEAST:
-                for pair, energy in _between(history, first, last, there).items():
+                energies, there = _between(history, first, last, there)
+                for pair, energy in energies.items():
                     spent[pair] += energy
     except UnknownFrictionError:
         return dict.fromkeys(pairs, math.nan)
     return spent
 
 
-def _cuts(history: History, k: int) -> list[tuple[float, Solution]]:
+def _cuts(history: History, k: int) -> dict[float, Solution | None]:
     """Load parameters before number k, after the one before, at which a contact changes, with the equilibria there."""
-    found = []
+    found: dict[float, Solution | None] = {}
     for pair, own in history.phases.items():
         before = history.numbers[pair][k - 1] if k else 0
         for number in range(before + 1, history.numbers[pair][k] + 1):
             if own[number].slip != own[number - 1].slip:
                 begin = history.begin(pair, number)
-                found.append((begin.load_parameter, begin.solution))
+                found[begin.load_parameter] = begin.solution
     return found
 
 
-def _between(history: History, first: float, last: float, there: Solution) -> dict[str, float]:
-    """Dissipation between two load parameters without a change; `there` is the equilibrium at the last one."""
+def _between(
+    history: History, first: float, last: float, there: Solution
+) -> tuple[dict[str, float], Solution]:
+    """Dissipation between two load parameters without a change, from the equilibrium `there` at the last one; and one at the first."""
     grips = history.around((first + last) / 2.0)
     spent: dict[str, float] = {}
     closed = history.closed((first + last) / 2.0)
@@ -66,4 +71,4 @@ def _between(history: History, first: float, last: float, there: Solution) -> di
             power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
             energy = weight * (last - first) / 2.0 * power
             spent[touch.spec.pair] = spent.get(touch.spec.pair, 0.0) + float(energy)
-    return spent
+    return spent, there

@@ -188,7 +188,7 @@ class History:
     def _near(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
         """Return an equilibrium in a given state, near the beginning of a phase."""
         phase, times = self.phases[spec.pair][number], self.response.load_parameter
-        closed = self.closed(phase.begin)
+        closed = self.closed(phase.begin) | {spec.pair}
         after = int(np.searchsorted(times, phase.begin))
         for k in (after - 1, after, after + 1):
             if not 0 <= k < len(times):
