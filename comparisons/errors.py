@@ -130,6 +130,18 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     return 0.0 if np.isnan(worst) else worst
 
 
+def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
+    """Return the pair, support or beam, and the load parameter, where a quantity has its largest error; empty if there is none."""
+    shared, _, _ = _shared(response, reference)
+    columns = error_columns(response, reference, scene, quantity)
+    worst = {name: largest(values) for name, values in columns.items()}
+    worst = {name: size for name, size in worst.items() if size > 0.0}
+    if not worst:
+        return ""
+    name = max(worst, key=lambda name: worst[name])
+    return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
+
+
 def error_histories(
     response: Response,
     reference: Response,

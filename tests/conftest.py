@@ -21,7 +21,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Keep the tests that measure numbers of pages if these are to be written."""
+    """Begin the long tests first, so that none is left to one worker at the end; keep those of measured numbers if these are to be written."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
     if config.getoption("write_results"):
         items[:] = [item for item in items if "stated" in getattr(item, "fixturenames", ())]
 

@@ -127,10 +127,12 @@ class PairModel:
         """State of the friction for the contact law, the travel counted from the element's start."""
         grip, lean = touch.grip, self.lean(touch.grip) if touch.grip else 0.0
         start = self.target.arcs[touch.element - self.target.first]
-        held = None if grip is None or grip.held is None else grip.held.arc - start
-        face, beam = self.pair.offset - self.pair.radius, self.target.beam
-        unit = beam.section.EI / beam.length**3
-        return Rub(lean, held, unit, face, self.pair.radius)
+        beam, radius = self.target.beam, self.pair.radius
+        rub = Rub(lean, None, beam.section.EI / beam.length**3, self.pair.offset - radius, radius)
+        if grip is None or grip.held is None:
+            return rub
+        held = grip.held
+        return rub._replace(held=held.arc - start, path=held.stretch, shear=held.shear, slope=held.direction)
 
     @property
     def slots(self) -> slice:

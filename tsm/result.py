@@ -58,7 +58,7 @@ class FrictionHistory:
     slip : ndarray of int, shape (s,)
         Sign of the slip rate, +1 towards the beam's end; 0 in stick and where the pair is open.
     dissipated : ndarray, shape (s,)
-        Energy dissipated since the start.
+        Energy dissipated since the start; nan of a path that `trace` followed, which may go back.
     """
 
     tangential: Array
@@ -283,7 +283,7 @@ def _friction(model: Model, steps: list[Step], k: int) -> FrictionHistory:
         grip = dict(grips(state)).get(k)
         here = traction(model, state, system, k) if grip else None
         force = (here.tangential, here.normal) if here else (0.0, 0.0)
-        rows.append((*force, grip.slip if grip else 0, step.spent[1 + k]))
+        rows.append((*force, grip.slip if grip else 0, step.spent[1 + k] if len(step.spent) else np.nan))
     tangential, normal, slip, dissipated = np.array(rows).reshape(-1, 4).T
     return FrictionHistory(
         tangential=tangential, normal=normal, slip=slip.astype(np.int64), dissipated=dissipated

@@ -6,7 +6,7 @@ from functools import partial
 
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
-from comparisons.errors import difference
+from comparisons.errors import difference, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.registry import COARSE
@@ -21,12 +21,15 @@ class Gate:
 
     Attributes
     ----------
+    scene : Scene
+        What is solved.
     response, reference : Response
         The run and what it is measured against.
     judgements : tuple of Judgement
         One for each bound, in the order asked for.
     """
 
+    scene: Scene
     response: Response
     reference: Response
     judgements: tuple[Judgement, ...]
@@ -40,6 +43,12 @@ class Gate:
     def held(self) -> bool:
         """Whether both solutions are complete and every bound holds."""
         return all(item.passed for item in self.judgements)
+
+    def place(self, quantity: str) -> str:
+        """Return the pair, support or beam, and the load parameter, with the largest error; empty without an error or an answer."""
+        if not (self.response.completed and self.reference.completed):
+            return ""
+        return worst_place(self.response, self.reference, self.scene, quantity)
 
     def junit(self) -> str:
         """Return the bounds as JUnit XML, one test case each."""
@@ -94,7 +103,9 @@ def gate(
         )
         for quantity, bound in bounds.items()
     )
-    return Gate(response=response, reference=reference, judgements=tuple(judge(one) for one in claims))
+    return Gate(
+        scene=scene, response=response, reference=reference, judgements=tuple(judge(one) for one in claims)
+    )
 
 
 def _reference(scene: Scene, against: str | None) -> Response:

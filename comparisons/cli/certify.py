@@ -98,6 +98,6 @@ def _row(item: "Judgement") -> str:
     text = f"at {item.load_parameter:.6g}: {item.verdict.name}"
     if item.distance is None:
         return f"{text}, {item.reason}"
-    apart = vars(item.distance)
+    apart = item.distance.sizes()
     sizes = ", ".join(f"{name.replace('_', ' ')} {size:.2g}" for name, size in apart.items())
     return f"{text}, off by: {sizes}; index {item.index}, residual {item.residual:.1g}"

@@ -68,7 +68,10 @@ def run(given: argparse.Namespace) -> int:
         write_text(file, found.junit())
     print(f"{scene.name}: {found.response.model} against {found.reference.model}")
     for item in found.bounds:
-        print(f"  {item.name:8s} {item.error:9.3g}  {'<=' if item.holds else '> '} {item.allowed:g}")
+        sign = "<=" if item.holds else "> "
+        print(
+            f"  {item.name:8s} {item.error:9.3g}  {sign} {item.allowed:<6g} {found.place(item.name)}".rstrip()
+        )
     status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
     if status != DONE or found.held:
         return status

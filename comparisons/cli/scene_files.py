@@ -5,6 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from comparisons.cli.options import ModelNames
 from comparisons.cli.outcome import DONE
 from comparisons.files import OutputError, writable_file, write_text
 from comparisons.scene import built_in_scenes, load_scene
@@ -26,9 +27,21 @@ def add_to(commands: "Commands") -> None:
     )
     new.set_defaults(run=run_new)
 
-    check = commands.add_parser("check", help="validate a scene file and draw it, without solving")
+    check = commands.add_parser(
+        "check", help="validate a scene file, ask all models whether they can state it, and draw it"
+    )
     check.add_argument("scene", metavar="FILE", help="a TOML file or a built-in scene")
     check.add_argument("--out", metavar="FILE", help="the picture, PNG or SVG (SCENE.png)")
+    check.add_argument(
+        "--with",
+        dest="others",
+        action="append",
+        default=[],
+        choices=ModelNames(),
+        metavar="MODEL",
+        help="a program file NAME.toml to ask as well, any number of them",
+    )
+    check.add_argument("--json", metavar="FILE", help="write the resolved scene, which programs read")
     check.set_defaults(run=run_check)
 
     schema = commands.add_parser("schema", help="print the JSON Schema of scene files, for editors")
@@ -59,10 +72,15 @@ def run_check(given: "argparse.Namespace") -> int:
     picture = writable_file(Path(given.out or f"{scene.name}.png"))
     if picture.suffix not in (".png", ".svg"):
         raise OutputError(f"{given.out}: must end in .png or .svg")
+    from comparisons.models.options import Options
+    from comparisons.models.outside.request import request
     from comparisons.show.sketch import draw, stated
 
-    for line in stated(scene):
+    for line in stated(scene, given.others):
         print(line)
+    if given.json is not None:
+        write_text(writable_file(Path(given.json)), request(scene, Options(), scene.times))
+        print(f"resolved scene: {given.json}")
     draw(scene, picture)
     print(f"drawn: {given.out or picture.name}")
     return DONE

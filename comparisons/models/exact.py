@@ -72,7 +72,7 @@ def solve_rod(scene: Scene, local: RodScene) -> Response:
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
         slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
     )
-    return _response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
+    return local_response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
 
 def elastica_scene(scene: Scene) -> RodScene:
@@ -86,6 +86,8 @@ def elastica_scene(scene: Scene) -> RodScene:
     local = to_rod(scene)
     if local.contact is None:
         raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
+    if local.contact.friction:
+        raise ModelError("the elastica has no friction here, the scene has some")
     if local.offset:
         raise ModelError(
             "the elastica has a point in contact on its axis only, the scene has a face or a round pin"
@@ -119,10 +121,10 @@ def solve_elastica(scene: Scene, _: Options, _watch: Watch = unwatched) -> Respo
             np.nan,
         ),
     )
-    return _response(ELASTICA.name, scene, local, states, unknowns=1, seconds=seconds)
+    return local_response(ELASTICA.name, scene, local, states, unknowns=1, seconds=seconds)
 
 
-def _response(
+def local_response(
     model: str, scene: Scene, local: RodScene, states: LocalStates, *, unknowns: int, seconds: float
 ) -> Response:
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""

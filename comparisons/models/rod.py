@@ -39,12 +39,14 @@ class Rod(Model):
         from comparisons.models.translate import to_rod
 
         del options
-        if any(spec.friction for spec in scene.contacts):
-            return solve_network(scene, self.name, watch)
         try:
             local = to_rod(scene)
         except ModelError:
             return solve_network(scene, self.name, watch)
+        if any(contact.friction for contact in scene.contacts):
+            from comparisons.models.rod_friction import solve_rod_with_friction
+
+            return solve_rod_with_friction(scene, local)
         return solve_rod(scene, local)
 
     def styles(self) -> dict[str, Style]:

@@ -1,7 +1,7 @@
 """Certificates: verdicts on an answer by comparison with the exact equilibrium near it."""
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
@@ -106,7 +106,7 @@ def _as_dict(item: Judgement) -> dict[str, Any]:
         "load_parameter": item.load_parameter,
         "verdict": item.verdict.name,
         "reason": item.reason,
-        "distance": None if item.distance is None else asdict(item.distance),
+        "distance": None if item.distance is None else item.distance.sizes(),
         "index": item.index,
         "residual": item.residual,
     }

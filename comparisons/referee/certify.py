@@ -146,9 +146,9 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
 
 
 def _certified_reason(states: Sequence[Judgement], steps: int) -> str:
-    name, size = max((item.distance.largest for item in states if item.distance), key=lambda item: item[1])
+    worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
     stable = "index 0" if all(item.index == 0 for item in states) else "stability not judged (friction)"
-    return f"{name} off by {size:.2g}, {stable}, admissible, at {len(states)} of {steps} load parameters"
+    return f"{worst.line()}, {stable}, admissible, at {len(states)} of {steps} load parameters"
 
 
 def _history(response: Response, scene: Scene) -> History | None:

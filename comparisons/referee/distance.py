@@ -1,7 +1,8 @@
 """Differences between an answer and the exact equilibrium near it."""
 
 import math
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
 A model computes an axial force from a stretch, and positions resolve a stretch to a few units in the last place.
 """
 
+COMPARED = ("force", "arc_position", "reaction", "tip", "shape")
+"""The differences that are held against the allowance, by their names; `place` has its own limit."""
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
@@ -43,6 +46,8 @@ class Distance:
     place : float
         Violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and from the
         prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis.
+    where : dict of str
+        The pair, supported end or beam that has the largest difference, by the names above; none where there is nothing to compare.
     """
 
     force: float
@@ -51,13 +56,26 @@ class Distance:
     tip: float
     shape: float
     place: float
+    where: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     @property
     def largest(self) -> tuple[str, float]:
         """Name and size of the largest difference without `place`, which has its own limit."""
-        compared = [item for item in fields(self) if item.name != "place"]
-        name = max(compared, key=lambda item: _size(getattr(self, item.name))).name
+        name = max(COMPARED, key=lambda name: _size(getattr(self, name)))
         return name.replace("_", " "), float(getattr(self, name))
+
+    def line(self) -> str:
+        """Return the largest difference in words, as ``force off by 0.2 (pin->strip)``."""
+        name, size = self.largest
+        return f"{name} off by {size:.2g}{self.at(name.replace(' ', '_'))}"
+
+    def at(self, name: str) -> str:
+        """Return where a difference is largest in brackets, as `` (pin->strip)``; nothing where there is nothing to compare."""
+        return f" ({self.where[name]})" if name in self.where else ""
+
+    def sizes(self) -> dict[str, float]:
+        """Return the differences by name."""
+        return {name: getattr(self, name) for name in (*COMPARED, "place")}
 
 
 def _size(value: float) -> float:
@@ -73,7 +91,7 @@ def distance(
     Forces and moments are relative to the largest at this load parameter, or to `largest` if that is larger.
     """
     size, moment = map(max, scales(scene, exact), largest)
-    force, arc = [0.0], [0.0]
+    found: dict[str, dict[str, float]] = {name: {} for name in COMPARED}
     largest_contact = max(
         [LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
     )
@@ -81,36 +99,31 @@ def distance(
     length = max(beam.length for beam in scene.beams)
     for pair, contact in exact.contacts.items():
         touched = next(item.beam for item in scene.contacts if item.pair == pair)
-        force.append(_beyond(float(np.hypot(*(contact.force - answer.forces[pair]))), largest_contact, last))
-        arc.append(abs(contact.arc_position - answer.arcs[pair]) / scene.beam(touched).length)
-    reaction = [0.0 if answer.reactions.keys() == exact.reactions.keys() else math.inf]
+        off = float(np.hypot(*(contact.force - answer.forces[pair])))
+        found["force"][pair] = _beyond(off, largest_contact, last)
+        apart = abs(contact.arc_position - answer.arcs[pair])
+        found["arc_position"][pair] = apart / scene.beam(touched).length
+    found["reaction"] = dict.fromkeys(answer.reactions.keys() - exact.reactions.keys(), math.inf)
     for end, held in exact.reactions.items():
-        off = held - np.array(answer.reactions.get(end, (math.nan,) * 3))
-        reaction += [
-            _beyond(float(np.hypot(*off[:2])), size, last),
-            _beyond(abs(float(off[2])), moment, last * length),
-        ]
-    tip, shape = [0.0], [0.0]
+        x, y, turn = held - np.array(answer.reactions.get(end, (math.nan,) * 3))
+        found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
+        found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last * length)
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        tip.append(float(np.hypot(*(there - answer.tips.get(beam.name, (math.inf,) * 2)))) / beam.length)
+        off = float(np.hypot(*(there - answer.tips.get(beam.name, (math.inf,) * 2))))
+        found["tip"][beam.name] = off / beam.length
         arcs, line = answer.axes[beam.name]
-        apart = exact.shape(beam.name, arcs).position - line
-        shape.append(float(np.hypot(*apart.T).max()) / beam.length)
-    return Distance(
-        force=_max(force), arc_position=_max(arc), reaction=_max(reaction), tip=_max(tip), shape=_max(shape),
-        place=_max([0.0, *_misplaced(scene, answer)]),
-    )  # fmt: skip
+        between = exact.shape(beam.name, arcs).position - line
+        found["shape"][beam.name] = float(np.hypot(*between.T).max()) / beam.length
+    found["place"] = _misplaced(scene, answer)
+    where = {name: max(sizes, key=lambda key: _size(sizes[key])) for name, sizes in found.items() if sizes}
+    sizes = {name: _size(found[name][where[name]]) if name in where else 0.0 for name in found}
+    return Distance(**sizes, where=where)
 
 
 def _beyond(off: float, size: float, last: float) -> float:
     """Relative difference `off / size`; zero if it is at most the round-off `last` and `UNRESOLVED` of the size."""
     return 0.0 if off <= min(last, UNRESOLVED * size) else _size(off / size)
-
-
-def _max(values: list[float]) -> float:
-    """Largest value, infinite if one is nan."""
-    return max(map(_size, values))
 
 
 def least_force(scene: Scene) -> float:
@@ -132,9 +145,9 @@ def scales(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     return size, max(size * length * LEAST, *moments) if considerable else size * length
 
 
-def _misplaced(scene: Scene, answer: AnswerState) -> list[float]:
-    """Violations of contact and support constraints by the answer's axes, over the beams' lengths."""
-    distances = []
+def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
+    """Violations of contact and support constraints by the answer's axes, over the beams' lengths, by pair and supported end."""
+    distances: dict[str, float] = {}
     for spec in scene.contacts:
         if spec.pair not in answer.arcs:
             continue
@@ -142,17 +155,17 @@ def _misplaced(scene: Scene, answer: AnswerState) -> list[float]:
         arcs, line = answer.axes[spec.beam]
         place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
         apart = float(np.hypot(*(place - node_place(scene, answer, spec.node))))
-        distances.append(max(0.0, abs(apart - scene.offset(spec)) - cut) / beam.length)
+        distances[spec.pair] = max(0.0, abs(apart - scene.offset(spec)) - cut) / beam.length
     for support in scene.all_supports:
         here = np.array(scene.place(support.node))
-        end = _end(answer, support.node) - here
-        for component in range(2):
-            motion = support.motion[component]
-            if motion is not None:
-                distances.append(
-                    abs(float(end[component]) - answer.load_parameter * motion)
-                    / scene.beam(support.beam).length
-                )
+        way = (_end(answer, support.node) - here).tolist()
+        off = [
+            abs(x - answer.load_parameter * motion) / scene.beam(support.beam).length
+            for x, motion in zip(way, support.motion[:2], strict=True)
+            if motion is not None
+        ]
+        if off:
+            distances[support.node] = max(map(_size, off))
     return distances
 
 

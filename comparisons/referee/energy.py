@@ -3,14 +3,25 @@
 import math
 from itertools import pairwise
 
-from numpy.polynomial.legendre import leggauss
+import numpy as np
+from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, Solution
+from comparisons.referee.friction import Grip
 from comparisons.referee.history import History, UnknownFrictionError
 from comparisons.referee.march import rates, reach, slip_rate
 from comparisons.referee.state import Equilibrium, touching
 
-_POINTS, _WEIGHTS = leggauss(5)
+Array = NDArray[np.float64]
+
+_POINTS, _WEIGHTS = leggauss(6)
+_LEGENDRE = np.linalg.inv(legvander(_POINTS, len(_POINTS) - 1))
+"""From values at the Gauss points to the coefficients of Legendre's polynomials."""
+_SMOOTH = 1e-5
+"""Largest sum of the last two coefficients over the first; the error of the integral is about its square."""
+_DEPTH = 8
+"""Number of times that an interval is halved at most."""
 _LEAST = 1e-12
 """Smallest interval of load parameters that is integrated."""
 
@@ -26,7 +37,7 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     corners = [t for pin in history.scene.pins for t in pin.corners if begin < t < end]
     try:
         cuts = dict.fromkeys([begin, *corners]) | _cuts(history, k) | {end: exact.solution}
-        spent, there = dict.fromkeys(pairs, 0.0), exact.solution
+        spent, there = dict.fromkeys(pairs, 0.0), None
         for first, last in reversed(list(pairwise(sorted(cuts)))):
             there = cuts[last] or there
             if last - first > _LEAST:
@@ -51,24 +62,45 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
 
 
 def _between(
-    history: History, first: float, last: float, there: Solution
-) -> tuple[dict[str, float], Solution]:
-    """Dissipation between two load parameters without a change, from the equilibrium `there` at the last one; and one at the first."""
-    grips = history.around((first + last) / 2.0)
+    history: History, first: float, last: float, there: Solution | None
+) -> tuple[dict[str, float], Solution | None]:
+    """Dissipation between two load parameters without a change, and the equilibrium nearest to the first one.
+
+    `there` is an equilibrium at the last one, in any state, or None. Where the integrand is not smooth the interval is halved.
+    """
+    middle = (first + last) / 2.0
+    grips, closed = history.around(middle), history.closed(middle)
+    if not any(grip.slip for grip in grips.values()):
+        return {}, None
+    if there is None or closed != {touch.spec.pair for touch in there.layout.touches}:
+        there = history.near(middle, closed, grips)
     spent: dict[str, float] = {}
-    closed = history.closed((first + last) / 2.0)
-    if closed != {touch.spec.pair for touch in there.layout.touches}:
-        raise UnknownFrictionError(f"the contacts change at load parameter {last:.6g}")
-    for part, weight in zip(_POINTS[::-1], _WEIGHTS[::-1], strict=True):
-        t = (first + last) / 2.0 + part * (last - first) / 2.0
-        there = reach(history.scene, there, float(t), grips)
+    spans = [(first, last, _DEPTH)]
+    while spans:
+        low, high, depth = spans.pop()
+        powers, there = _powers(history, low, high, there, grips)
+        terms = np.abs([_LEGENDRE @ values for values in powers.values()])
+        if depth and np.any(terms[:, -2:].sum(axis=1) > _SMOOTH * terms[:, 0]):
+            spans += [(low, (low + high) / 2.0, depth - 1), ((low + high) / 2.0, high, depth - 1)]
+            continue
+        for pair, values in powers.items():
+            spent[pair] = spent.get(pair, 0.0) + float(_WEIGHTS @ values) * (high - low) / 2.0
+    return spent, there
+
+
+def _powers(
+    history: History, low: float, high: float, there: Solution, grips: dict[str, Grip]
+) -> tuple[dict[str, Array], Solution]:
+    """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
+    powers: dict[str, Array] = {}
+    for k in reversed(range(len(_POINTS))):
+        t = float((low + high) / 2.0 + _POINTS[k] * (high - low) / 2.0)
+        there = reach(history.scene, there, t, grips)
         if there.status is not SearchStatus.FOUND:
             raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
         rate = rates(history.scene, there)
         for touch in there.layout.touches:
-            if touch.grip is None or not touch.grip.slip:
-                continue
-            power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
-            energy = weight * (last - first) / 2.0 * power
-            spent[touch.spec.pair] = spent.get(touch.spec.pair, 0.0) + float(energy)
-    return spent, there
+            if touch.grip is not None and touch.grip.slip:
+                power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
+                powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
+    return powers, there

@@ -151,7 +151,7 @@ class History:
         phase = self.phases[spec.pair][number]
         around = self._around(spec, phase.begin)
         state = {**around, spec.pair: own} if spec.friction else around
-        now = self._near(spec, number, state)
+        now = self.near(phase.begin, self.closed(phase.begin) | {spec.pair}, state)
 
         def margin(t: float) -> float:
             nonlocal now
@@ -185,11 +185,16 @@ class History:
                 held[pair] = self._grip(other, number)
         return held
 
-    def _near(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
-        """Return an equilibrium in a given state, near the beginning of a phase."""
-        phase, times = self.phases[spec.pair][number], self.response.load_parameter
-        closed = self.closed(phase.begin) | {spec.pair}
-        after = int(np.searchsorted(times, phase.begin))
+    def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
+        """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If none is found.
+        """
+        times = self.response.load_parameter
+        after = int(np.searchsorted(times, t))
         for k in (after - 1, after, after + 1):
             if not 0 <= k < len(times):
                 continue
@@ -200,7 +205,7 @@ class History:
                 if found.status is SearchStatus.FOUND:
                     return found
         raise UnknownFrictionError(
-            f"no load parameter is near the one at which {spec.pair} {_does(phase)}, {phase.begin:.6g}, in the same contacts"
+            f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
         )
 
 

@@ -92,11 +92,11 @@ def _verdict(
     allowed: float,
 ) -> tuple[Verdict, str]:
     """Return the verdict on an answer near an exact equilibrium, and its reason."""
-    name, size = differences.largest
     if not differences.place <= PLACE:
-        return Verdict.NOT_AN_EQUILIBRIUM, f"supports and contacts are off by {differences.place:.2g} L"
-    if not size <= allowed:
-        return Verdict.NOT_AN_EQUILIBRIUM, f"{name} off by {size:.2g}, allowed {allowed:.2g}"
+        words = f"supports and contacts are off by {differences.place:.2g} L{differences.at('place')}"
+        return Verdict.NOT_AN_EQUILIBRIUM, words
+    if not differences.largest[1] <= allowed:
+        return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line()}, allowed {allowed:.2g}"
     imbalance = "" if response.continuum or response.outside else unbalanced(scene, answer)
     if imbalance:
         return Verdict.NOT_AN_EQUILIBRIUM, imbalance
@@ -106,7 +106,7 @@ def _verdict(
     if exact.index > 0:
         ways = "one direction lowers" if exact.index == 1 else f"{exact.index} directions lower"
         return Verdict.UNSTABLE, f"index {exact.index}: {ways} the energy"
-    return Verdict.CERTIFIED, f"{name} off by {size:.2g}"
+    return Verdict.CERTIFIED, differences.line()
 
 
 def _not_finite(response: Response, scene: Scene, k: int) -> Iterator[str]:

@@ -1,6 +1,8 @@
 """What a model states about a scene, as a record and as JSON."""
 
 from comparisons.response.record import (
+    CONTACT_STATES,
+    SLIPS,
     Array,
     ContactEvent,
     ContactHistory,
@@ -13,6 +15,8 @@ from comparisons.response.record import (
 )
 
 __all__ = [
+    "CONTACT_STATES",
+    "SLIPS",
     "Array",
     "ContactEvent",
     "ContactHistory",

@@ -104,7 +104,7 @@ def _given(data: dict[str, Any], key: str, shape: tuple[int]) -> NDArray[np.int6
         return None
     found = _numbers(data, key, shape)
     if not np.all(np.abs(found) <= LARGEST_WHOLE):
-        raise FieldError(key, MISSING, "must be a list of whole numbers")
+        raise FieldError(key, data[key], "must be a list of whole numbers")
     return found.astype(np.int64)
 
 
@@ -120,7 +120,7 @@ def _list(data: dict[str, Any], key: str) -> list[Any]:
     """Return a list, an empty one where the file does not have it."""
     found = data.get(key, [])
     if not isinstance(found, list):
-        raise FieldError(key, MISSING, "must be a list")
+        raise FieldError(key, found, "must be a list")
     return found
 
 
@@ -134,45 +134,63 @@ def _critical(data: Any) -> CriticalPoint:
     )
 
 
-def _table(data: dict[str, Any], key: str) -> dict[str, Any]:
-    found = data.get(key)
+def _table(data: dict[str, Any], key: str, prefix: str = "") -> dict[str, Any]:
+    found = data.get(key, MISSING)
     if not isinstance(found, dict):
-        raise FieldError(key or "file", MISSING, "must be a table, as `crossval solve --json` writes it")
+        rule = "must be a table, as `crossval solve --json` writes it"
+        raise FieldError(prefix + key or "file", found, rule)
     return found
 
 
 def _tables(data: dict[str, Any], key: str) -> dict[str, dict[str, Any]]:
     found = _table(data, key)
-    return {name: _table(found, name) for name in found}
+    return {name: _table(found, name, f"{key}.") for name in found}
 
 
 def _text(data: dict[str, Any], key: str) -> str:
-    found = data.get(key)
+    found = data.get(key, MISSING)
     if not isinstance(found, str):
-        raise FieldError(key, MISSING, "must be a name")
+        raise FieldError(key, found, "must be a name")
     return found
 
 
 def _numbers(data: dict[str, Any], key: str, shape: tuple[int | None, ...], prefix: str = "") -> Array:
     """Return a list of numbers, null as nan."""
+    value = data.get(key, MISSING)
     try:
-        found = np.array(data.get(key), dtype=np.float64)
+        found = np.array(None if value is MISSING else value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        found = np.array(0.0)
+        raise FieldError(prefix + key, value, _rule(shape)) from None
     if found.size == 0 and 0 in shape:
         return np.zeros([size or 0 for size in shape])
     if found.ndim != len(shape) or any(
         size not in (None, own) for size, own in zip(shape, found.shape, strict=True)
     ):
-        wanted = " x ".join("any number" if size is None else str(size) for size in shape)
-        raise FieldError(prefix + key, MISSING, f"must be a list of {wanted} numbers")
+        has = f", has {_sizes(found.shape)}" if found.ndim else ""
+        raise FieldError(prefix + key, value, _rule(shape) + has)
     return found
+
+
+def _rule(shape: tuple[int | None, ...]) -> str:
+    """Return the rule of a shape in words, as ``must be a list of 5 x 2 numbers, x and y for each load parameter``."""
+    if not shape:
+        return "must be a number"
+    if shape == (None,):
+        return "must be a list of numbers"
+    each = ("one ", "x and y ", "x and y of each point ")[len(shape) - 1]
+    legend = "" if shape[0] is None else f", {each}for each load parameter"
+    return f"must be a list of {_sizes(shape)} numbers{legend}"
+
+
+def _sizes(shape: tuple[int | None, ...]) -> str:
+    return " x ".join("any number" if size is None else str(size) for size in shape)
 
 
 def _axis(data: dict[str, Any], prefix: str, steps: int) -> tuple[Array, Array]:
     arc = _numbers(data, "arc_length", (None,), prefix)
     if steps and (len(arc) < 2 or not np.all(np.diff(arc) > 0.0)):
-        raise FieldError(f"{prefix}arc_length", MISSING, "must be two or more increasing numbers")
+        rule = "must be two or more increasing numbers"
+        raise FieldError(f"{prefix}arc_length", data["arc_length"], rule)
     return arc, _numbers(data, "position", (steps, len(arc), 2), prefix)
 
 
@@ -201,7 +219,11 @@ def _friction(data: Any, prefix: str, steps: int) -> FrictionHistory:
 
 
 def _support(data: dict[str, Any], prefix: str, steps: int) -> SupportHistory:
-    other = _support(_table(data, "other_end"), f"{prefix}other_end.", steps) if "other_end" in data else None
+    other = (
+        _support(_table(data, "other_end", prefix), f"{prefix}other_end.", steps)
+        if "other_end" in data
+        else None
+    )
     force, moment = _numbers(data, "force", (steps, 2), prefix), _numbers(data, "moment", (steps,), prefix)
     return SupportHistory(force=force, moment=moment, other_end=other)
 

@@ -13,6 +13,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+OPEN = "open"
+SLIPS = {0: "sticks", 1: "slips to the end", -1: "slips to the start"}
+"""The states of a closed contact with friction, by the sign of the slip."""
+CONTACT_STATES = {OPEN: "#BBBBBB", SLIPS[0]: "#0072B2", SLIPS[1]: "#E69F00", SLIPS[-1]: "#CC79A7"}
+"""The states of a contact with friction, and the colour of each in pictures."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactHistory:
     """One contact pair over the load parameters.
@@ -62,6 +69,10 @@ class FrictionHistory:
     normal: Array
     slip: NDArray[np.int64]
     dissipated: Array
+
+    def states(self, force: Array) -> list[str]:
+        """Return the state of the contact at every load parameter, a key of `CONTACT_STATES`; `force` (s,) is the contact force."""
+        return [SLIPS[int(slip)] if size else OPEN for slip, size in zip(self.slip, force, strict=True)]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

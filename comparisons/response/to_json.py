@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 
 from comparisons.output import plain
-from comparisons.response import ContactEvent, Response, SupportHistory
+from comparisons.response import (
+    ContactEvent,
+    ContactHistory,
+    FrictionHistory,
+    Response,
+    SupportHistory,
+)
 from comparisons.response.axis import sampled_axes
 from comparisons.version import versions
 
@@ -93,6 +99,8 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
             rows.append((f"{pair} force", f"{contact.force[-1]:.9g} {force}"))
             if np.isfinite(contact.arc_position[-1]):
                 rows.append((f"{pair} arc position", f"{contact.arc_position[-1]:.9g} {length}"))
+            if contact.friction is not None:
+                rows += _friction_rows(pair, contact, contact.friction, (force, length))
         for beam, support in response.supports.items():
             rows.append((f"{beam} support moment", f"{support.moment[-1]:.9g} {force} {length}"))
             if support.other_end is not None:
@@ -117,8 +125,22 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
     )
 
 
+def _friction_rows(
+    pair: str, contact: ContactHistory, friction: FrictionHistory, units: tuple[str, str]
+) -> list[tuple[str, str]]:
+    """Return the last state of a contact with friction."""
+    force, length = units
+    state = friction.states(contact.force)[-1]
+    return [
+        (f"{pair} friction", f"{friction.tangential[-1]:.9g} {force} along the beam, {state}"),
+        (f"{pair} dissipated", f"{friction.dissipated[-1]:.9g} {force} {length}"),
+    ]
+
+
 def stability(response: Response) -> str:
     """Say in a few words where a response is stable."""
+    if any(contact.friction is not None for contact in response.contacts.values()):
+        return "not judged, a contact has friction"
     if response.index is None:
         return "not stated by this model"
     unstable, unknown = response.index > 0, response.index < 0

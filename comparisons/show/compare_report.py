@@ -11,6 +11,7 @@ from comparisons.show.pages import (
     motion_section,
     picture,
     provenance,
+    states_section,
     table,
     tracks,
     write_page,
@@ -45,6 +46,9 @@ def write_comparison_page(
     """
     lead = f"One scene, {len(rows)} runs, each against the {reference} over {scene.load_parameters} load parameters."
     sections = [_errors(rows, reference), _motion(scene, rows, series, folder, reference)]
+    states = states_section({row.label: row.response for row in rows})
+    if states is not None:
+        sections.append(states)
     if budget is not None:
         sections.append(_budget(budget, folder))
     if folder / "side-by-side.png" in files:

@@ -44,7 +44,7 @@ def body_grid(response: Response, k: int) -> Grid:
 def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     """Return the pins as points: displacement, contact force on the beam, and gap (nan without contact).
 
-    A model that states no force vectors has one pair, whose force is the one that the support balances.
+    With friction there are `tangential`, `normal`, `slip` and `dissipated` of `FrictionHistory` too, nan at a pin without. A model that states no force vectors has one pair, whose force is the one that the support balances.
     """
     t = float(response.load_parameter[k])
     pins = [(contact, scene.pin(contact.node)) for contact in scene.contacts if "." not in contact.node]
@@ -60,6 +60,10 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
         "contact_force": force,
         "gap": np.array([response.contacts[contact.pair].gap[k] for contact, _ in pins]),
     }
+    rubbed = [response.contacts[contact.pair].friction for contact, _ in pins]
+    if any(rubbed):
+        for name in ("tangential", "normal", "slip", "dissipated"):
+            data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
     return Grid(points=start, cells={"vertex": np.arange(len(pins)).reshape(-1, 1)}, point_data=data)
 
 

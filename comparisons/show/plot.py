@@ -152,13 +152,13 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
         )
         bodies.set_clim(*scale.stress)
         axes.add_collection(bodies)
-        axes.plot(*panel.pins.T, linestyle="none", marker="o", color=palette.PIN, markersize=6)
-        for pin, force in zip(panel.pins, panel.forces, strict=True):
-            if force.any():
-                tail = pin - scale.force * force
-                axes.annotate(
-                    "", pin, tail, arrowprops={"arrowstyle": "-|>", "color": palette.PIN, "linewidth": 2}
-                )
+        for colour, numbers in panel.pin_colours().items():
+            axes.plot(*panel.pins[numbers].T, linestyle="none", marker="o", color=colour, markersize=6)
+            for pin, force in zip(panel.pins[numbers], panel.forces[numbers], strict=True):
+                if force.any():
+                    tail = pin - scale.force * force
+                    arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 2}
+                    axes.annotate("", pin, tail, arrowprops=arrow)
         axes.set(title=panel.title, aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
     fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
     save(fig, path)

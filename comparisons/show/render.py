@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from comparisons.files import replacing
-from comparisons.show import palette
 from comparisons.show.plot import plot_panels
 from comparisons.show.stress import Panel, Scale
 
@@ -35,7 +35,7 @@ BAR = {
     "title_font_size": 18,
     "label_font_size": 16,
 }
-ARRAYS = ("points", "quads", "stress", "pins", "forces")
+ARRAYS = ("points", "quads", "stress", "pins", "forces", "slip")
 
 
 def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | None:
@@ -154,7 +154,6 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
     """Put the panels into the plotter, in place of what was there."""
     import pyvista
 
-    height = 0.01 * scale.half
     for i, panel in enumerate(panels):
         plotter.subplot(0, i)
         faces = np.insert(panel.quads, 0, 4, axis=1)
@@ -170,30 +169,39 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             scalar_bar_args=bar,
             render=False,
         )
-        marks = pyvista.MultiBlock()
-        for pin, force in zip(panel.pins, panel.forces, strict=True):
-            marks.append(pyvista.Sphere(radius=0.014 * scale.half, center=(*pin, 4.0 * height)))
-            length = float(np.hypot(*force)) * scale.force
-            if length > 0.04 * scale.half:
-                direction = force / np.hypot(*force)
-                tail = pin - length * direction
-                marks.append(
-                    pyvista.Arrow(
-                        start=(*tail, 2.0 * height), direction=(*direction, 0.0), scale=length,
-                        tip_length=0.25, tip_radius=0.08, shaft_radius=0.025,
-                    )
-                )  # fmt: skip
-        if len(marks):
-            plotter.add_mesh(
-                marks.combine().extract_surface(algorithm=None),
-                name="pins",
-                color=palette.PIN,
-                lighting=False,
-                render=False,
-            )
+        for colour, numbers in panel.pin_colours().items():
+            plotter.remove_actor(f"pins {colour}", render=False)
+            if len(numbers):
+                plotter.add_mesh(
+                    _pins(panel, numbers, scale),
+                    name=f"pins {colour}",
+                    color=colour,
+                    lighting=False,
+                    render=False,
+                )
         plotter.add_text(
             panel.title, name="title", position="upper_edge", color="black", font_size=12, render=False
         )
+
+
+def _pins(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
+    """Return the surface of some pins, with their forces as arrows."""
+    import pyvista
+
+    height, marks = 0.01 * scale.half, pyvista.MultiBlock()
+    for pin, force in zip(panel.pins[numbers], panel.forces[numbers], strict=True):
+        marks.append(pyvista.Sphere(radius=0.014 * scale.half, center=(*pin, 4.0 * height)))
+        length = float(np.hypot(*force)) * scale.force
+        if length > 0.04 * scale.half:
+            direction = force / np.hypot(*force)
+            tail = pin - length * direction
+            marks.append(
+                pyvista.Arrow(
+                    start=(*tail, 2.0 * height), direction=(*direction, 0.0), scale=length,
+                    tip_length=0.25, tip_radius=0.08, shaft_radius=0.025,
+                )
+            )  # fmt: skip
+    return marks.combine().extract_surface(algorithm=None)
 
 
 def _draw_files(frames: list[list[Panel]], scale: Scale, folder: Path) -> None:

@@ -1,12 +1,14 @@
 """A scene before it is solved: which models can state it, and a drawing of beams, supports, loads and pin paths."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from comparisons.models import MODELS
+from comparisons.models import MODELS, find
+from comparisons.models.options import ModelError
+from comparisons.models.outside.programs import ADAPTERS, offered
 from comparisons.scene import BeamSpec, Scene
 from comparisons.show import palette
 from comparisons.show.plot import figure, save
@@ -16,12 +18,25 @@ MARKS = {3: "s", 2: "^", 1: "o"}
 """Marker of a support by the number of components that it holds."""
 
 
-def stated(scene: Scene) -> Iterator[str]:
-    """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not."""
+def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
+    """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    others : sequence of str
+        Program files that are asked besides the models, adapters and entry points.
+    """
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     yield f"{scene.name}: {', '.join(parts)}, {scene.load_parameters} load parameters, in {scene.units}"
-    for model in MODELS.values():
+    for name in dict.fromkeys((*MODELS, *ADAPTERS, *offered(), *others)):
+        try:
+            model = find(name)
+        except ModelError as error:
+            yield f"  {name}: no, {error}"
+            continue
         refused = model.refusal(scene)
         yield f"  {model.name}: yes" if refused is None else f"  {model.name}: no, {refused}"
 

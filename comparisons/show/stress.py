@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import Array, Response
+from comparisons.response import CONTACT_STATES, SLIPS, Array, Response
 from comparisons.scene import BeamSpec, Scene
+from comparisons.show.palette import PIN
 
 LAYERS = 8
 """Layers over the height of a beam's picture."""
@@ -33,6 +34,8 @@ class Panel:
         Positions of the pins.
     forces : ndarray, shape (p, 2)
         What they exert on the beams, drawn as arrows; zero where none are to be drawn.
+    slip : ndarray, shape (p,)
+        Sign of the slip of a pin with friction, 0 in stick; nan without friction or contact.
     """
 
     title: str
@@ -41,6 +44,14 @@ class Panel:
     stress: Array
     pins: Array
     forces: Array
+    slip: Array
+
+    def pin_colours(self) -> dict[str, NDArray[np.int64]]:
+        """Return the numbers of the pins by the colour in which they are drawn: of stick and slip with friction."""
+        colours = [PIN if np.isnan(slip) else CONTACT_STATES[SLIPS[int(slip)]] for slip in self.slip]
+        return {
+            colour: np.flatnonzero(np.array(colours) == colour) for colour in (PIN, *CONTACT_STATES.values())
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,4 +168,5 @@ def _panel(
         stress=np.concatenate([stress for _, _, stress in bodies]),
         pins=np.array(pins).reshape(-1, 2),
         forces=np.zeros((len(pins), 2)),
+        slip=np.full(len(pins), np.nan),
     )

@@ -72,11 +72,11 @@ def test_a_forged_file_is_a_wrong_answer(stored: Path, capsys: pytest.CaptureFix
         (lambda data: data.pop("axes"), "axes = (missing): must be a table"),
         (
             lambda data: data["contacts"][PAIR].update(force=[1.0]),
-            "force = (missing): must be a list of 50 numbers",
+            "force = [1.0]: must be a list of 50 numbers, one for each load parameter, has 1",
         ),
         (
             lambda data: data.update(load_parameter="x"),
-            "load_parameter = (missing): must be a list of any number numbers",
+            'load_parameter = "x": must be a list of numbers',
         ),
         (
             lambda data: data["axes"]["cantilever"]["arc_length"].reverse(),

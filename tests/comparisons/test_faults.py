@@ -14,6 +14,7 @@ from pathlib import Path
 import meshio
 import pytest
 
+from comparisons.scene import built_in_scenes
 from comparisons.show.render import INSTEAD
 
 HERE = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -100,12 +101,13 @@ def check_whole(folder: Path) -> int:
 
 
 def check_interrupts(folder: Path, times: int) -> None:
+    """Interrupt and kill in turn, at random points of as many equal parts of the time of some writes."""
     draw = random.Random(times)  # noqa: S311 - no secret
     for number in range(times):
-        how = draw.choice([signal.SIGINT, signal.SIGKILL])
+        how = (signal.SIGINT, signal.SIGKILL)[number % 2]
         place = folder / str(number)
         place.mkdir()
-        interrupted_while_writing(place, how, draw.uniform(0.0, 0.3))
+        interrupted_while_writing(place, how, 0.3 * (number + draw.random()) / times)
         assert check_whole(place) > 0
         if how is signal.SIGINT:
             assert not list(place.glob(".*"))
@@ -117,7 +119,7 @@ def test_files_are_whole_or_absent_when_interrupted(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_files_are_whole_or_absent_whenever_interrupted(tmp_path: Path) -> None:
-    check_interrupts(tmp_path, 40)
+    check_interrupts(tmp_path, 16)
 
 
 def test_interrupt_is_one_line(tmp_path: Path) -> None:
@@ -154,14 +156,18 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_two_comparisons_into_one_folder(tmp_path: Path) -> None:
-    children = [begun(COMMAND, "compare", "ks-cantilever", "--out", str(tmp_path)) for _ in range(2)]
+    scene, out = tmp_path / "short.toml", tmp_path / "out"
+    scene.write_text(
+        built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 5")
+    )
+    children = [begun(COMMAND, "compare", str(scene), "--out", str(out)) for _ in range(2)]
     for child in children:
         err = child.communicate(timeout=600)[1]
         assert "Traceback" not in err
         assert child.returncode == 0, err
-    summary = json.loads((tmp_path / "summary.json").read_text())
-    assert all((tmp_path / name).is_file() for name in summary["files"])
-    assert not list(tmp_path.rglob(".*"))
+    summary = json.loads((out / "summary.json").read_text())
+    assert all((out / name).is_file() for name in summary["files"])
+    assert not list(out.rglob(".*"))
 
 
 FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"

@@ -1,5 +1,6 @@
 """``crossval gate``: bounds hold or break, on the screen, in the exit status and as JUnit XML."""
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -40,6 +41,14 @@ def test_the_error_is_that_of_the_resolution(scene: str) -> None:
     assert main(["gate", scene, "--max-error", "force=2e-5", "--elements", "10"]) == 0
     assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "10"]) == 1
     assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "20"]) == 0
+
+
+def test_a_bound_names_where_the_error_is_largest(capsys: Output) -> None:
+    bounds = ["--max-error", "force=1e-12", "--max-error", "tip=1e-12"]
+    assert main(["gate", "double-beam", "--elements", "4", *bounds]) == 1
+    force, tip = capsys.readouterr().out.splitlines()[1:]
+    assert re.search(r" >  1e-12 +upper\.end->lower at load parameter \d", force)
+    assert re.search(r" >  1e-12 +(upper|lower) at load parameter \d", tip)
 
 
 def test_junit(scene: str, tmp_path: Path) -> None:

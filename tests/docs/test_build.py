@@ -68,6 +68,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_site_is_built_strictly(site: Path) -> None:
     pages = sorted(site.rglob("*.html"))
     assert len(pages) > 25
@@ -87,6 +88,7 @@ def test_the_site_is_built_strictly(site: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("package", [tsm, fem_reference], ids=lambda package: package.__name__)
 def test_every_public_name_is_in_the_api(site: Path, package: ModuleType) -> None:
     page = (site / "api" / f"{package.__name__}.html").read_text(encoding="utf-8")
@@ -94,6 +96,7 @@ def test_every_public_name_is_in_the_api(site: Path, package: ModuleType) -> Non
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_every_command_and_option_is_listed(site: Path) -> None:
     page = (site / "reference" / "command-line.html").read_text(encoding="utf-8")
     [commands] = (a.choices for a in command_parser()._actions if isinstance(a, argparse._SubParsersAction))

@@ -162,7 +162,7 @@ def _off(scene: Scene, item: Judgement) -> float:
         default=0.0,
     )
     left_out = {"place"} if size > NOTHING * least_force(scene) else {"place", "force", "reaction"}
-    return max(value for name, value in vars(item.distance).items() if name not in left_out)
+    return max(value for name, value in item.distance.sizes().items() if name not in left_out)
 
 
 def least_force(scene: Scene) -> float:

@@ -35,13 +35,19 @@ class Rub(NamedTuple):
     lean : float
         ``sigma mu side`` in slip, with the sign sigma of the slip rate; 0 in stick.
     held : float or None
-        Travel at which the stick began, from the element's start; None in slip.
+        Arc position at which the stick began, from the element's start; None in slip.
     unit : float
         Stiffness ``EI/L^2/L`` that makes the row of a stick a force.
     face : float
         Distance of the face, on which friction acts, from the axis; ``offset - radius``.
     radius : float
         Radius of a round pin, which does not turn.
+    path, shear, slope : float
+        Where the stick began: length of the face per arc position, shear angle and slope angle, see `Friction.hold`. Without face and
+        radius they do not matter.
+    tilt : tuple of 2 floats
+        Change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their forces. Only `Friction.split`
+        and `Friction.slip` take it; `Friction.crossing` has its part in the rows.
     """
 
     lean: float
@@ -49,6 +55,10 @@ class Rub(NamedTuple):
     unit: float
     face: float = 0.0
     radius: float = 0.0
+    path: float = 1.0
+    shear: float = 0.0
+    slope: float = 0.0
+    tilt: tuple[Any, Any] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,21 +124,24 @@ class Friction:
     response : callable
         ``(p, x, lever, xi, force, surface, rub) -> (residual, tangent)`` as `ContactLaw.response`, without a symmetric tangent.
     split : callable
-        ``(p, x, xi, force, surface, rub) -> (F_t, F_n, travel)``: forces along the beam and across it, and the travel, which is
-        constant in stick.
-    direction : callable
-        ``(p, x, xi, force, surface, rub) -> number``: angle of the mean tangent from the x axis.
+        ``(p, x, xi, force, surface, rub) -> (F_t, F_n, s)``: forces along the beam and across it, and the arc position from the
+        element's start.
     slip : callable
         ``(p, x, xi, force, surface, rub) -> form (11,)``: slip rate as a linear form, ``F_t`` times which is the dissipated power.
+    hold : callable
+        ``(p, x, xi, force, surface, rub) -> Rub``: state of a stick that begins here.
     energy : callable
         As `ContactLaw.energy`, of the arguments of `response`.
     crossing : callable
         ``(p, (xi, eta), force, force, (rub, rub)) -> (residual, tangent)`` as `Coupling.crossing`.
+    tilt : callable
+        ``(p, xi, eta) -> number``: change of the mean tangent at xi by a unit force at eta.
     """
 
     response: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], tuple[Array, Array]]
     split: Callable[[Properties, Any, Any, Any, Surface, Rub], tuple[Any, Any, Any]]
-    direction: Callable[[Properties, Any, Any, Any, Surface, Rub], Any]
     slip: Callable[[Properties, Any, Any, Any, Surface, Rub], Array]
+    hold: Callable[[Properties, Any, Any, Any, Surface, Rub], Rub]
     energy: Callable[[Properties, Any, Any, Any, Any, Surface, Rub], float]
     crossing: Callable[[Properties, tuple[Any, Any], Any, Any, tuple[Rub, Rub]], tuple[Array, Array]]
+    tilt: Callable[[Properties, Any, Any], Any]

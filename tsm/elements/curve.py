@@ -38,6 +38,7 @@ class Curve:
         theta_i, theta_j = unwind(x[2] - turn), unwind(x[5] - turn)
         self.near = (1 + p.Phi / 2) / (1 + p.Phi)
         self.far = -(p.Phi / 2) / (1 + p.Phi)
+        self.shear_strain = self.far * (theta_i + theta_j)
         self.tan_i = tangent_of(self.near * theta_i + self.far * theta_j)
         self.tan_j = tangent_of(self.far * theta_i + self.near * theta_j)
 
@@ -97,6 +98,13 @@ class Curve:
         hessian[5] -= turn_xx
         gradient = (scale * g[0] + turn_x, scale * g[1] + turn_y, scale * g[2], scale * g[3], scale * g[4])
         return Jet(angle, gradient, tuple(hessian))
+
+    def shear_strain_jet(self) -> Jet:
+        """Shear strain of the element with its derivatives."""
+        far, (gx, gy, gxx, gxy) = self.far, self._turn()
+        hessian = [0.0] * 15
+        hessian[0], hessian[1], hessian[5] = -2 * far * gxx, -2 * far * gxy, 2 * far * gxx
+        return Jet(self.shear_strain, (-2 * far * gx, -2 * far * gy, far, far, 0.0), tuple(hessian))
 
     def _turn(self) -> tuple[Any, Any, Any, Any]:
         """Derivatives of the chord's angle: x, y, xx = -yy, xy."""

@@ -34,20 +34,18 @@ from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 
 # element displacements (6), node (2), force (2), xi  ->  dx, dy, theta_i, theta_j, F_x, F_y, xi
-_REDUCE = np.zeros((7, 11))
-_REDUCE[0, [0, 3]] = _REDUCE[1, [1, 4]] = -1, 1
-_REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
+REDUCE = np.zeros((7, 11))
+REDUCE[0, [0, 3]] = REDUCE[1, [1, 4]] = -1, 1
+REDUCE[[2, 3, 4, 5, 6], [2, 5, 8, 9, 10]] = 1
+"""The seven quantities of a contact from the eleven unknowns."""
 # the same spread over the eleven
 _SPREAD = np.array(
-    [
-        (np.outer(_REDUCE[a], _REDUCE[b]) + (a != b) * np.outer(_REDUCE[b], _REDUCE[a])).ravel()
-        for a, b in UPPER
-    ]
+    [(np.outer(REDUCE[a], REDUCE[b]) + (a != b) * np.outer(REDUCE[b], REDUCE[a])).ravel() for a, b in UPPER]
 )
-# second derivatives of F . (x_i - x_c)
-_LEVER = np.zeros((11, 11))
-_LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
-_LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
+LEVER = np.zeros((11, 11))
+LEVER[[0, 8, 1, 9], [8, 0, 9, 1]] = 1
+LEVER[[6, 8, 7, 9], [8, 6, 9, 7]] = -1
+"""Second derivatives of ``F . (x_i - x_c)``."""
 
 
 def response(
@@ -80,7 +78,7 @@ def response(
         Its derivative, symmetric.
     """
     gradient, hessian = jet(p, x, xi, force, side, offset)
-    full = -(gradient @ _REDUCE)
+    full = -(gradient @ REDUCE)
     Fx, Fy = force
     full[0] -= Fx
     full[1] -= Fy
@@ -88,7 +86,7 @@ def response(
     full[7] += Fy
     full[8] -= lever[0]
     full[9] -= lever[1]
-    tangent = -(hessian @ _SPREAD).reshape(11, 11) - _LEVER
+    tangent = -(hessian @ _SPREAD).reshape(11, 11) - LEVER
     full[10] /= p.l0
     tangent[10] /= p.l0
     tangent[:, 10] /= p.l0

@@ -1,34 +1,90 @@
 """Coulomb friction in the contact law whose force and arc position are unknowns.
 
-Let T be the mean of the two tangents of the deflected centre line at the contact, per undeformed length, n its left normal and F the
-force on the beam. The components of F are ::
+Friction acts at a face at the distance h from the axis. Its force F on the beam, with the components F_t along the mean tangent T of the
+loaded centre line and ``F_n = side F.n >= 0`` across it, is on the axis the force F and the couple ``M = side h F_t``, which acts on the
+section. The element's response to both at xi, its ends held, is ::
 
-    F_t = F . T/|T|,    F_n = side (T_x F_y - T_y F_x)/|T| >= 0
+    r     = p(xi) + C F_n n + A F_t t + K M n           point of the axis
+    theta = phi(xi) - gamma + K F_n + R M               rotation of the section
+    E     = (C F_n^2 + A F_t^2 + R M^2)/2 + K F_n M     strain energy
 
-Friction exchanges the third row of the law, ``F . T = 0``:
+Here n and t are the normal and tangent of the unloaded curve p, which has the slope angle phi and the shear strain gamma; C is the
+compliance of `mixed_contact`, and with ``z = xi (1 - xi)`` ::
 
-- in slip for ``F_t = sigma mu F_n``, which is ``F' . T = 0`` with ``F' = (F_x - c F_y, F_y + c F_x)`` and the lean ``c = sigma mu side``;
-  sigma is the sign of the slip rate;
-- in stick for ``s = s*``, the arc position at which the stick began.
+    A = z l0/EA,    K = l0^2/(2 EI (1 + Phi)) z^2 (1 - 2 xi),    R = l0/(EI (1 + Phi)) z (1 + Phi - 3 z)
 
-The tangent is symmetric in neither.
+Without friction a force has no component along the beam, and ``C F`` is the same as ``C F_n n``. The rows are
+
+- the nodal loads ``F . dp/dx + M dtheta/dx + dE/dx``;
+- the node at ``r - side offset n(T)``, the offset being h and the radius of a round pin;
+- in slip ``F_t = sigma mu F_n``, which is ``F . T = c (T_x F_y - T_y F_x)`` with the lean ``c = sigma mu side``;
+- in stick ``(A_s + A_s*)/2 (s - s*) + side h (psi - psi*) + side radius (phi - phi*) = 0``, where psi = phi - theta is the shear angle,
+  ``A_s = |T| + side h theta'`` the length of the face per arc position, and * the value at the beginning of the stick.
+
+The mean tangent is ``T = dp/ds + (dC/ds F_n n + ..)/2 + M rho n``, with the slope rho that a unit couple makes. These parts are such that
+``F . T + M theta' = d(F . p + M theta + E)/ds``. So the work of the node less the nodal work and the change of E is F_t times the slip,
+whose rate is ``A_s ds/dt + side h dpsi/dt + side radius dphi/dt``: what friction dissipates.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements.contact_law import Friction, Rub, Surface
-from tsm.elements.curve import Curve
-from tsm.elements.mixed_contact import compliance, cross_compliance
-from tsm.elements.mixed_contact import energy as frictionless_energy
-from tsm.elements.mixed_contact import response as frictionless
-from tsm.elements.properties import Array, Properties
+from tsm.elements.curve import Curve, Jet
+from tsm.elements.dual import Dual
+from tsm.elements.mixed_contact import LEVER, REDUCE, compliance, cross_compliance
+from tsm.elements.properties import Array, Properties, chord_rotation, unwind
 
 ARC = 10
 """Row and column of the arc position."""
+_ITERATIONS = 50
+_LAST = 1e-15
+"""Relative change at which an iteration ends."""
+_SYMMETRIC = [[min(a, b) * (9 - min(a, b)) // 2 + max(a, b) for b in range(5)] for a in range(5)]
+"""Entry of a `Jet`'s hessian at row and column."""
+
+
+Pair = tuple[Dual, Dual]
+
+
+class Loaded(NamedTuple):
+    """An element under the force and couple of a contact, over ``dx, dy, theta_i, theta_j, F_x, F_y, xi``.
+
+    Attributes
+    ----------
+    force : tuple of 2 Dual
+        Force F on the beam.
+    tangent : tuple of 2 Dual
+        Mean tangent T, per undeformed length.
+    stretch : Dual
+        |T|.
+    place : tuple of 2 Dual
+        Point r of the axis from the element's end i.
+    nodal : tuple of 4 Dual
+        Loads on chord and end rotations.
+    energy : Dual
+        Strain energy E by the contact.
+    curvature : Dual
+        theta', per undeformed length.
+    shear : Dual
+        psi, the angle from the section's normal to T.
+    slope : Dual
+        phi, the angle of T.
+    """
+
+    force: tuple[Dual, Dual]
+    tangent: tuple[Dual, Dual]
+    stretch: Dual
+    place: tuple[Dual, Dual]
+    nodal: tuple[Dual, ...]
+    energy: Dual
+    curvature: Dual
+    shear: Dual
+    slope: Dual
 
 
 def response(
@@ -52,47 +108,55 @@ def response(
     tangent : ndarray, shape (11, 11)
         Its derivative, not symmetric.
     """
-    residual, tangent = frictionless(p, x, lever, xi, force, *surface)
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
+    (Fx, Fy), (Tx, Ty), (rx, ry) = beam.force, beam.tangent, beam.place
+    reach = surface.side * surface.offset
+    if reach:
+        rx, ry = rx + reach * (Ty / beam.stretch), ry - reach * (Tx / beam.stretch)
     if rub.held is None:
-        Fx, Fy = force
-        leaning = (Fx - rub.lean * Fy, Fy + rub.lean * Fx)
-        T, dT = _mean_tangent(p, x, xi, force)
-        residual[ARC] = -(leaning[0] * T[0] + leaning[1] * T[1])
-        tangent[ARC] = -(leaning[0] * dT[0] + leaning[1] * dT[1])
-        tangent[ARC, 8] -= T[0] + rub.lean * T[1]
-        tangent[ARC, 9] -= T[1] - rub.lean * T[0]
+        last = rub.lean * (Fy * Tx - Fx * Ty) - Fx * Tx - Fy * Ty
     else:
-        residual[ARC] = rub.unit * (xi * p.l0 - rub.held)
-        tangent[ARC] = 0.0
-        tangent[ARC, ARC] = rub.unit
+        last = rub.unit * _crept(beam, xi * p.l0, surface.side, rub)
+    rows = (*(-load for load in beam.nodal), -rx, -ry, last)
+    residual = np.array([row.value for row in rows]) @ REDUCE
+    tangent = REDUCE.T @ np.array([row.gradient for row in rows]) @ REDUCE - LEVER
+    residual[[0, 1]] -= force
+    residual[[6, 7]] += force
+    residual[[8, 9]] -= lever
     return residual, tangent
 
 
-def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, _rub: Rub) -> tuple[Any, Any, Any]:
-    """Tangential and normal force, positive where the contact pushes, and the travel from the element's start."""
-    (Tx, Ty), _ = _mean_tangent(p, x, xi, force)
-    size = np.sqrt(Tx * Tx + Ty * Ty)
-    Fx, Fy = force
+def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:
+    """Force along the beam, force across it, positive where the contact pushes, and arc position from the element's start."""
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
+    (Fx, Fy), (Tx, Ty), size = force, *_tilted(beam, rub)
     return (Fx * Tx + Fy * Ty) / size, surface.side * (Fy * Tx - Fx * Ty) / size, xi * p.l0
 
 
-def direction(p: Properties, x: Any, xi: Any, force: Any, _surface: Surface, _rub: Rub) -> Any:
-    """Angle of the mean tangent from the x axis."""
-    (Tx, Ty), _ = _mean_tangent(p, x, xi, force)
-    return np.arctan2(Ty, Tx)
-
-
-def slip(p: Properties, x: Any, xi: Any, force: Any, _surface: Surface, _rub: Rub) -> Array:
+def slip(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Array:
     """Slip rate as a linear form over the eleven unknowns: the force F_t on it is the power that friction dissipates."""
-    (Tx, Ty), _ = _mean_tangent(p, x, xi, force)
-    form = np.zeros(11, dtype=np.result_type(Tx, float))
-    form[ARC] = np.sqrt(Tx * Tx + Ty * Ty)
-    return form
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
+    form = surface.side * (rub.face * beam.shear.gradient + rub.radius * beam.slope.gradient)
+    form[6] += _tilted(beam, rub)[1] + surface.side * rub.face * beam.curvature.value
+    rate: Array = form @ REDUCE
+    return rate
 
 
-def energy(p: Properties, x: Any, lever: Any, xi: Any, force: Any, surface: Surface, _rub: Rub) -> float:
-    """Contribution of the contact to the strain energy in equilibrium, as `ContactLaw.energy`."""
-    return frictionless_energy(p, x, lever, xi, force, *surface)
+def tilt(p: Properties, xi: Any, eta: Any) -> Any:
+    """Change of the mean tangent at xi by a unit force at eta, per undeformed length, in the direction of the force."""
+    return cross_compliance(p, xi, eta)[1] / p.l0
+
+
+def hold(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Rub:
+    """State of the friction where a stick begins, here and now."""
+    beam = _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face)
+    path = beam.stretch.value + surface.side * rub.face * beam.curvature.value
+    return rub._replace(lean=0.0, held=xi * p.l0, path=path, shear=beam.shear.value, slope=beam.slope.value)
+
+
+def energy(p: Properties, x: Any, _lever: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> Any:
+    """Contribution of the contact to the strain energy."""
+    return _loaded(p, tuple(x), xi, tuple(force), surface.side * rub.face).energy.value
 
 
 def crossing(
@@ -100,7 +164,9 @@ def crossing(
 ) -> tuple[Array, Array]:
     """Coupling of two contacts on one element, as `mixed_contact.crossing`, with friction.
 
-    The third row of a contact in slip has the slope of the other contact's dent across its leaning force ``F'``; in stick it has none.
+    The third row of a contact in slip has the slope of the other contact's dent across its leaning force
+    ``F' = (F_x - c F_y, F_y + c F_x)``; in stick it has none. The couples on a face do not dent the element at the other contact here,
+    and the force along the beam dents it as if it were across.
     """
     C, dx, de, dxx, dxe, dee = cross_compliance(p, *xi)
     l0 = p.l0
@@ -127,28 +193,166 @@ def crossing(
     return residual, tangent
 
 
-def _mean_tangent(p: Properties, x: Any, xi: Any, force: Any) -> tuple[tuple[Any, Any], Array]:
-    """Mean tangent of the loaded centre line per undeformed length, and its derivative (2, 11)."""
-    curve = Curve(p, x)
-    dx, dy, l0, (Fx, Fy) = curve.dx, curve.dy, p.l0, force
-    _, dC, ddC, _ = compliance(p, xi)
-    _, (*_, ws), (_, _, _, _, hxs, _, _, _, hys, _, _, his, _, hjs, hss) = curve.deflection_jet(xi)
-    T = ((dx - ws * dy + dC * Fx / 2) / l0, (dy + ws * dx + dC * Fy / 2) / l0)
-    across = np.array([hxs, hys, his, hjs, 0.0, 0.0, hss / l0]) / l0
-    reduced = np.array([-dy * across, dx * across])
-    reduced[0, 0] += 1 / l0
-    reduced[0, 1] -= ws / l0
-    reduced[1, 0] += ws / l0
-    reduced[1, 1] += 1 / l0
-    reduced[0, 4] = reduced[1, 5] = dC / (2 * l0)
-    reduced[:, 6] += ddC / (2 * l0 * l0) * np.array([Fx, Fy])
-    full = np.zeros((2, 11), dtype=reduced.dtype)
-    full[:, [0, 1]], full[:, [3, 4]] = -reduced[:, :2], reduced[:, :2]
-    full[:, [2, 5, 8, 9, 10]] = reduced[:, 2:]
-    return T, full
+def _tilted(beam: Loaded, rub: Rub) -> tuple[tuple[Any, Any], Any]:
+    """Mean tangent with the deflection by other contacts on the element, and its length."""
+    Tx, Ty = (part.value + more for part, more in zip(beam.tangent, rub.tilt, strict=True))
+    return (Tx, Ty), np.sqrt(Tx * Tx + Ty * Ty)
+
+
+def _crept(beam: Loaded, arc: Any, side: float, rub: Rub) -> Dual:
+    """Path of the face along the node since the stick began."""
+    crept = Dual(arc - rub.held, np.eye(7)[6])
+    if not rub.face and not rub.radius:
+        return crept
+    path = beam.stretch + side * rub.face * beam.curvature
+    turned = Dual(unwind(beam.slope.value - rub.slope), beam.slope.gradient)
+    rolled: Dual = side * (rub.face * (beam.shear - rub.shear) + rub.radius * turned)
+    return (path + rub.path) / 2 * crept + rolled
+
+
+@lru_cache(maxsize=16)
+def _loaded(p: Properties, x: tuple[Any, ...], xi: Any, force: tuple[Any, Any], lever: float) -> Loaded:
+    """The element under a contact's force and couple, see the module's text.
+
+    Solution, margins and energies ask for the same one in turn. The derivatives with the arc position take the axes n and t of the unloaded curve with them, which turn by its curvature.
+    """
+    curve, l0 = Curve(p, x), p.l0
+    dx, dy, Fx, Fy, arc = (
+        Dual(value, row)
+        for value, row in zip((curve.dx, curve.dy, *force, xi * l0), np.eye(7)[[0, 1, 4, 5, 6]], strict=True)
+    )
+    part = arc / l0
+    w, (wx, wy, wi, wj, slope) = _lifted(curve.deflection_jet(xi), l0)
+    phi, (*phi_x, bend) = _lifted(curve.slope_angle_jet(xi), l0)
+    gamma, gamma_x = _lifted(curve.shear_strain_jet(), l0)
+    c, s = phi.cos(), phi.sin()
+    N, S = Fy * c - Fx * s, Fx * c + Fy * s
+    a = _flexibility(p, xi, arc)
+    turned = (a.C - a.A) * bend
+    along, across = (a.A_s * S - turned * N) / 2, (a.C_s * N - turned * S) / 2
+    free = (
+        dx / l0 - slope * dy + along * c - across * s,
+        dy / l0 + slope * dx + along * s + across * c,
+    )
+    along, across = -a.K * bend, a.rho
+    sloped = (along * c - across * s, along * s + across * c)
+    M, T = _couple((Fx, Fy), free, sloped, lever)
+    Tx, Ty = T
+    along, across = a.A * S, a.C * N + a.K * M
+    arm, by_phi = Fy * dx - Fx * dy, N * along - S * across
+    nodal = (part * Fx + arm * wx + w * Fy, part * Fy + arm * wy - w * Fx, arm * wi, arm * wj)
+    kink = _angle(Ty * c - Tx * s, Tx * c + Ty * s)
+    return Loaded(
+        force=(Fx, Fy),
+        tangent=T,
+        stretch=(Tx * Tx + Ty * Ty).sqrt(),
+        place=(part * dx - w * dy + along * c - across * s, part * dy + w * dx + along * s + across * c),
+        nodal=tuple(
+            load + (by_phi + M) * turn - M * strain
+            for load, turn, strain in zip(nodal, phi_x, gamma_x[:4], strict=True)
+        ),
+        energy=(a.C * N * N + a.A * S * S + a.R * M * M) / 2 + a.K * N * M,
+        curvature=bend + a.kappa * N + a.R_s * M / 2,
+        shear=gamma + kink - a.K * N - a.R * M,
+        slope=phi + kink,
+    )
+
+
+class Flexibility(NamedTuple):
+    """Response of an element with held ends to a unit force and a unit couple at a point, there; over seven variables.
+
+    Attributes
+    ----------
+    C, C_s : Dual
+        Deflection by a force across the element, and its derivative in the arc position.
+    A, A_s : Dual
+        Displacement by a force along the element, and its derivative.
+    K : Dual
+        Deflection by a couple, rotation by a force.
+    R, R_s : Dual
+        Rotation by a couple, and its derivative.
+    rho : Dual
+        Slope of the centre line by a couple, ``R`` and the shear strain.
+    kappa : Dual
+        Curvature by a force, so that ``dK/ds = rho + kappa``.
+    """
+
+    C: Dual
+    C_s: Dual
+    A: Dual
+    A_s: Dual
+    K: Dual
+    R: Dual
+    R_s: Dual
+    rho: Dual
+    kappa: Dual
+
+
+def _flexibility(p: Properties, xi: Any, arc: Dual) -> Flexibility:
+    l0, Phi = p.l0, p.Phi
+    C, dC, ddC, _ = compliance(p, xi)
+    part = arc / l0
+    z, dz = part * (1 - part), (1 - 2 * part) / l0
+    soft = l0 / (p.EI * (1 + Phi))
+    return Flexibility(
+        C=Dual(C, dC / l0 * arc.gradient),
+        C_s=Dual(dC / l0, ddC / l0**2 * arc.gradient),
+        A=l0 / p.EA * z,
+        A_s=l0 / p.EA * dz,
+        K=soft * l0**2 / 2 * z * z * dz,
+        R=soft * z * (1 + Phi - 3 * z),
+        R_s=soft * dz * (1 + Phi - 6 * z),
+        rho=soft * z * (1 + Phi / 2 - 3 * z),
+        kappa=-soft / 2 * z * (Phi + 4 * z),
+    )
+
+
+def _lifted(jet: Jet, l0: Any) -> tuple[Dual, list[Dual]]:
+    """Value and first derivatives of a `Jet`, with the arc position in place of xi."""
+    scale = np.array([1.0, 1.0, 1.0, 1.0, 1 / l0])
+    spread = np.zeros((5, 7))
+    spread[range(5), [0, 1, 2, 3, 6]] = scale
+    gradient, hessian = np.array(jet.gradient), np.array(jet.hessian)[_SYMMETRIC]
+    first = zip(scale * gradient, (scale[:, None] * hessian) @ spread, strict=True)
+    return Dual(jet.value, gradient @ spread), [Dual(value, row) for value, row in first]
+
+
+def _couple(force: Pair, free: Pair, sloped: Pair, lever: float) -> tuple[Dual, Pair]:
+    """Couple ``M = lever F . T/|T|`` and the mean tangent ``T = free + M sloped``, by Newton's method.
+
+    The last step is made with derivatives: from the solution it has those of the solution.
+    """
+    M = Dual(0.0, np.zeros(7))
+    if not lever:
+        return M, free
+    values = [[part.value for part in pair] for pair in (force, free, sloped)]
+    for _ in range(_ITERATIONS):
+        step = _couple_step(M.value, values, lever)
+        M.value += step
+        if abs(step) <= _LAST * abs(M.value):
+            break
+    M = M + _couple_step(M, (force, free, sloped), lever)
+    return M, (free[0] + M * sloped[0], free[1] + M * sloped[1])
+
+
+def _couple_step(M: Any, pairs: Any, lever: float) -> Any:
+    """Step of Newton's method for the couple, for numbers or with derivatives."""
+    (Fx, Fy), (x, y), (slope_x, slope_y) = pairs
+    Tx, Ty = x + M * slope_x, y + M * slope_y
+    square = Tx * Tx + Ty * Ty
+    size = np.sqrt(square)
+    along, across = Fx * Tx + Fy * Ty, Fy * Tx - Fx * Ty
+    turn = (slope_y * Tx - slope_x * Ty) / square
+    return (along * lever / size - M) / (1 - across * lever / size * turn)
+
+
+def _angle(cross: Dual, dot: Dual) -> Dual:
+    """Angle of a vector from its components across and along a direction."""
+    rate = (dot.value * cross.gradient - cross.value * dot.gradient) / (cross.value**2 + dot.value**2)
+    return Dual(chord_rotation(cross.value, dot.value), rate)
 
 
 FRICTION = Friction(
-    response=response, split=split, direction=direction, slip=slip, energy=energy, crossing=crossing
+    response=response, split=split, slip=slip, hold=hold, energy=energy, crossing=crossing, tilt=tilt
 )
 """Friction of the contact law whose force and arc position are unknowns."""

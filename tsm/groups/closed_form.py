@@ -12,7 +12,7 @@ from tsm.contact_block import ContactBlock
 from tsm.elements import beam as beam_element
 from tsm.elements.axis import PointForce, deflected_axes
 from tsm.elements.beam import Coefficients
-from tsm.elements.contact_law import Friction, Surface
+from tsm.elements.contact_law import Friction, Rub, Surface
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
 from tsm.groups.base import Change, ElementGroup
@@ -114,14 +114,15 @@ class ClosedFormGroup(ElementGroup):
         return moved[:6], moved[8:]
 
     def traction(self, k: int, state: State, _forces: ClosedFormForces) -> Traction:
-        """Force and place of a contact with friction; only its arc position and the direction of its tangent are known."""
+        """Force and place of a contact with friction."""
         pair, touch, friction = self._rubbed(k, state)
         p, x, _ = self._lever(pair, touch.element, state)
-        surface, rub = Surface(pair.side, pair.pair.offset), pair.rub(touch)
+        surface, rub = Surface(pair.side, pair.pair.offset), self._tilted(k, state)
         tangential, normal, _ = friction.split(p, x, touch.xi, touch.force, surface, rub)
-        direction = friction.direction(p, x, touch.xi, touch.force, surface, rub)
+        here = friction.hold(p, x, touch.xi, touch.force, surface, rub)
         arc = arc_position(pair.target, touch.element, touch.xi)
-        return Traction(float(tangential), float(normal), Place(arc, 0.0, float(direction), 1.0))
+        place = Place(arc, float(here.shear), float(here.slope), float(here.path))
+        return Traction(float(tangential), float(normal), place)
 
     def slip_rate(
         self, k: int, state: State, _tangent: ClosedFormForces, dofs: Array, contacts: Array
@@ -130,7 +131,7 @@ class ClosedFormGroup(ElementGroup):
         pair, touch, friction = self._rubbed(k, state)
         p, x, _ = self._lever(pair, touch.element, state)
         surface = Surface(pair.side, pair.pair.offset)
-        form = friction.slip(p, x, touch.xi, touch.force, surface, pair.rub(touch))
+        form = friction.slip(p, x, touch.xi, touch.force, surface, self._tilted(k, state))
         own = np.concatenate([dofs[self.model.dofs[:, touch.element]], [0.0, 0.0], contacts[pair.slots]])
         return float(form @ own)
 
@@ -138,6 +139,16 @@ class ClosedFormGroup(ElementGroup):
         pair, touch = self.model.pairs[k], state.touches[k]
         assert touch is not None, "a contact with friction is closed"
         return pair, touch, self._rubbed_law(pair)
+
+    def _tilted(self, k: int, state: State) -> Rub:
+        """State of the friction, with the turn of the tangent by the other contacts on the same element."""
+        pair, touch, friction = self._rubbed(k, state)
+        p, x, y = self.model.element[touch.element], 0.0, 0.0
+        for n, other in enumerate(state.touches):
+            if other is not None and n != k and other.element == touch.element:
+                part = friction.tilt(p, touch.xi, other.xi)
+                x, y = x + part * other.force[0], y + part * other.force[1]
+        return pair.rub(touch)._replace(tilt=(x, y))
 
     def _rubbed_law(self, pair: PairModel) -> Friction:
         friction = pair.law.coupling.friction if pair.law.coupling else None

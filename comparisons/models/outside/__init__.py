@@ -1,1 +1,30 @@
-"""Programs of others as models: they run in a child process and answer in JSON."""
+"""Programs of others as models: they answer in JSON, from a child process or from functions in this one.
+
+An adapter in Python takes what it needs from here, see ``docs/how-to/program.md``.
+"""
+
+from comparisons.models.outside.adapters.exchange import (
+    Histories,
+    RefusedError,
+    StoppedError,
+    points_along,
+    refined,
+    serve,
+)
+from comparisons.models.outside.adapters.frame import Frame, frame
+from comparisons.models.outside.program import Program
+from comparisons.models.outside.source import Command, Functions
+
+__all__ = [
+    "Command",
+    "Frame",
+    "Functions",
+    "Histories",
+    "Program",
+    "RefusedError",
+    "StoppedError",
+    "frame",
+    "points_along",
+    "refined",
+    "serve",
+]

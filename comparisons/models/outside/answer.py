@@ -8,18 +8,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.files import printable
 from comparisons.models.options import ModelError
 from comparisons.models.outside.status import ProgramError, ProgramStatus
 from comparisons.response import ContactHistory, Grid, Response, SupportHistory
 from comparisons.response.axis import SampledAxes
 from comparisons.response.from_json import restated
 from comparisons.response.material import clamped
+from comparisons.response.to_json import as_dict
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
+from comparisons.scene.tables import check_keys
 
 Array = NDArray[np.float64]
 
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
+SHOWN = 60
+"""Bytes that are shown of an output that is not JSON."""
 SAME_LOAD = 1e-6
 """Largest difference between a load parameter of the scene and of the answer, which may be printed with few digits."""
 
@@ -67,6 +72,8 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     if not reported and isinstance(data.get("status"), str) and "load_parameter" not in data:
         return silent(scene, model, str(data["status"]), str(data.get("message", "as the program reports")))
     try:
+        check_keys(data, {*as_dict(silent(scene, model, "", "")), "versions"}, required=("status",))
+        _check_status(data["status"])
         response = restated({**_defaults(data, scene, seconds), "model": model})
         wrong = next(_contradictions(response, scene), "")
     except FieldError as error:
@@ -142,10 +149,19 @@ def _parsed(output: bytes) -> dict[str, Any]:
     try:
         data = json.loads(output.decode("utf-8"))
     except (ValueError, RecursionError) as error:
-        raise ProgramError(ProgramStatus.INVALID_JSON, f"{error} ({len(output)} bytes written)") from None
+        begin = printable(" ".join(output[:SHOWN].decode("utf-8", errors="replace").split()))
+        words = f"{len(output)} bytes written" + (f", they begin with: {begin}" if begin else "")
+        raise ProgramError(ProgramStatus.INVALID_JSON, f"{error}; {words}") from None
     if not isinstance(data, dict):
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, "the output must be a table")
     return data
+
+
+def _check_status(status: object) -> None:
+    """Refuse a misspelt success or refusal, which would pass for the name of what stopped the program."""
+    word = str(status).strip().upper()
+    if status != word and word in {COMPLETED, REFUSED}:
+        raise FieldError("status", status, f"must be {word}, in capitals")
 
 
 def _defaults(data: dict[str, Any], scene: Scene, seconds: float) -> dict[str, Any]:

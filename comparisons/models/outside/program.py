@@ -1,98 +1,47 @@
-"""A program of others as a model: the resolved scene goes to its standard input, a response comes from its standard output."""
+"""A program of others as a model: it gets the resolved scene as JSON text and returns a response as JSON text."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import lru_cache
-from importlib.util import find_spec
 from math import nan
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside.child import Limits, found, run
 
 if TYPE_CHECKING:
+    from comparisons.models.outside.source import Source
     from comparisons.models.progress import Watch
     from comparisons.response import Response
     from comparisons.scene import Scene
 
-COLOUR = "#AA3377"
-"""Default colour of a program's lines."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Command:
-    """How a program is run.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-    label : str
-        Name in figures and texts.
-    command : tuple of str
-        The program and its arguments. A program with a separator in its path is relative to `folder`.
-    folder : Path
-        Working directory of the program.
-    limits : Limits
-        Limits on time and memory.
-    elements : tuple of int
-        Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
-    colour : str
-        Colour of its lines, in hexadecimal digits.
-    requires : str
-        Python module or program without which `command` cannot run; by default the program of `command`.
-    needs : str
-        Sentence on how to install what is required.
-    """
-
-    name: str
-    label: str
-    command: tuple[str, ...]
-    folder: Path
-    limits: Limits = field(default_factory=Limits)
-    elements: tuple[int, ...] = ()
-    colour: str = COLOUR
-    requires: str = ""
-    needs: str = ""
-
 
 class Program(Model):
-    """A program of others, in a child process.
+    """A program of others.
 
     Parameters
     ----------
-    command : Command
-        How it is run.
+    source : Source
+        How it is asked: a `Command`, which runs in a child process, or `Functions`, which run in this one.
     """
 
-    def __init__(self, command: Command) -> None:
-        self.command = command
-        self.name, self.label = command.name, command.label
-        self.options = ("elements",) if command.elements else ()
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.name, self.label = source.name, source.label or source.name
+        self.options = ("elements",) if source.elements else ()
 
     @property
     def identity(self) -> str:
-        """Name of the program, and a digest of its command and of the files among the words of its command."""
-        import hashlib
-        import json
-
-        words = [self.command.folder / word for word in self.command.command]
-        files = [hashlib.sha256(path.read_bytes()).hexdigest() for path in words if path.is_file()]
-        content = json.dumps([self.command.command, files])
-        return f"{self.name} {hashlib.sha256(content.encode()).hexdigest()}"
+        """Name of the program, and a digest of what its answers depend on."""
+        return f"{self.name} {self.source.digest()}"
 
     def missing(self) -> str | None:
         """Return what must be installed to run the program; None if it can be found."""
-        program = self.command.requires or self.command.command[0]
-        there = found(program, self.command.folder) or (self.command.requires and find_spec(program))
-        return None if there else self.command.needs or f"there is no program {program}"
+        return self.source.missing()
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return why the program cannot state `scene`: it is asked with the scene and no load parameters."""
-        return self.missing() or _refusal(self.command, scene)
+        """Return why the program cannot state `scene`, or what is missing to run it."""
+        return _refusal(self.source, scene) or self.missing()
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""
@@ -105,8 +54,7 @@ class Program(Model):
         if missing is not None:
             raise ModelError(missing)
         try:
-            text = request(scene, options, scene.times)
-            output, seconds = run(self.command.command, self.command.folder, text, self.command.limits)
+            output, seconds = self.source.ask(request(scene, options, scene.times))
             return answer(output, scene, self.name, seconds)
         except ProgramError as error:
             return silent(
@@ -115,7 +63,7 @@ class Program(Model):
 
     def styles(self) -> dict[str, Style]:
         """Return one style."""
-        return {self.label: Style(colour=self.command.colour, marker="D")}
+        return {self.label: Style(colour=self.source.colour, marker="D")}
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``mine, 20 elements``."""
@@ -133,19 +81,13 @@ class Program(Model):
 
     def resolutions(self, *, quick: bool) -> tuple[Options, ...]:
         """Return the program's numbers of elements; the first two if quick."""
-        counts = self.command.elements[: 2 if quick else None]
+        counts = self.source.elements[: 2 if quick else None]
         return tuple(Options(elements=count) for count in counts) or (Options(),)
 
 
 @lru_cache(maxsize=256)
-def _refusal(command: Command, scene: Scene) -> str | None:
-    """Return why a program refuses a scene; a program that fails without load parameters does not refuse it."""
-    from comparisons.models.outside.answer import refusal
+def _refusal(source: Source, scene: Scene) -> str | None:
+    """Return why a program refuses a scene."""
     from comparisons.models.outside.request import request
-    from comparisons.models.outside.status import ProgramError
 
-    try:
-        output, _ = run(command.command, command.folder, request(scene, Options(), ()), command.limits)
-    except ProgramError:
-        return None
-    return refusal(output)
+    return source.refused(request(scene, Options(), ()))

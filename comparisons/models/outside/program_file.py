@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from comparisons.models.outside.child import Limits
-from comparisons.models.outside.program import COLOUR, Command, Program
+from comparisons.models.outside.program import Program
+from comparisons.models.outside.source import COLOUR, Command
 from comparisons.scene import rules
 from comparisons.scene.rules import FieldError, Rule, RuleError
 from comparisons.scene.tables import InputError, check_keys, read_tables, read_text
@@ -35,7 +36,7 @@ def read_program(path: Path) -> Program:
     return Program(
         Command(
             name=given["name"],
-            label=given.get("label", given["name"]),
+            label=given.get("label", ""),
             command=given["command"],
             folder=path.resolve().parent,
             limits=Limits(seconds=given.get("seconds", 600.0), memory=1e6 * given.get("memory", 4000.0)),

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model
 from comparisons.models.options import ModelError
-from comparisons.models.outside.program import Command, Program
+from comparisons.models.outside.program import Program
 from comparisons.models.outside.program_file import ProgramFileError, read_program
+from comparisons.models.outside.source import Command
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -31,7 +32,7 @@ def _adapter(name: str, label: str, colour: str, requires: str, needs: str) -> P
     return Program(
         Command(
             name=name, label=label, command=(sys.executable, "-c", run), folder=Path.cwd(),
-            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs,
+            elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, module=module,
         )
     )  # fmt: skip
 

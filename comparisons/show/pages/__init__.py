@@ -4,6 +4,7 @@ from comparisons.show.pages.markup import definitions, file_links, folded, pictu
 from comparisons.show.pages.motion import Track, motion_section, tracks
 from comparisons.show.pages.page import Section, page, write_page
 from comparisons.show.pages.provenance import provenance
+from comparisons.show.pages.states import states_section
 
 __all__ = [
     "Section",
@@ -15,6 +16,7 @@ __all__ = [
     "page",
     "picture",
     "provenance",
+    "states_section",
     "table",
     "text",
     "tracks",

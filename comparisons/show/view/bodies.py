@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import Array, Grid
+from comparisons.response import SLIPS, Array, Grid
 from comparisons.show.stress import QUAD9_QUARTERS, Panel
 
 Body = tuple[Array, NDArray[np.int64], Array]
@@ -17,14 +17,23 @@ def panel(body: Grid, pins: Grid, title: str) -> Panel:
     """Return the deformed body, the solid's or the ribbons of beams, and its pins with their contact forces."""
     points, quads, stress = _solid(body) if "quad9" in body.cells else _ribbons(body)
     places = pins.point_data.get("deformed", np.zeros((0, 2)))
+    forces = pins.point_data.get("contact_force", np.zeros_like(places))
+    slip = np.where(forces.any(axis=1), pins.point_data.get("slip", np.full(len(places), np.nan)), np.nan)
     return Panel(
-        title=title,
+        title=f"{title}{_states(slip)}",
         points=points,
         quads=quads,
         stress=stress,
         pins=places,
-        forces=pins.point_data.get("contact_force", np.zeros_like(places)),
+        forces=forces,
+        slip=slip,
     )
+
+
+def _states(slip: Array) -> str:
+    """Return the states of pins with friction in words."""
+    words = [SLIPS[int(one)] for one in slip[~np.isnan(slip)]]
+    return f", pin {' and '.join(words)}" if words else ""
 
 
 def _solid(grid: Grid) -> Body:

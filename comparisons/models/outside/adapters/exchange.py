@@ -107,11 +107,11 @@ def serve(refusal: Refusal, states: States, *, continuum: bool = False) -> None:
     """
     with _output_aside() as answer:
         scene = json.load(sys.stdin) | ({"steps": int(sys.argv[1])} if sys.argv[1:] else {})
-        json.dump(_answered(scene, refusal, states) | {"continuum": continuum}, answer)
+        json.dump(answered(scene, refusal, states) | {"continuum": continuum}, answer)
 
 
-def _answered(scene: Table, refusal: Refusal, states: States) -> Table:
-    """Return the tables of the response."""
+def answered(scene: Table, refusal: Refusal, states: States) -> Table:
+    """Return the tables of the response to a scene, see `serve`."""
     reason = refusal(scene)
     if reason is not None:
         return {"status": "REFUSED", "message": reason}

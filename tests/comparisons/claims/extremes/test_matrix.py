@@ -208,6 +208,7 @@ STOP = {
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_quick_matrix(tmp_path: Path, capsys: pytest.CaptureFixture[str], stated) -> None:
     """Nothing is wrong, and no more stops or is withdrawn than what must."""
     assert main(["extremes", "--quick", "--out", str(tmp_path)]) == 0, capsys.readouterr().err

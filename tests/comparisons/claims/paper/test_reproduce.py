@@ -213,6 +213,7 @@ def test_help_loads_nothing_heavy():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_all_with_full_settings(tmp_path, stated):
     done = reproduce("all", tmp_path, quick=False, report=lambda _: None)
     assert done.stopped == ()

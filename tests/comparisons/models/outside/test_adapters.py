@@ -181,6 +181,14 @@ def test_a_scene_that_cannot_be_stated_has_its_reason(
     assert "\n" not in said
 
 
+@pytest.mark.parametrize("name", ADAPTERS)
+def test_an_adapter_is_asked_without_a_process(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("comparisons.models.outside.source.run", None)
+    said = ADAPTERS[name].refusal(DOUBLE)
+    assert said is not None
+    assert said.startswith(tuple(reason for _, scene, reason in REASONS if scene is DOUBLE))
+
+
 @pytest.mark.parametrize("refusal", [opensees.refusal, exudyn.refusal, felupe.refusal, calculix.refusal])
 def test_a_tip_load_is_stated_by_all(refusal: Callable[[dict[str, Any]], str | None]) -> None:
     assert refusal(data(TIP)) is None
@@ -188,7 +196,7 @@ def test_a_tip_load_is_stated_by_all(refusal: Callable[[dict[str, Any]], str | N
 
 def test_a_program_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(
-        ADAPTERS, "opensees", Program(replace(ADAPTERS["opensees"].command, requires="no_such_module"))
+        ADAPTERS, "opensees", Program(replace(ADAPTERS["opensees"].source, requires="no_such_module"))
     )
     with pytest.raises(ModelError, match=r"^opensees: openseespy is needed: install tsm-crossval"):
         solve(TIP, "opensees")

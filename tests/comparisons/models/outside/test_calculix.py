@@ -171,6 +171,7 @@ def test_pin_on_the_face_up_to_a_tenth() -> None:
 
 @needs_ccx
 @pytest.mark.slow
+@pytest.mark.long
 def test_study_is_within_its_bars(stated) -> None:
     told: list[str] = []
     rows = peers(told.append)

@@ -60,6 +60,27 @@ FAILURES = {
     "a force less": ("contact['force'].pop()", "INVALID_RESPONSE", "must be a list of 5 numbers"),
     "a word": ("contact['force'][0] = 'many'", "INVALID_RESPONSE", "must be a list of 5 numbers"),
     "a huge number": ("contact['force'][0] = 10**400", "INVALID_RESPONSE", "must be a list of 5 numbers"),
+    "a transposed axis": (
+        "axis['position'] = [list(zip(*line)) for line in axis['position']]",
+        "INVALID_RESPONSE",
+        "x and y of each point for each load parameter, has 5 x 2 x ",
+    ),
+    "the last axis only": (
+        "axis['position'] = axis['position'][-1]",
+        "INVALID_RESPONSE",
+        "axes.cantilever.position = [[0.0, 0.0], [",
+    ),
+    "a misspelt key": (
+        "answer['axis'] = answer.pop('axes')",
+        "INVALID_RESPONSE",
+        "unknown key, did you mean axes?",
+    ),
+    "small letters": (
+        "answer['status'] = 'completed'",
+        "INVALID_RESPONSE",
+        'status = "completed": must be COMPLETED, in capitals',
+    ),
+    "a greeting": ("print('hello there')", "INVALID_JSON", "bytes written, they begin with: hello there {"),
     "a short beam": ("axis['arc_length'][-1] = 0.995", "INVALID_RESPONSE", "must run from 0 to the length 1"),
     "other load parameters": (
         "answer['load_parameter'][1] = .5",
@@ -93,11 +114,11 @@ answer["load_parameter"], answer["newton_iterations"] = answer["load_parameter"]
         "INVALID_RESPONSE",
         "unknowns = 1.5: must be a whole number",
     ),
-    "events": ("answer['events'] = 3", "INVALID_RESPONSE", "events = (missing): must be a list"),
+    "events": ("answer['events'] = 3", "INVALID_RESPONSE", "events = 3: must be a list"),
     "a critical point": (
         "answer['critical'] = [4]",
         "INVALID_RESPONSE",
-        "critical = (missing): must be a table",
+        "critical = 4: must be a table",
     ),
     "an infinite axis": (
         "axis['position'][1][3][0] = math.inf",

@@ -1,0 +1,257 @@
+"""Contacts with friction against exact answers that share no code with the solver."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import tsm
+from comparisons.exact import elastica_with_friction, frictional_three_point_limit
+from tests.tsm.friction_scenes import LAST, STRIP, Cantilever, drawn, ks
+from tsm.events import EventKind
+from tsm.model import Model
+from tsm.newton import Newton
+from tsm.settings import Settings
+
+PAIR = "pin->beam"
+STIFF = tsm.Section(EA=1e12, GA=1e12, EI=1.0)
+TURNS = (EventKind.SLIP, EventKind.STICK)
+
+
+def balance(result: tsm.Result) -> float:
+    """Largest difference of work and strain energy, dissipation and what jumps release, over the last work."""
+    lost = sum(history.friction.dissipated for history in result.contacts.values() if history.friction)
+    jumps = [(event.load_parameter, event.released) for event in result.events if event.released]
+    released = sum((np.where(result.load_parameter >= t, energy, 0.0) for t, energy in jumps), np.zeros(1))
+    return float(np.abs(result.work - result.strain_energy - lost - released).max() / result.work.max())
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.1, 0.2, 0.3, 0.5])
+def test_one_exact_element_is_the_elastica_with_friction(friction: float) -> None:
+    result = ks(friction, STIFF).solve(50)
+    points = np.array([[1.0, 0.0], *((1 - t, t * LAST[1]) for t in result.load_parameter)])
+    exact, contact = elastica_with_friction(points, friction=friction), result.contacts[PAIR]
+    assert result.status is tsm.Status.COMPLETED
+    assert contact.force == pytest.approx(exact.magnitude[1:], rel=1e-9)
+    assert contact.arc_position == pytest.approx(exact.arc_position[1:], rel=1e-9)
+    assert result.supports["beam"].moment == pytest.approx(exact.clamp_moment[1:], rel=1e-9)
+    assert contact.friction.dissipated == pytest.approx(exact.dissipated[1:], abs=1e-9)
+    turns = [event for event in result.events if event.kind in TURNS]
+    assert [event.kind for event in turns] == [EventKind.STICK, EventKind.SLIP]
+    times = [event.load_parameter for event in exact.events[-2:]]
+    assert [event.load_parameter for event in turns] == pytest.approx(times, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("face", "radius"),
+    [
+        (0.0, 0.0),
+        pytest.param(0.01, 0.0, marks=pytest.mark.slow),
+        pytest.param(0.01, 0.03, marks=pytest.mark.slow),
+    ],
+)
+def test_one_exact_element_is_the_rod_with_friction(face: float, radius: float) -> None:
+    scene = ks(0.3, face=face, radius=radius)
+    result, (exact, at) = scene.solve(8), scene.exact(8)
+    contact = result.contacts[PAIR]
+    assert contact.force == pytest.approx(exact.magnitude[at], rel=1e-9)
+    assert contact.friction.tangential == pytest.approx(exact.tangential[at], rel=1e-9)
+    assert contact.friction.normal == pytest.approx(exact.normal[at], rel=1e-9)
+    assert contact.arc_position == pytest.approx(exact.arc_position[at], rel=1e-9)
+    assert contact.friction.slip.tolist() == [exact.state[k].sense for k in at]
+    times = [event.load_parameter for event in exact.events[-2:]]
+    found = [event.load_parameter for event in result.events if event.kind in TURNS]
+    assert found == pytest.approx(times, abs=1e-9)
+
+
+def test_a_pin_on_the_left_is_the_mirror_image() -> None:
+    scene = ks(0.3, face=0.01, radius=0.03)
+    right, left = (scene.solve(10, left=left).contacts[PAIR] for left in (False, True))
+    assert left.force == pytest.approx(right.force, rel=1e-10)
+    assert left.friction.tangential == pytest.approx(right.friction.tangential, rel=1e-9)
+    assert left.arc_position == pytest.approx(right.arc_position, rel=1e-10)
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
+def test_mixed_elements_converge_with_the_fourth_order(friction: float) -> None:
+    exact = ks(friction).solve(10).contacts[PAIR].force
+    errors = [
+        np.abs(ks(friction).solve(10, "mixed", elements).contacts[PAIR].force / exact - 1).max()
+        for elements in (10, 20, 40)
+    ]
+    assert errors[0] <= 1e-4
+    assert np.diff(np.log2(errors)).max() <= -3.5
+
+
+@pytest.mark.parametrize(("face", "radius"), [(0.0, 0.0), (0.01, 0.0), (0.01, 0.03)])
+def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float) -> None:
+    results = [ks(0.3, face=face, radius=radius).solve(steps) for steps in (1, 5, 50)]
+    for result in results:
+        contact, last = result.contacts[PAIR], results[0].contacts[PAIR]
+        assert contact.force[-1] == pytest.approx(last.force[-1], rel=1e-9)
+        assert contact.arc_position[-1] == pytest.approx(last.arc_position[-1], rel=1e-9)
+        assert [event.kind for event in result.events] == [event.kind for event in results[0].events]
+        times = [event.load_parameter for event in results[0].events]
+        assert [event.load_parameter for event in result.events] == pytest.approx(times, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_five_hundred_load_steps_give_the_same_answer() -> None:
+    many, one = ks(0.3).solve(500), ks(0.3).solve(1)
+    assert many.contacts[PAIR].force[-1] == pytest.approx(one.contacts[PAIR].force[-1], rel=1e-9)
+    assert [event.kind for event in many.events] == [event.kind for event in one.events]
+
+
+@pytest.mark.parametrize("steps", [1, 40])
+def test_work_is_stored_or_dissipated(steps: int) -> None:
+    for scene in (ks(0.1), ks(0.5), ks(0.3, face=0.01), drawn(13), drawn(4)):
+        result = scene.solve(steps)
+        assert result.status is tsm.Status.COMPLETED
+        assert balance(result) <= 1e-9
+        assert np.diff(result.contacts[PAIR].friction.dissipated, prepend=0.0).min() >= -1e-15
+
+
+def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() -> None:
+    assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
+
+
+def test_mixed_elements_keep_the_work_but_for_their_jumps_at_nodes() -> None:
+    assert balance(ks(0.3).solve(10, "mixed", 10)) <= 5e-7
+
+
+def cycles(count: int) -> Cantilever:
+    """A pin that goes up and down square to the beam, always in contact."""
+    path = ((0.8, 0.0), *(((0.8, 0.5), (0.8, 0.25)) * count))
+    return Cantilever(section=STRIP, friction=0.3, path=path)
+
+
+def test_a_loop_closes_after_one_cycle() -> None:
+    result = cycles(5).solve(59)
+    (pin,) = result.model.structure.pins
+    result = tsm.solve(result.model.structure, np.array(pin.corners[1::2]))
+    force, lost = result.contacts[PAIR].force, result.contacts[PAIR].friction.dissipated
+    assert force[1:] == pytest.approx(force[1], rel=1e-10)
+    assert np.diff(lost)[1:] == pytest.approx(np.diff(lost)[1], rel=1e-9)
+    assert np.diff(lost).min() > 1e-3 * lost[0]
+
+
+@pytest.mark.slow
+def test_a_thousand_cycles_do_not_drift() -> None:
+    structure = cycles(1000).structure()
+    result = tsm.solve(structure, np.array(structure.pins[0].corners[1::2]))
+    force, lost = result.contacts[PAIR].force, result.contacts[PAIR].friction.dissipated
+    assert np.abs(force[1:] / force[1] - 1).max() <= 1e-9
+    assert np.abs(np.diff(lost)[1:] / np.diff(lost)[1] - 1).max() <= 1e-8
+    assert np.diff(lost).min() > 0
+
+
+@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 8)])
+def test_no_friction_is_the_frictionless_contact(element: str, elements: int) -> None:
+    scene = ks(0.0)
+    result = scene.solve(20, element, elements)
+    (pair,) = scene.structure().contacts
+    plain = tsm.ContactPair(node="pin", beam="beam", side="right")
+    assert replace(pair, friction=0.0) == plain
+    assert result.contacts[PAIR].friction is None
+    assert not len(result.work)
+    little = ks(1e-6).solve(20, element, elements)
+    assert little.contacts[PAIR].force == pytest.approx(result.contacts[PAIR].force, rel=1e-5)
+    assert np.abs(little.contacts[PAIR].force / result.contacts[PAIR].force - 1).max() > 1e-9
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.2, 0.3])
+def test_limit_loads_of_three_point_bending(friction: float) -> None:
+    """A half of the beam, its middle held, on a support that rises and goes back."""
+    limit = frictional_three_point_limit(friction)
+    for back, point in ((False, limit.drawn_in), (True, limit.pushed_back)):
+        top = 0.62 if back else point.displacement + 0.02
+        path = (
+            ((1.0, 0.0), (1.0, top), (1.0, point.displacement - 0.05)) if back else ((1.0, 0.0), (1.0, top))
+        )
+        beam = tsm.Beam(name="beam", start=(0, 0), end=(3, 0), section=STIFF, element="exact", elements=1)
+        structure = tsm.Structure(
+            beams=(beam,),
+            supports=(tsm.Support(beam="beam", end="start"),),
+            pins=(tsm.Pin(name="pin", path=path),),
+            contacts=(tsm.ContactPair(node="pin", beam="beam", friction=friction),),
+        )
+        (pin,) = structure.pins
+        begin = pin.corners[0] if back else 0.0
+        way = -1 if back else 1
+        here = begin + way * (point.displacement - (top if back else 0.0)) / pin.length
+        result = tsm.solve(structure, np.array([here - 1e-3, here, here + 1e-3]))
+        load = -result.supports["beam"].force[:, 1]
+        assert load[1] == pytest.approx(point.load, rel=1e-9)
+        assert load[0] < load[1] > load[2]
+
+
+@pytest.mark.parametrize(("face", "radius"), [(0.0, 0.0), (0.03, 0.0), (0.02, 0.03)])
+@pytest.mark.parametrize(("element", "elements"), [("exact", 2), ("mixed", 6)])
+@pytest.mark.parametrize("at", [0.4, 0.64, 0.9])
+def test_the_tangent_is_the_derivative(
+    face: float, radius: float, element: str, elements: int, at: float
+) -> None:
+    """Unknowns inside exact elements follow the others to second order, so central differences see the condensed tangent."""
+    result = tsm.solve(ks(0.3, face=face, radius=radius).structure(element, elements), np.array([at]))
+    newton, state = Newton(Model(result.model.structure), Settings()), result.equilibria[0].state
+    model = newton.model
+    system = newton.assembler.linearise(state)
+    matrix = newton.assembler.whole(system.tangent).toarray() / model.row_units[:, None] * model.units
+    for seed in range(3):
+        way = np.random.default_rng(seed).standard_normal(len(model.units))
+        apart = [
+            newton.assembler.linearise(newton.update(state, size * way * model.units, system)).residual
+            for size in (1e-5, -1e-5)
+        ]
+        measured = (apart[0] - apart[1]) / 2e-5 / model.row_units
+        assert measured == pytest.approx(matrix @ way, rel=1e-6, abs=1e-6 * np.abs(matrix @ way).max())
+
+
+def test_friction_of_the_papers_element_is_refused() -> None:
+    with pytest.raises(
+        ValueError, match=r'friction = 0.3: elements "timoshenko" have contacts without friction only'
+    ):
+        ks(0.3).solve(2, "timoshenko", 4)
+
+
+@pytest.mark.parametrize("friction", [-0.1, float("nan"), float("inf"), 101.0])
+def test_a_wrong_coefficient_is_refused(friction: float) -> None:
+    with pytest.raises(ValueError, match=r"pin->beam.friction = .*: must lie between 0 and 100"):
+        tsm.ContactPair(node="pin", beam="beam", friction=friction)
+
+
+def test_a_batch_with_friction_is_solved_one_by_one() -> None:
+    scenes = [ks(0.0).structure("mixed", 8), ks(0.3).structure("mixed", 8)]
+    batch = tsm.solve_batch(scenes, np.array([0.5, 1.0]))
+    for n, scene in enumerate(scenes):
+        alone = tsm.solve(scene, np.array([0.5, 1.0])).contacts[PAIR].force
+        assert batch.force[PAIR][n] == pytest.approx(alone, rel=1e-12)
+
+
+def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
+    structure = ks(0.3).structure()
+    traced = tsm.trace(structure, arc_length=0.02, steps=400, throw=False)
+    assert traced.status is tsm.Status.CONTACT_CHANGED
+    solved = tsm.solve(structure, traced.load_parameter)
+    assert traced.contacts[PAIR].force == pytest.approx(solved.contacts[PAIR].force, rel=1e-8)
+    assert 0.55 < traced.load_parameter[-1] < 0.6205
+
+
+def judged(seed: int, element: str = "exact", elements: int = 1) -> float | None:
+    """Largest relative error of the force of a drawn cantilever; None if the solution stopped by name."""
+    scene, steps = drawn(seed), 6
+    result, (exact, at) = scene.solve(steps, element, elements), scene.exact(steps)
+    reached = len(result.load_parameter)
+    if result.status is not tsm.Status.COMPLETED:
+        return None
+    true = exact.magnitude[at][:reached]
+    return float(np.abs(result.contacts[PAIR].force - true).max() / np.abs(true).max(initial=1e-300))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 40, 10))
+def test_drawn_cantilevers_with_friction(first: int) -> None:
+    """The command ``python -m tests.fuzz.run_friction 500`` judges more."""
+    found = [judged(seed) for seed in range(first, first + 10)]
+    assert sum(error is None for error in found) <= 2
+    assert max(error for error in found if error is not None) <= 1e-8
