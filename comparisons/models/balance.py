@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import Array, Response
-from comparisons.scene import Scene
+from comparisons.response import Array, ContactHistory, Response
+from comparisons.scene import ContactSpec, Scene
 
 BALANCE = 1e-6
 """Largest unbalanced force, relative to the largest force that acts. Newton's tolerances are far below."""
@@ -32,7 +32,8 @@ def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
 
     ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M,
     the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, the force that balances all other forces
-    is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments.
+    is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
+    ``-side R F_t`` of a stated tangential force about the centre of a round pin, side = 1 for a pin on the right.
     """
     supports, loads = _supports(response, scene), _loads(response, scene)
     outer = _sum([*supports, *loads], len(response.load_parameter))
@@ -115,5 +116,12 @@ def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.i
         force = np.where((pushing <= 1)[:, None], -outer.force, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)
         magnitude += history.force
-        actions.append(_action(scene, force, place))
+        actions.append(_action(scene, force, place, _roll(scene, spec, history)))
     return pushing, magnitude, _sum(actions, steps)
+
+
+def _roll(scene: Scene, spec: ContactSpec, history: ContactHistory) -> Array | float:
+    """Moment (s,) of a round pin's tangential force about its centre."""
+    if history.friction is None:
+        return 0.0
+    return (1.0 if spec.side == "left" else -1.0) * scene.radius(spec) * history.friction.tangential

@@ -9,7 +9,9 @@ import numpy as np
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
-from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
+from comparisons.referee.energy import dissipated
+from comparisons.referee.history import History
+from comparisons.response import Array, ContactHistory, FrictionHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene
 
 POINTS = 401
@@ -41,6 +43,7 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
         if item.verdict is not Verdict.CERTIFIED or item.exact is None:
             break
         states.append(item.exact)
+    friction = _frictions(scene, followed, states)
     sound = found.verdict is Verdict.CERTIFIED or not found.judged
     return replace(
         followed,
@@ -49,7 +52,11 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
         message=followed.message if sound else found.reason,
         completed=followed.completed and sound,
         load_parameter=followed.load_parameter[: len(states)],
-        contacts={pair: _contact(pair, history, states) for pair, history in followed.contacts.items()},
+        contacts={
+            pair: replace(_contact(pair, history, states), friction=friction.get(pair))
+            for pair, history in followed.contacts.items()
+        },
+        work=_work(friction, states),
         supports=_supports(scene, states),
         tips={
             beam.name: _rows([state.ends[f"{beam.name}.{scene.tip(beam.name)}"] for state in states], 2)
@@ -82,6 +89,34 @@ def _contact(pair: str, followed: ContactHistory, states: States) -> ContactHist
         gap=np.array([gap if here is None else 0.0 for gap, here in zip(followed.gap, closed, strict=False)]),
         vector=forces,
     )
+
+
+def _frictions(scene: Scene, followed: Response, states: States) -> dict[str, FrictionHistory]:
+    """Forces, states and dissipation of the contacts with friction, by pair."""
+    pairs = [spec.pair for spec in scene.contacts if spec.friction]
+    if not pairs:
+        return {}
+    history = History(followed, scene)
+    spent = [dissipated(history, k, state) for k, state in enumerate(states)]
+    found = {}
+    for pair in pairs:
+        closed = [state.contacts.get(pair) for state in states]
+        stated = followed.contacts[pair].friction
+        assert stated is not None, "beams state their friction"
+        found[pair] = FrictionHistory(
+            tangential=np.array([0.0 if here is None else here.drag for here in closed]),
+            normal=np.array([0.0 if here is None else here.push for here in closed]),
+            slip=stated.slip[: len(states)],
+            dissipated=np.cumsum([part[pair] for part in spent]),
+        )
+    return found
+
+
+def _work(friction: dict[str, FrictionHistory], states: States) -> Array | None:
+    """Work of pins, supports and loads, the sum of strain energy and dissipation; None where a node slipped off, or without friction."""
+    work = np.array([state.strain_energy for state in states])
+    work = work + sum(item.dissipated for item in friction.values())
+    return work if friction and np.all(np.isfinite(work)) else None
 
 
 def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:

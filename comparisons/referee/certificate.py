@@ -15,7 +15,7 @@ class Verdict(Enum):
 
     CERTIFIED = "within its allowance of a stable, admissible equilibrium"
     UNSTABLE = "near an unstable equilibrium, or not on the branch from the undeformed state"
-    INADMISSIBLE = "near an equilibrium that violates unilateral contact"
+    INADMISSIBLE = "near an equilibrium that violates unilateral contact or Coulomb's law"
     NOT_AN_EQUILIBRIUM = "not near an equilibrium"
     NOT_JUDGED = "not judged"
 
@@ -35,7 +35,7 @@ class Judgement:
     distance : Distance or None
         Differences from the exact equilibrium; None without one.
     index : int
-        Index of the exact equilibrium; -1 without one.
+        Index of the exact equilibrium; -1 without one, and with friction, which has no potential.
     residual : float
         Estimated relative error of the exact equilibrium itself.
     exact : Equilibrium or None

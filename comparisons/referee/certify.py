@@ -12,8 +12,10 @@ from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.distance import scales
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.follow import at_rest, departs
+from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
+from comparisons.referee.rubbing import rubs_wrongly_on_the_way
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.scene import Scene
@@ -48,13 +50,18 @@ def certify(
         if at is None
         else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
     )
-    states = tuple(judged(response, scene, k, allowed) for k in numbers)
-    states = tuple(_on_the_path(response, scene, numbers, states, allowed))
+    history = _history(response, scene)
+    states = tuple(judged(response, scene, k, allowed, history=history) for k in numbers)
+    states = tuple(_on_the_path(response, scene, numbers, states, allowed, history))
     path = tuple(_path(response, scene))
+    if history is not None:
+        path += tuple(rubs_wrongly_on_the_way(history, numbers, states, allowed))
     verdict, reason = _worst(states, path, steps)
     gone = next(_departures(response, scene, states, numbers), "") if verdict is Verdict.CERTIFIED else ""
     if gone:
         verdict, reason = Verdict.UNSTABLE, gone
+    if history is not None and history.taken:
+        reason = f"{reason}; {history.taken}"
     return Certificate(
         verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
         seconds=perf_counter() - began,
@@ -62,7 +69,12 @@ def certify(
 
 
 def _on_the_path(
-    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+    response: Response,
+    scene: Scene,
+    numbers: Sequence[int],
+    states: Sequence[Judgement],
+    allowed: float,
+    history: History | None,
 ) -> Iterator[Judgement]:
     """Yield the judgements; a refused state is judged again with the largest force and moment of all judged load parameters.
 
@@ -72,7 +84,15 @@ def _on_the_path(
     largest = tuple(max(column, default=0.0) for column in zip(*sizes, strict=True)) or (0.0, 0.0)
     for k, item in zip(numbers, states, strict=True):
         if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
-            yield judged(response, scene, k, allowed, exact=item.exact, largest=(largest[0], largest[1]))
+            yield judged(
+                response,
+                scene,
+                k,
+                allowed,
+                history=history,
+                exact=item.exact,
+                largest=(largest[0], largest[1]),
+            )
         else:
             yield item
 
@@ -127,7 +147,17 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
 
 def _certified_reason(states: Sequence[Judgement], steps: int) -> str:
     worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
-    return f"{worst.line()}, index 0, admissible, at {len(states)} of {steps} load parameters"
+    stable = "index 0" if all(item.index == 0 for item in states) else "stability not judged (friction)"
+    return f"{worst.line()}, {stable}, admissible, at {len(states)} of {steps} load parameters"
+
+
+def _history(response: Response, scene: Scene) -> History | None:
+    """Return the states of friction in an answer; None without friction, and for an answer that is not one to the scene."""
+    if not any(spec.friction for spec in scene.contacts):
+        return None
+    if any(next(impossible(response, scene, k), "") for k in range(len(response.load_parameter))):
+        return None
+    return History(response, scene)
 
 
 def _path(response: Response, scene: Scene) -> Iterator[str]:
@@ -161,10 +191,14 @@ def _intervals(
         first, last = a.exact, b.exact
         if first is None or last is None or k != j + 1 or first.contacts.keys() != last.contacts.keys():
             continue
-        if _order(first) == _order(last) and not any(
-            first.load_parameter <= t <= last.load_parameter for t in times
-        ):
+        held = _slips(first) == _slips(last) and _order(first) == _order(last)
+        if held and not any(first.load_parameter <= t <= last.load_parameter for t in times):
             yield first, last
+
+
+def _slips(exact: Equilibrium) -> dict[str, int]:
+    """Signs of the slip rates of the contacts with friction, 0 in stick."""
+    return {pair: grip.slip for pair, grip in exact.solution.layout.grips.items()}
 
 
 def _order(exact: Equilibrium) -> list[tuple[int, ...]]:

@@ -6,7 +6,8 @@ With the constant force n of a part in the frame of the beam, ``N = n_x cos th +
 
 is stationary in the rotation th, the stations' positions, the contacts' arc positions (which move the mesh) and, as a maximum, in n.
 With the forces as unknowns, large EA and GA cause neither round-off nor locking. Stationarity in an arc position means that
-``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without friction.
+``H = m^2/2EI + N + N^2/2EA + Q^2/2GA`` is continuous at the contact, which is ``F.(r'_- + r'_+) = 0``, contact without friction. A contact
+with friction has other rows in place of this one: see `comparisons.referee.friction`.
 """
 
 from typing import NamedTuple
@@ -15,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import SLOPES, VALUES, WEIGHTS
-from comparisons.referee.layout import NONE, Layout, normal
+from comparisons.referee.friction import rows
+from comparisons.referee.layout import NONE, Layout, Touch, normal
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -169,7 +171,7 @@ def elements(mesh: Mesh, rods: Properties, extents: Array, coefficients: Array, 
 
 
 class System(NamedTuple):
-    """Gradient (u,) and Hessian (u, u) with condensed bubbles, and the recovery of the bubbles.
+    """Gradient (u,) and Hessian (u, u) with condensed bubbles, with the rows of friction, and the recovery of the bubbles.
 
     If the other unknowns of an element change by x, its bubbles change by ``-(shift + lever x)``. `blocks` are the Hessians of
     the bubbles, `local` and `sign` the indices and signs of the elements' unknowns. `ends` (e, 2) are the moments at the elements'
@@ -210,6 +212,9 @@ def assemble(layout: Layout, mesh: Mesh, rods: Properties, z: Array, bubbles: Ar
         sign[:, :, None] * sign[:, None, :] * hessian[:, spread[:, None], spread[None, :]],
     )
     _add_stations(layout, z, g, k)
+    for touch in layout.touches:
+        if touch.grip is not None:
+            _rub(layout, mesh, touch, z, _Condensed(gradient[:, 1], hessian[:, 1, spread], local, sign), g, k)
     return System(
         gradient=g[:-1],
         hessian=k[:-1, :-1],
@@ -221,6 +226,36 @@ def assemble(layout: Layout, mesh: Mesh, rods: Properties, z: Array, bubbles: Ar
         ends=parts.gradient[:, :2],
         energy=float(parts.energy.sum()),
     )
+
+
+class _Condensed(NamedTuple):
+    """Moments (e,) at the ends of the elements with their derivatives (e, 6), and the indices and signs of the elements' unknowns."""
+
+    moment: Array
+    derivatives: Array
+    local: Ints
+    sign: Array
+
+
+def _rub(layout: Layout, mesh: Mesh, touch: Touch, z: Array, ends: _Condensed, g: Array, k: Array) -> None:
+    """Exchange the rows of a contact's arc position and phi for those of friction, and add the couple on its section."""
+    before, behind = layout.beside(touch)
+    turn = layout.stations[before.last].rotation_unknown
+    e = int(np.flatnonzero(mesh.part == layout.parts.index(before))[-1])
+    dropped = len(g) - 1
+    angle = dropped if touch.angle == NONE else touch.angle
+    places = [turn, before.force, before.force + 1, behind.force, behind.force + 1, angle, dropped, touch.arc]
+    given = np.append(z, 0.0)[places]
+    given[6] = ends.moment[e]
+    values, derivatives = rows(layout, touch, (before, behind), given)
+    by = np.zeros((3, len(g)))
+    by[:, places] = derivatives
+    np.add.at(by.T, ends.local[e], np.outer(ends.sign[e] * ends.derivatives[e], derivatives[:, 6]))
+    g[touch.arc], k[touch.arc] = values.row, by[0]
+    g[turn] -= values.couple
+    k[turn] -= by[1]
+    if touch.angle != NONE:
+        g[touch.angle], k[touch.angle] = values.direction, by[2]
 
 
 def _numbers(layout: Layout, mesh: Mesh, rods: Properties) -> tuple[Ints, Array]:

@@ -81,7 +81,7 @@ class Solution:
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
     """Return the equilibrium near an answer, on a mesh that resolves it."""
-    layout = lay_out(scene, answer.load_parameter, answer.arcs)
+    layout = lay_out(scene, answer.load_parameter, answer.arcs, answer.grips)
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:

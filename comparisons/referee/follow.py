@@ -5,8 +5,9 @@ from numpy.typing import NDArray
 
 from comparisons.referee.basis import AMPLITUDE, DEGREE
 from comparisons.referee.equations import mesh_for, mesh_of
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct, newton_step
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct
 from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.march import closed_pairs, tangent
 from comparisons.referee.stability import index_and_margin
 from comparisons.scene import Scene
 
@@ -39,27 +40,26 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     A step is a prediction along the tangent. It is accepted if Newton's correction is small compared with the step and the index
     is unchanged.
     """
-    closed = {
-        touch.spec.pair: float(first.z[touch.arc]) * first.layout.length for touch in first.layout.touches
-    }
+    closed, grips = closed_pairs(first), first.layout.grips
     start, end = first.layout.load_parameter, last.layout.load_parameter
     now, step, index = first, (end - start) / 4.0, index_and_margin(first)[0]
-    ahead = _tangent(scene, now, closed, end)
+    ahead = _tangent(scene, now, end)
     while now.layout.load_parameter < end:
         here = now.layout.load_parameter
         t = here + step if here + step < end - _ROUND_OFF * (end - start) else end
         z, bubbles = now.z + (t - here) * ahead[0], now.bubbles + (t - here) * ahead[1]
-        layout = lay_out(scene, t, closed)
+        layout = lay_out(scene, t, closed, grips)
         corrected = correct(layout, mesh_for(layout, now.mesh), z, bubbles, _ITERATIONS)
         if corrected.status is SearchStatus.FOUND and index_and_margin(corrected)[0] == index:
             off = _apart(corrected, z, bubbles) / (_apart(corrected, now.z, now.bubbles) + _ROUND_OFF)
             if off < _NEAR:
                 step *= 2.0 if off < _NEAR / 3.0 else 1.0
-                now, ahead = corrected, _tangent(scene, corrected, closed, end)
+                now, ahead = corrected, _tangent(scene, corrected, end)
                 continue
         step /= 2.0
         if step < _SMALLEST * max(here - start, _SMALLEST * (end - start)):
-            return f"no continuous path of index {index} leads on beyond load parameter {here:.6g}"
+            kind = "" if index < 0 else f" of index {index}"
+            return f"no continuous path{kind} leads on beyond load parameter {here:.6g}"
     off = _difference(now, last)
     return (
         ""
@@ -68,14 +68,9 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     )
 
 
-def _tangent(scene: Scene, now: Solution, closed: dict[str, float], end: float) -> tuple[Array, Array]:
-    """Rates of the unknowns per load parameter, by a difference over a small fraction of the remaining path."""
-    little = _LITTLE * (end - now.layout.load_parameter)
-    if little == 0.0:
-        return np.zeros_like(now.z), np.zeros_like(now.bubbles)
-    layout = lay_out(scene, now.layout.load_parameter + little, closed)
-    change, inside = newton_step(layout, mesh_for(layout, now.mesh), now.z, now.bubbles)
-    return change / little, inside / little
+def _tangent(scene: Scene, now: Solution, end: float) -> tuple[Array, Array]:
+    """Rates of the unknowns, by a difference over a small fraction of the remaining path."""
+    return tangent(scene, now, _LITTLE * (end - now.layout.load_parameter))
 
 
 def _apart(corrected: Solution, z: Array, bubbles: Array) -> float:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from comparisons.referee.balance import unbalanced
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, distance, least_force
 from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.history import History, UnknownFrictionError
+from comparisons.referee.rubbing import rubs_wrongly, unlawful
 from comparisons.referee.start import AnswerState, answer_state
 from comparisons.referee.state import Equilibrium, equilibrium
 from comparisons.response import ContactHistory, Response
@@ -27,6 +30,7 @@ def judged(
     k: int,
     allowed: float,
     *,
+    history: History | None = None,
     exact: Equilibrium | None = None,
     largest: tuple[float, float] = (0.0, 0.0),
 ) -> Judgement:
@@ -36,6 +40,8 @@ def judged(
     ----------
     response, scene, k, allowed
         The answer, its scene, the number of the load parameter, and the largest difference allowed.
+    history : History, optional
+        The states of friction in the answer; None for a scene without friction.
     exact : Equilibrium, optional
         The exact equilibrium near the answer, if it is known.
     largest : (float, float)
@@ -46,6 +52,15 @@ def judged(
     if contradiction:
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
+    if history is not None:
+        misstated = next(unlawful(response, scene, k, allowed), "")
+        if misstated:
+            return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
+        try:
+            answer = replace(answer, grips=history.grips(k))
+        except UnknownFrictionError as error:
+            verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
+            return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
     exact = exact or equilibrium(scene, answer)
     if exact.status is not SearchStatus.FOUND:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
@@ -54,6 +69,9 @@ def judged(
     answer = _with_vectors(answer, response, exact, k)
     differences = distance(scene, answer, exact, largest)
     verdict, reason = _verdict(response, scene, answer, exact, differences, allowed)
+    if verdict is Verdict.CERTIFIED and history is not None:
+        violation = next(rubs_wrongly(history, k, exact, allowed), "")
+        verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
     return Judgement(
         load_parameter=t,
         verdict=verdict,
@@ -128,11 +146,12 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
 
 
 def _with_vectors(answer: AnswerState, response: Response, exact: Equilibrium, k: int) -> AnswerState:
-    """Complete contact forces without direction by the exact direction."""
-    forces = dict(answer.forces)
+    """Complete contact forces without direction by the exact direction, and tangential forces that are not stated."""
+    forces, drags = dict(answer.forces), dict(answer.drags)
     for pair, force in answer.forces.items():
         if math.isnan(force[0]):
             x, y = exact.contacts[pair].force / max(float(np.hypot(*exact.contacts[pair].force)), 1e-300)
             size = float(response.contacts[pair].force[k])
             forces[pair] = (size * float(x), size * float(y))
-    return AnswerState(**{**vars(answer), "forces": forces})
+        drags.setdefault(pair, exact.contacts[pair].drag)
+    return replace(answer, forces=forces, drags=drags)

@@ -6,18 +6,22 @@ in units of ``EI/L^2`` with the largest EI, so that all quantities are dimension
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.friction import Grip
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
 NONE = -1
 """Index of a quantity that is prescribed and not unknown."""
+_FREE: Mapping[str, Grip] = MappingProxyType({})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +58,7 @@ class Touch:
     """A closed contact between a touching point x and the axis point ``r = x - side offset nu(phi)``.
 
     nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi,
-    the contact force acts along nu.
+    the contact force acts along nu. With friction phi is the direction of the mean tangent by a row of its own.
 
     Attributes
     ----------
@@ -66,6 +70,10 @@ class Touch:
         Distance of x from the axis, positive on the left of the beam.
     arc, angle : int
         Indices of the unknown arc position and of phi (`NONE` without offset).
+    grip : Grip or None
+        How friction holds the contact; None without friction.
+    lever, roll : float
+        Distance of the face from the axis, and radius of a round pin; positive on the right of the beam.
     """
 
     spec: ContactSpec
@@ -73,6 +81,14 @@ class Touch:
     offset: float
     arc: int
     angle: int
+    grip: Grip | None = None
+    lever: float = 0.0
+    roll: float = 0.0
+
+    @property
+    def right(self) -> float:
+        """1 for a node on the right of the beam, -1 on its left."""
+        return -1.0 if self.spec.side == "left" else 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,6 +183,27 @@ class Layout:
         beam = self.scene.beams[part.beam]
         return 0.0 if f"{beam.name}.start" in self.stations[station].ends else beam.length / self.length
 
+    @property
+    def rubs(self) -> bool:
+        """Whether a closed contact has friction."""
+        return any(touch.grip is not None for touch in self.touches)
+
+    @property
+    def grips(self) -> dict[str, Grip]:
+        """How friction holds the contacts, by pair."""
+        return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
+
+    def beside(self, touch: Touch) -> tuple[Part, Part]:
+        """Return the parts before and behind a contact."""
+        number = next(
+            k
+            for k, item in enumerate(self.stations)
+            if item.touch != NONE and self.touches[item.touch] is touch
+        )
+        before = next(part for part in self.parts if part.last == number)
+        behind = next(part for part in self.parts if part.first == number)
+        return before, behind
+
     def extent(self, z: Array, part: Part) -> float:
         """Undeformed length of a part."""
         return self.arc(z, part.last, part) - self.arc(z, part.first, part)
@@ -193,8 +230,14 @@ def normal(angle: float) -> Array:
     return np.array([-math.sin(angle), math.cos(angle)])
 
 
-def lay_out(scene: Scene, load_parameter: float, closed: dict[str, float]) -> Layout:
-    """Return the layout of `scene`; `closed` are the arc positions of the closed pairs, which order them along the beams."""
+def lay_out(
+    scene: Scene, load_parameter: float, closed: dict[str, float], grips: Mapping[str, Grip] = _FREE
+) -> Layout:
+    """Return the layout of `scene`.
+
+    `closed` are the arc positions of the closed pairs, which order them along the beams, and `grips` say how friction holds them; pairs
+    without a grip have no friction.
+    """
     length = max(beam.length for beam in scene.beams)
     force = max(beam.EI for beam in scene.beams) / length**2
     stations = _ends(scene, load_parameter, length, force)
@@ -210,12 +253,24 @@ def lay_out(scene: Scene, load_parameter: float, closed: dict[str, float]) -> La
         else:
             x, y = scene.pin(spec.node).position(load_parameter)
             place = Position(reference=_relative(scene, (x, y), length))
-        offset = scene.offset(spec) / length * (1.0 if spec.side == "left" else -1.0)
+        left = 1.0 if spec.side == "left" else -1.0
+        offset, roll = scene.offset(spec) / length * left, -scene.radius(spec) / length * left
         turn, arc, count = count, count + 1, count + 2
         angle, count = (count, count + 1) if offset else (NONE, count)
         on_beam[spec.beam].append((closed[spec.pair], len(stations)))
         stations.append(Station(place=place, rotation_unknown=turn, touch=len(touches)))
-        touches.append(Touch(spec=spec, place=place, offset=offset, arc=arc, angle=angle))
+        touches.append(
+            Touch(
+                spec=spec,
+                place=place,
+                offset=offset,
+                arc=arc,
+                angle=angle,
+                grip=grips.get(spec.pair),
+                lever=-offset - roll,
+                roll=roll,
+            )
+        )
     parts: list[Part] = []
     for number, beam in enumerate(scene.beams):
         x, y = beam.direction

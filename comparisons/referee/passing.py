@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
+_CLOSED = ("pass-through", "slip", "stick")
+"""Kinds of events at which a contact stays closed."""
 _AROUND = 0.2
 """Distance from an end, over the node's path, within which a node may have passed around the end."""
 
@@ -36,7 +38,7 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
             [
                 event.load_parameter
                 for event in response.events
-                if event.pair == spec.pair and event.kind != "pass-through"
+                if event.pair == spec.pair and event.kind not in _CLOSED
             ]
         )
         for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:

@@ -1,5 +1,7 @@
 """The index of an equilibrium: number of negative eigenvalues of the Hessian on the admissible variations."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +18,10 @@ def index_and_margin(solution: Solution) -> tuple[int, float]:
     The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
     Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
     normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
+    With friction the equations have no potential and no index: it is -1, and the margin is nan.
     """
+    if solution.layout.rubs:
+        return -1, math.nan
     system = solution.system
     assert system is not None, "an equilibrium has its equations"
     held = _directions(solution)

@@ -1,11 +1,12 @@
 """The first guess of the exact equilibrium from the axes, forces and arc positions of an answer."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.friction import Grip
 from comparisons.referee.layout import NONE, Layout, Part, Position
 from comparisons.response import Response, SupportHistory
 from comparisons.scene import Scene
@@ -34,6 +35,10 @@ class AnswerState:
         Force and moment of every support, by the supported end.
     tips : dict of (float, float)
         Position of the free or less restrained end of every beam.
+    grips : dict of Grip
+        How friction holds the closed pairs; pairs without a grip have no friction.
+    drags : dict of float
+        Tangential force of the closed pairs whose friction the answer states.
     """
 
     load_parameter: float
@@ -42,6 +47,8 @@ class AnswerState:
     axes: dict[str, tuple[Array, Array]]
     reactions: dict[str, tuple[float, float, float]]
     tips: dict[str, tuple[float, float]]
+    grips: dict[str, Grip] = field(default_factory=dict)
+    drags: dict[str, float] = field(default_factory=dict)
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
@@ -64,6 +71,11 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions=reactions,
         tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
+        drags={
+            pair: float(item.friction.tangential[k])
+            for pair, item in closed.items()
+            if item.friction is not None
+        },
     )
 
 

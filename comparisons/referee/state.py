@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from comparisons.referee.basis import VALUES, WEIGHTS, shapes, up_to
 from comparisons.referee.equations import fields, rotations
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
-from comparisons.referee.layout import NONE, Layout, Part, Touch
+from comparisons.referee.layout import Part, Touch
 from comparisons.referee.stability import index_and_margin
 from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
@@ -150,7 +150,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
             solution=solution,
         )
     layout = solution.layout
-    contacts = {touch.spec.pair: _contact(solution, touch) for touch in layout.touches}
+    contacts = {touch.spec.pair: touching(solution, touch) for touch in layout.touches}
     index, margin = index_and_margin(solution)
     origin = np.array(scene.beams[0].start)
     return Equilibrium(
@@ -173,21 +173,9 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     )
 
 
-def _parts_at(layout: Layout, touch: Touch) -> tuple[Part, Part]:
-    """Return the parts before and behind a contact."""
-    number = next(
-        k
-        for k, item in enumerate(layout.stations)
-        if item.touch != NONE and layout.touches[item.touch] is touch
-    )
-    before = next(part for part in layout.parts if part.last == number)
-    behind = next(part for part in layout.parts if part.first == number)
-    return before, behind
-
-
 def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
     """Return ``r'_-`` and ``r'_+`` at a contact."""
-    before, behind = _parts_at(solution.layout, touch)
+    before, behind = solution.layout.beside(touch)
     return _tangent_at(solution, before, before.last), _tangent_at(solution, behind, behind.first)
 
 
@@ -198,10 +186,10 @@ def _tangent_at(solution: Solution, part: Part, station: int) -> Array:
     return np.asarray(part.axes @ (there.tangent + np.array([1.0, 0.0])))
 
 
-def _contact(solution: Solution, touch: Touch) -> Contact:
+def touching(solution: Solution, touch: Touch) -> Contact:
     """Return a contact in the units of the scene."""
     layout, z = solution.layout, solution.z
-    before, behind = _parts_at(layout, touch)
+    before, behind = layout.beside(touch)
     force = (
         layout.force * before.axes @ (z[before.force : before.force + 2] - z[behind.force : behind.force + 2])
     )

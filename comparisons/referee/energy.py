@@ -1,0 +1,106 @@
+"""The energy that friction dissipates in the exact equilibria along an answer, by Gauss quadrature of ``F_t v``."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import NDArray
+
+from comparisons.referee.equilibrium import SearchStatus, Solution
+from comparisons.referee.friction import Grip
+from comparisons.referee.history import History, UnknownFrictionError
+from comparisons.referee.march import rates, reach, slip_rate
+from comparisons.referee.state import Equilibrium, touching
+
+Array = NDArray[np.float64]
+
+_POINTS, _WEIGHTS = leggauss(6)
+_LEGENDRE = np.linalg.inv(legvander(_POINTS, len(_POINTS) - 1))
+"""From values at the Gauss points to the coefficients of Legendre's polynomials."""
+_SMOOTH = 1e-5
+"""Largest sum of the last two coefficients over the first; the error of the integral is about its square."""
+_DEPTH = 8
+"""Number of times that an interval is halved at most."""
+_LEAST = 1e-12
+"""Smallest interval of load parameters that is integrated."""
+
+
+def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]:
+    """Return the energy that every contact with friction dissipates from the load parameter before number k up to it.
+
+    The interval is cut where contacts begin to slip, stick, touch or open. The energy is nan if one of these places is not found.
+    """
+    times = history.response.load_parameter
+    begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
+    pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
+    corners = [t for pin in history.scene.pins for t in pin.corners if begin < t < end]
+    try:
+        cuts = dict.fromkeys([begin, *corners]) | _cuts(history, k) | {end: exact.solution}
+        spent, there = dict.fromkeys(pairs, 0.0), None
+        for first, last in reversed(list(pairwise(sorted(cuts)))):
+            there = cuts[last] or there
+            if last - first > _LEAST:
+                energies, there = _between(history, first, last, there)
+                for pair, energy in energies.items():
+                    spent[pair] += energy
+    except UnknownFrictionError:
+        return dict.fromkeys(pairs, math.nan)
+    return spent
+
+
+def _cuts(history: History, k: int) -> dict[float, Solution | None]:
+    """Load parameters before number k, after the one before, at which a contact changes, with the equilibria there."""
+    found: dict[float, Solution | None] = {}
+    for pair, own in history.phases.items():
+        before = history.numbers[pair][k - 1] if k else 0
+        for number in range(before + 1, history.numbers[pair][k] + 1):
+            if own[number].slip != own[number - 1].slip:
+                begin = history.begin(pair, number)
+                found[begin.load_parameter] = begin.solution
+    return found
+
+
+def _between(
+    history: History, first: float, last: float, there: Solution | None
+) -> tuple[dict[str, float], Solution | None]:
+    """Dissipation between two load parameters without a change, and the equilibrium nearest to the first one.
+
+    `there` is an equilibrium at the last one, in any state, or None. Where the integrand is not smooth the interval is halved.
+    """
+    middle = (first + last) / 2.0
+    grips, closed = history.around(middle), history.closed(middle)
+    if not any(grip.slip for grip in grips.values()):
+        return {}, None
+    if there is None or closed != {touch.spec.pair for touch in there.layout.touches}:
+        there = history.near(middle, closed, grips)
+    spent: dict[str, float] = {}
+    spans = [(first, last, _DEPTH)]
+    while spans:
+        low, high, depth = spans.pop()
+        powers, there = _powers(history, low, high, there, grips)
+        terms = np.abs([_LEGENDRE @ values for values in powers.values()])
+        if depth and np.any(terms[:, -2:].sum(axis=1) > _SMOOTH * terms[:, 0]):
+            spans += [(low, (low + high) / 2.0, depth - 1), ((low + high) / 2.0, high, depth - 1)]
+            continue
+        for pair, values in powers.items():
+            spent[pair] = spent.get(pair, 0.0) + float(_WEIGHTS @ values) * (high - low) / 2.0
+    return spent, there
+
+
+def _powers(
+    history: History, low: float, high: float, there: Solution, grips: dict[str, Grip]
+) -> tuple[dict[str, Array], Solution]:
+    """``F_t v`` of the slipping contacts at the Gauss points between two load parameters, and the equilibrium at the first of them."""
+    powers: dict[str, Array] = {}
+    for k in reversed(range(len(_POINTS))):
+        t = float((low + high) / 2.0 + _POINTS[k] * (high - low) / 2.0)
+        there = reach(history.scene, there, t, grips)
+        if there.status is not SearchStatus.FOUND:
+            raise UnknownFrictionError(f"no equilibrium was found at load parameter {t:.6g}")
+        rate = rates(history.scene, there)
+        for touch in there.layout.touches:
+            if touch.grip is not None and touch.grip.slip:
+                power = touching(there, touch).drag * slip_rate(there, touch, rate) * there.layout.length
+                powers.setdefault(touch.spec.pair, np.zeros(len(_POINTS)))[k] = power
+    return powers, there

@@ -1,0 +1,140 @@
+"""Coulomb friction at a contact: the rows of slip and stick, and the couple of a face.
+
+With the mean tangent ``(r'_- + r'_+)/2 = a t``, its left normal n, the section's rotation theta and curvature k, the angle phi of t, and
+``lever = h/2`` and ``roll = R`` to the right of the beam, minus these values to its left::
+
+    F_t = F . t,  F_n = side F . n           tangential and normal force on the beam, side = 1 for a node on the right
+    m_- - m_+ = C = lever F_t                couple on the section, since F acts on the face
+    v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta
+    slip:   F_t = sigma mu F_n,  sigma = sign v
+    stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
+
+The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began. The couple, and the row
+that defines phi as the direction of t, take the place of the two conditions of stationarity in arc position and phi, which hold without
+friction only.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from comparisons.referee.layout import Layout, Part, Touch
+
+Array = NDArray[np.float64]
+
+_STEP = 1e-30
+"""Imaginary step of the derivatives, which have no error of subtraction."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hold:
+    """The place at which a contact began to stick, with lengths in the scene's units.
+
+    Attributes
+    ----------
+    load_parameter : float
+        Where the stick began.
+    arc_position : float
+        Arc position s*.
+    stretch : float
+        A*.
+    shear, direction : float
+        The angles psi* and phi*.
+    """
+
+    load_parameter: float
+    arc_position: float
+    stretch: float
+    shear: float
+    direction: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grip:
+    """How a contact with friction is held.
+
+    Attributes
+    ----------
+    friction : float
+        Coefficient of friction.
+    slip : int
+        The sign sigma of the slip rate; 0 in stick.
+    hold : Hold or None
+        Where the stick began; None in slip.
+    """
+
+    friction: float
+    slip: int
+    hold: Hold | None = None
+
+
+LOOSE = Grip(friction=0.0, slip=1)
+"""A contact that slips without friction, as at a touch, where there is no force yet."""
+
+
+class Local(NamedTuple):
+    """Friction of a contact as a function of the rotation of its section, the forces of the parts, phi, the moment before it, and s."""
+
+    row: Any
+    couple: Any
+    direction: Any
+    stretch: Any
+
+
+class Rows(NamedTuple):
+    """Values of `Local`, and their derivatives (3, 8) without that of A."""
+
+    values: Local
+    derivatives: Array
+
+
+UNKNOWNS = 8
+"""Number of the arguments of `Local`: theta, two forces before and two behind, phi, m, s."""
+
+
+def rows(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: Array) -> Rows:
+    """Return the row of slip or stick, the couple, and the row of the direction, at the values `given` (8,) of the unknowns."""
+    derivatives = np.empty((3, UNKNOWNS))
+    for k in range(UNKNOWNS):
+        turned = given.astype(complex)
+        turned[k] += 1j * _STEP
+        derivatives[:, k] = np.imag(_local(layout, touch, parts, turned)[:3]) / _STEP
+    return Rows(_local(layout, touch, parts, given), derivatives)
+
+
+def _local(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: Any) -> Local:
+    """Evaluate the equations of the module, real or complex."""
+    assert touch.grip is not None, "only a contact with friction has these rows"
+    theta, phi, m, s = given[0], given[5], given[6], given[7]
+    mean = (_tangent(parts[0], theta, given[1:3]) + _tangent(parts[1], theta, given[3:5])) / 2.0
+    force = parts[0].axes @ (given[1:3] - given[3:5])
+    a = (mean[0] ** 2 + mean[1] ** 2) ** 0.5
+    drag = (force[0] * mean[0] + force[1] * mean[1]) / a
+    push = touch.right * (force[1] * mean[0] - force[0] * mean[1]) / a
+    couple = touch.lever * drag
+    stretch = a + touch.lever * (m - couple / 2.0) / parts[0].EI
+    aligned = mean[1] * np.cos(phi) - mean[0] * np.sin(phi)
+    hold = touch.grip.hold
+    if hold is None:
+        return Local(drag - touch.grip.slip * touch.grip.friction * push, couple, aligned, stretch)
+    row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position / layout.length)
+    if touch.angle >= 0:
+        row = row + touch.lever * _wrapped(phi - theta - hold.shear) + touch.roll * (phi - hold.direction)
+    return Local(row, couple, aligned, stretch)
+
+
+def _tangent(part: "Part", theta: Any, n: Any) -> Any:
+    """``r'`` of a part: ``(1 + N/EA) d1 + (Q/GA) d2``."""
+    c, s = np.cos(theta), np.sin(theta)
+    along = 1.0 + part.stretch * (n[0] * c + n[1] * s)
+    across = part.shear * (n[1] * c - n[0] * s)
+    return part.axes @ np.array([along * c - across * s, along * s + across * c])
+
+
+def _wrapped(angle: Any) -> Any:
+    """Angle less the multiple of 2 pi next to it; phi is measured from the axes of the scene, theta from the undeformed beam."""
+    return angle - 2.0 * math.pi * round(float(np.real(angle)) / (2.0 * math.pi))

@@ -1,0 +1,268 @@
+"""How friction holds the contacts of an answer at its load parameters, with the places of stick from the referee's own equilibria.
+
+A slip has no memory. A stick holds the place at which it began: where the referee's own slip rate is zero, or its own contact force begins.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.referee.equilibrium import SearchStatus, Solution, solve
+from comparisons.referee.friction import LOOSE, Grip, Hold
+from comparisons.referee.layout import Touch
+from comparisons.referee.march import place, rates, reach, slip_rate, speed
+from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.start import answer_state
+from comparisons.referee.state import touching
+from comparisons.response import Response
+from comparisons.scene import ContactSpec, Scene
+
+_ITERATIONS = 60
+"""Largest number of steps of a root."""
+_FIRST = 1e-4
+"""First step of a secant, in load parameters."""
+_CLOSE = 1e-13
+"""Change of a load parameter at which a root is found."""
+_ZERO = 1e-12
+"""Dimensionless margin that is zero."""
+
+
+class UnknownFrictionError(ValueError):
+    """The friction of an answer at a load parameter cannot be computed; `wrong` if the answer is to blame."""
+
+    def __init__(self, reason: str, *, wrong: bool = False) -> None:
+        super().__init__(reason)
+        self.wrong = wrong
+
+
+@dataclass(frozen=True, kw_only=True)
+class Begin:
+    """Where a phase begins by the referee's own equations: load parameter, and the equilibrium there in the state before."""
+
+    load_parameter: float
+    solution: Solution
+
+
+class History:
+    """The phases of the contacts of an answer, and where they begin.
+
+    Attributes
+    ----------
+    response, scene
+        The answer and its scene.
+    taken : str
+        What was taken for the states of friction if the answer does not state them; empty if it does.
+    """
+
+    def __init__(self, response: Response, scene: Scene) -> None:
+        self.response, self.scene = response, scene
+        self.specs = {spec.pair: spec for spec in scene.contacts}
+        self.phases: dict[str, tuple[Phase, ...]] = {}
+        self.numbers: dict[str, tuple[int, ...]] = {}
+        how: list[str] = []
+        for spec in scene.contacts:
+            column, taken = states(response, scene, spec)
+            self.phases[spec.pair], self.numbers[spec.pair] = phases(response, spec, column)
+            how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
+        self.taken = "; ".join(how)
+        self._begins: dict[tuple[str, int], Begin] = {}
+
+    def grips(self, k: int) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts at load parameter number k.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no equilibrium is found where a stick begins.
+        """
+        held = {}
+        for pair, spec in self.specs.items():
+            number = self.numbers[pair][k]
+            if spec.friction and self.phases[pair][number].slip != OPEN:
+                held[pair] = self._grip(spec, number)
+        return held
+
+    def around(self, t: float) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts at load parameter t; contacts that change there, as before.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no equilibrium is found where a stick begins.
+        """
+        return self._around(None, t)
+
+    def closed(self, t: float) -> set[str]:
+        """Return the contacts that are closed at load parameter t, those that touch there included."""
+        return {
+            pair
+            for pair, own in self.phases.items()
+            if [phase for phase in own if phase.begin <= t + SAME][-1].slip != OPEN
+        }
+
+    def begin(self, pair: str, number: int) -> Begin:
+        """Return where a phase of a contact begins; not for the first phase, nor for a slip-off, where a part has no length.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no beginning is found.
+        """
+        if (pair, number) not in self._begins:
+            self._begins[pair, number] = self._found(self.specs[pair], number)
+        return self._begins[pair, number]
+
+    def _grip(self, spec: ContactSpec, number: int) -> Grip:
+        slip = self.phases[spec.pair][number].slip
+        if slip == UNKNOWN:
+            raise UnknownFrictionError(
+                f"{spec.pair} slips between two load parameters, and its sign is not stated"
+            )
+        if slip:
+            return Grip(friction=spec.friction, slip=slip)
+        if number == 0:
+            return Grip(friction=spec.friction, slip=0, hold=_at_rest(self.scene, spec))
+        solution = self.begin(spec.pair, number).solution
+        touch = next(item for item in solution.layout.touches if item.spec is spec)
+        return Grip(friction=spec.friction, slip=0, hold=place(solution, touch))
+
+    def _found(self, spec: ContactSpec, number: int) -> Begin:
+        """Find the root of a phase's margin, in each state that the contact may have been in before."""
+        before = self.phases[spec.pair][number - 1]
+        if before.slip == OPEN:
+            return self._root(spec, number, LOOSE)
+        if before.slip != UNKNOWN:
+            return self._root(spec, number, self._grip(spec, number - 1))
+        found, reasons = [], []
+        for sign in (1, -1):
+            try:
+                found.append(self._root(spec, number, Grip(friction=spec.friction, slip=sign)))
+            except UnknownFrictionError as error:
+                reasons.append(error)
+        if not found:
+            raise reasons[0]
+        phase = self.phases[spec.pair][number]
+        return min(found, key=lambda item: abs(item.load_parameter - phase.begin))
+
+    def _root(self, spec: ContactSpec, number: int, own: Grip) -> Begin:
+        """Find the load parameter at which the state `own` of a contact ends."""
+        phase = self.phases[spec.pair][number]
+        around = self._around(spec, phase.begin)
+        state = {**around, spec.pair: own} if spec.friction else around
+        now = self.near(phase.begin, self.closed(phase.begin) | {spec.pair}, state)
+
+        def margin(t: float) -> float:
+            nonlocal now
+            now = reach(self.scene, now, t, state)
+            if now.status is not SearchStatus.FOUND:
+                raise UnknownFrictionError(
+                    f"no equilibrium was found where {spec.pair} {_does(phase)} at {t:.6g}"
+                )
+            return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
+
+        if any(abs(phase.begin - corner) <= SAME for pin in self.scene.pins for corner in pin.corners):
+            margin(phase.begin)
+            return Begin(load_parameter=phase.begin, solution=now)
+        begin = _secant(margin, phase) if math.isfinite(phase.stated) else _bisected(margin, phase, spec.pair)
+        return Begin(load_parameter=begin, solution=now)
+
+    def _around(self, spec: ContactSpec | None, t: float) -> dict[str, Grip]:
+        """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there."""
+        held = {}
+        for pair, other in self.specs.items():
+            if other is spec or not other.friction:
+                continue
+            number = max(
+                (n for n, phase in enumerate(self.phases[pair]) if phase.begin <= t + SAME), default=0
+            )
+            now = self.phases[pair][number]
+            if number and abs(now.begin - t) <= SAME and now.slip != OPEN:
+                before = self.phases[pair][number - 1]
+                held[pair] = LOOSE if before.slip == OPEN else self._grip(other, number - 1)
+            elif now.slip != OPEN:
+                held[pair] = self._grip(other, number)
+        return held
+
+    def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
+        """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If none is found.
+        """
+        times = self.response.load_parameter
+        after = int(np.searchsorted(times, t))
+        for k in (after - 1, after, after + 1):
+            if not 0 <= k < len(times):
+                continue
+            answer = answer_state(self.response, self.scene, k)
+            if closed <= answer.arcs.keys():
+                kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
+                found = solve(self.scene, replace(answer, arcs=kept, grips=state))
+                if found.status is SearchStatus.FOUND:
+                    return found
+        raise UnknownFrictionError(
+            f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
+        )
+
+
+def _does(phase: Phase) -> str:
+    return {0: "sticks", OPEN: "opens"}.get(phase.slip, "slips")
+
+
+def _at_rest(scene: Scene, spec: ContactSpec) -> Hold:
+    """The place of a contact with the undeformed beam."""
+    beam = scene.beam(spec.beam)
+    x, y = beam.direction
+    there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
+    way = np.array(there) - np.array(beam.start)
+    angle = math.atan2(y, x)
+    arc = float(np.clip(way @ np.array([x, y]), 0.0, beam.length))
+    return Hold(load_parameter=0.0, arc_position=arc, stretch=1.0, shear=angle, direction=angle)
+
+
+def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens: bool) -> float:
+    """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
+    touch: Touch = next(item for item in now.layout.touches if item.spec is spec)
+    if own.friction and own.slip and not opens:
+        rate = rates(scene, now)
+        return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
+    contact = touching(now, touch)
+    if opens or not own.friction:
+        return contact.push / now.layout.force
+    return (own.friction * contact.push - abs(contact.drag)) / now.layout.force
+
+
+def _secant(margin: Callable[[float], float], phase: Phase) -> float:
+    """Root of a margin near a stated load parameter; the margin is evaluated there last."""
+    low, high = max(0.0, 2.0 * phase.low - phase.high), 2.0 * phase.high - phase.low
+    first, value = phase.stated, margin(phase.stated)
+    if abs(value) <= _ZERO:
+        return first
+    second = first + _FIRST * (phase.high - phase.low)
+    for _ in range(_ITERATIONS):
+        other = margin(second)
+        if abs(other) <= _ZERO or abs(second - first) <= _CLOSE or other == value:
+            return second
+        ahead = second - other * (second - first) / (other - value)
+        first, value, second = second, other, min(max(ahead, low), high)
+    raise UnknownFrictionError(f"a contact does not change at load parameter {phase.stated:.6g}", wrong=True)
+
+
+def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> float:
+    """Root of a margin between two load parameters."""
+    from scipy.optimize import brentq
+
+    low, high = max(phase.low, 1e-3 * phase.high), phase.high
+    at_low, at_high = margin(low), margin(high)
+    if at_low * at_high > 0.0:
+        raise UnknownFrictionError(
+            f"{pair} {_does(phase)} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
+            wrong=True,
+        )
+    found = float(brentq(margin, low, high, xtol=_CLOSE))
+    margin(found)
+    return found

@@ -1,0 +1,125 @@
+"""The phases of the contacts in an answer: open, slip one way or the other, or stick, with where each begins."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.response import ContactEvent, ContactHistory, Response
+from comparisons.scene import ContactSpec, Scene
+
+Ints = NDArray[np.int64]
+
+PASSES = "pass-through"
+OPEN, UNKNOWN = 9, 8
+"""Numbers of an open contact and of a slip whose sign an answer does not state, next to the signs -1, 0 and 1 of the slip rate."""
+_EDGE = 0.05
+"""Distance of a force from the edge of the cone, over the cone, up to which an answer without states of friction slips."""
+_MOVED = 1e-3
+"""Change of an arc position between two load parameters, over the length, from which such an answer slips."""
+SAME = 1e-9
+"""Load parameters of one event."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phase:
+    """A phase of a contact.
+
+    Attributes
+    ----------
+    low, high : float
+        Load parameters between which it begins.
+    stated : float
+        Where it begins by the answer's events; nan without an event.
+    slip : int
+        Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact.
+    """
+
+    low: float
+    high: float
+    stated: float
+    slip: int
+
+    @property
+    def begin(self) -> float:
+        """Where it begins, as far as the answer says."""
+        return (self.low + self.high) / 2.0 if np.isnan(self.stated) else self.stated
+
+
+def states(response: Response, scene: Scene, spec: ContactSpec) -> tuple[Ints, str]:
+    """Return the state of a contact at every load parameter, and how it was taken if the answer does not state its friction."""
+    contact = response.contacts[spec.pair]
+    closed = contact.force != 0.0
+    if not spec.friction:
+        return np.where(closed, 1, OPEN), ""
+    if contact.friction is not None:
+        return np.where(closed, np.sign(contact.friction.slip), OPEN), ""
+    slip, taken = _from_arcs(contact, scene.beam(spec.beam).length), "changes of its arc position"
+    if contact.vector is not None:
+        ratio = np.array([_leaning(response, spec, contact.vector[k], k) for k in range(len(closed))])
+        slip = np.where(np.abs(ratio) >= 1.0 - _EDGE, np.sign(ratio), slip)
+        taken = "the direction of its force and " + taken
+    return np.where(closed, slip, OPEN).astype(np.int64), taken
+
+
+def _from_arcs(contact: ContactHistory, length: float) -> Ints:
+    """Signs of the changes of the arc position since the load parameter before; at the first, up to the next."""
+    change = np.diff(contact.arc_position)
+    change = np.concatenate([change[:1], change]) if len(change) else np.zeros(len(contact.force))
+    return np.where(
+        np.abs(np.nan_to_num(change)) > _MOVED * length, np.sign(np.nan_to_num(change)), 0.0
+    ).astype(np.int64)
+
+
+def _leaning(response: Response, spec: ContactSpec, force: NDArray[np.float64], k: int) -> float:
+    """Tangential over normal force of a contact, over the coefficient of friction, by the direction of the answer's axis."""
+    arc, line = response.axis_line(spec.beam, k)
+    x, y = (
+        np.interp(response.contacts[spec.pair].arc_position[k], arc, way)
+        for way in np.gradient(line, arc, axis=0).T
+    )
+    side = -1.0 if spec.side == "left" else 1.0
+    normal = side * (x * force[1] - y * force[0])
+    return float((x * force[0] + y * force[1]) / (spec.friction * normal)) if normal > 0.0 else 0.0
+
+
+def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[Phase, ...], tuple[int, ...]]:
+    """Return the phases of a contact in order, and the number of the phase at every load parameter.
+
+    The first phase begins at 0. A phase that begins at an event is stated there; one that the events leave out begins somewhere
+    between two load parameters.
+    """
+    times = np.concatenate([[0.0], response.load_parameter])
+    events = [event for event in response.events or () if event.pair == spec.pair and event.kind != PASSES]
+    found: list[Phase] = []
+    numbers: list[int] = []
+    for k, now in enumerate(map(int, column)):
+        low, high = float(times[k]), float(times[k + 1])
+        between = [
+            event
+            for event in events
+            if low < event.load_parameter <= high or (not k and event.load_parameter == 0.0)
+        ]
+        if not found:
+            found.append(Phase(low=0.0, high=0.0, stated=0.0, slip=_before(between, now)))
+        for n, event in enumerate(between):
+            slip = now if event is between[-1] else _after(event, between[n + 1])
+            t = event.load_parameter
+            found.append(Phase(low=low, high=high, stated=t, slip=slip))
+        if found[-1].slip != now:
+            found.append(Phase(low=low, high=high, stated=np.nan, slip=now))
+        numbers.append(len(found) - 1)
+    return tuple(found), tuple(numbers)
+
+
+def _before(events: list[ContactEvent], now: int) -> int:
+    """State at the start, from the first events, or from the first load parameter if there are none."""
+    kinds = {"touch": OPEN, "stick": UNKNOWN, "slip": 0, "release": UNKNOWN, "slip-off": UNKNOWN}
+    return kinds.get(events[0].kind, now) if events else now
+
+
+def _after(event: ContactEvent, following: ContactEvent) -> int:
+    """State after an event that another one follows before the next load parameter."""
+    if event.kind == "touch":
+        return 0 if following.kind == "slip" else UNKNOWN
+    return {"stick": 0, "slip": UNKNOWN}.get(event.kind, OPEN)

@@ -1,0 +1,217 @@
+"""Checks of Coulomb's law: in the numbers that an answer states, in the exact equilibrium, and along the path."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from comparisons.referee.certificate import Judgement
+from comparisons.referee.distance import least_force
+from comparisons.referee.energy import dissipated
+from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.history import History, UnknownFrictionError
+from comparisons.referee.layout import Touch
+from comparisons.referee.march import rates, slip_rate, speed
+from comparisons.referee.phases import OPEN, PASSES, UNKNOWN
+from comparisons.referee.state import Equilibrium
+from comparisons.response import FrictionHistory, Response
+from comparisons.scene import ContactSpec, Scene
+
+LAW = 1e-6
+"""Largest violation of Coulomb's law by the numbers of an answer, over the contact force; the models' tolerances are far smaller."""
+ENERGY = 1e-4
+"""Largest relative error of work and dissipation in an answer without other differences."""
+FALL = 1e-8
+"""Largest fall of a dissipation over the work, for the round-off of the models' integrals."""
+_SPREAD = 10.0
+"""Largest relative error of an energy over the largest difference of the answer, since energies are sums over the path."""
+_MOST = 6
+"""Number of changes between slip and stick, the latest ones, that are compared with the referee's own."""
+
+
+def unlawful(response: Response, scene: Scene, k: int, allowed: float) -> Iterator[str]:
+    """Yield violations of Coulomb's law by the forces and signs that an answer states."""
+    law = allowed if response.outside or response.continuum else LAW
+    for spec in scene.contacts:
+        contact = response.contacts[spec.pair]
+        if not spec.friction or contact.friction is None or contact.force[k] == 0.0:
+            continue
+        yield from _unlawful(spec, contact.friction, abs(float(contact.force[k])), k, law, least_force(scene))
+
+
+def _unlawful(
+    spec: ContactSpec, friction: FrictionHistory, force: float, k: int, law: float, least: float
+) -> Iterator[str]:
+    drag, push, slip = (float(x[k]) for x in (friction.tangential, friction.normal, friction.slip))
+    if not abs(np.hypot(drag, push) - force) <= law * force:
+        yield f"the force of {spec.pair} and its tangential and normal components differ"
+    beyond = abs(drag) - spec.friction * push if slip == 0.0 else abs(drag - slip * spec.friction * push)
+    if beyond <= law * max(force, least):
+        return
+    if slip == 0.0:
+        yield f"{spec.pair} sticks with a force outside its cone, F_t = {drag / push:.6g} F_n"
+    else:
+        yield f"{spec.pair} slips with F_t = {drag / push:.6g} F_n, not {slip * spec.friction:.6g} F_n"
+
+
+def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -> Iterator[str]:
+    """Yield violations of Coulomb's law by the exact equilibrium next to an answer, and moves of the answer in stick.
+
+    Parameters
+    ----------
+    history : History
+        States of friction in the answer.
+    k : int
+        Number of the load parameter.
+    exact : Equilibrium
+        The exact equilibrium.
+    allowed : float
+        Largest difference allowed, which also bounds a slip the wrong way and a force outside the cone: the answer may change its state
+        a little earlier or later than the exact one.
+    """
+    for touch in exact.solution.layout.touches:
+        if touch.grip is None:
+            continue
+        contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
+        outside = abs(contact.drag) - touch.grip.friction * contact.push
+        if touch.grip.slip == 0 and outside > allowed * float(np.hypot(*contact.force)):
+            yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
+        if touch.grip.slip == 0:
+            yield from _creeps(history, k, touch, exact, allowed)
+        elif _backwards(history.scene, exact, touch) > allowed:
+            yield f"{pair} slips against the stated direction"
+
+
+def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed: float) -> Iterator[str]:
+    """Yield a contact that moves though it sticks, by its arc positions where the stick begins and now, apart from what it rolls."""
+    assert touch.grip is not None, "a contact that sticks has friction"
+    assert touch.grip.hold is not None, "a contact that sticks has a place"
+    response, spec = history.response, touch.spec
+    number = history.numbers[spec.pair][k]
+    phase = history.phases[spec.pair][number]
+    length = history.scene.beam(spec.beam).length
+    rolled = exact.contacts[spec.pair].arc_position - touch.grip.hold.arc_position
+    began = [
+        event.arc_position
+        for event in response.events or ()
+        if event.pair == spec.pair and event.load_parameter == phase.stated and event.kind != PASSES
+    ]
+    moved = float(response.contacts[spec.pair].arc_position[k]) - (began[-1] if began else np.nan)
+    law = allowed if response.outside or response.continuum else LAW
+    if abs(moved - rolled) > law * length + allowed * abs(rolled):
+        yield f"{spec.pair} sticks and moves by {(moved - rolled) / length:.2g} L"
+
+
+def _backwards(scene: Scene, exact: Equilibrium, touch: Touch) -> float:
+    """Slip rate against the sign of the slip, over the speed; at a corner of a pin's path the smaller of those before and behind it."""
+    assert touch.grip is not None, "only a contact with friction slips"
+    sizes = []
+    for behind in (False, True):
+        rate = rates(scene, exact.solution, behind=behind)
+        size = -touch.grip.slip * slip_rate(exact.solution, touch, rate) / speed(scene, exact.solution, rate)
+        sizes.append(size)
+        t = exact.load_parameter
+        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for pin in scene.pins for corner in pin.corners):
+            break
+    return min(sizes)
+
+
+def _unpaid(response: Response, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
+    """Yield an answer whose work is not its dissipation and the exact strain energy; jumps release energy, and end the comparison."""
+    t = response.load_parameter[k]
+    jumped = any(event.kind == "slip-off" and event.load_parameter <= t for event in response.events or ())
+    rubbing = [item.friction for item in response.contacts.values() if item.friction is not None]
+    if response.work is None or jumped or not rubbing:
+        return
+    spent = sum(float(item.dissipated[k]) for item in rubbing)
+    missing = float(response.work[k]) - spent - exact.strain_energy
+    largest = max(abs(float(response.work[k])), exact.strain_energy, spent)
+    if abs(missing) > tolerance * largest:
+        yield f"the work is not strain energy and dissipation at load parameter {t:.6g}, off by {missing / largest:.2g}"
+
+
+def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
+    """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
+    response = history.response
+    if response.work is None:
+        return
+    stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
+    largest = max(abs(float(response.work[k])), exact.strain_energy)
+    for pair, own in dissipated(history, k, exact).items():
+        if pair in stated:
+            spent = stated[pair].dissipated
+            missing = float(spent[k] - (spent[k - 1] if k else 0.0)) - own
+            if abs(missing) > tolerance * largest:
+                t = response.load_parameter[k]
+                yield f"the dissipation of {pair} up to load parameter {t:.6g} is off by {missing / largest:.2g} of the work"
+
+
+def rubs_wrongly_on_the_way(
+    history: History, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+) -> Iterator[str]:
+    """Yield violations between load parameters.
+
+    They are dissipation that falls, changes of slip and stick that are not stated or elsewhere, work that is not the exact strain
+    energy and the dissipation at the judged load parameters, and dissipation up to the last of them that is not the exact one.
+    """
+    response = history.response
+    apart = max((item.distance.largest[1] for item in states if item.distance is not None), default=0.0)
+    for k, item in zip(numbers, states, strict=True):
+        if item.exact is not None and item.exact.status is SearchStatus.FOUND:
+            yield from _unpaid(response, k, item.exact, ENERGY + _SPREAD * apart)
+    for k, item in list(zip(numbers, states, strict=True))[-_MOST:]:
+        if item.exact is not None and item.exact.status is SearchStatus.FOUND:
+            yield from _misspent(history, k, item.exact, ENERGY + _SPREAD * apart)
+    for spec in history.scene.contacts:
+        friction = response.contacts[spec.pair].friction
+        if spec.friction and friction is not None:
+            yield from _falls(spec, friction, response)
+        if spec.friction:
+            yield from _unstated(history, spec)
+            yield from _elsewhere(history, spec, allowed)
+
+
+def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response) -> Iterator[str]:
+    """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
+    spent = np.concatenate([[0.0], friction.dissipated])
+    work = friction.dissipated if response.work is None else response.work
+    falls = np.diff(spent) < -FALL * np.abs(np.concatenate([work, friction.dissipated])).max(initial=0.0)
+    if falls.any():
+        yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
+
+
+def _unstated(history: History, spec: ContactSpec) -> Iterator[str]:
+    """Yield changes between slip and stick without an event, or against it, if the answer records events."""
+    events = history.response.events
+    for before, phase in zip(history.phases[spec.pair], history.phases[spec.pair][1:], strict=False):
+        if events is None or OPEN in (before.slip, phase.slip):
+            continue
+        kinds = [
+            event.kind
+            for event in events
+            if event.pair == spec.pair and event.load_parameter == phase.stated and event.kind != PASSES
+        ]
+        what = "slips" if phase.slip else "sticks"
+        if not kinds:
+            yield f"{spec.pair} {what} without an event up to load parameter {phase.high:.6g}"
+        elif (kinds[-1] == "stick") != (phase.slip == 0):
+            yield f"{spec.pair} {what} after an event of kind {kinds[-1]} at load parameter {phase.stated:.6g}"
+
+
+def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[str]:
+    """Yield changes between slip and stick that are not where the referee's own equilibria change."""
+    own = list(enumerate(history.phases[spec.pair]))[1:]
+    changes = [
+        (n, phase) for n, phase in own if OPEN not in (phase.slip, history.phases[spec.pair][n - 1].slip)
+    ]
+    for n, phase in changes[-_MOST:]:
+        if UNKNOWN in (phase.slip, history.phases[spec.pair][n - 1].slip):
+            continue
+        try:
+            begin = history.begin(spec.pair, n).load_parameter
+        except UnknownFrictionError as error:
+            if error.wrong:
+                yield str(error)
+            continue
+        if abs(begin - phase.begin) > max(allowed, phase.high - phase.low):
+            what = "slips" if phase.slip else "sticks"
+            yield f"{spec.pair} {what} from load parameter {phase.begin:.6g}, exactly from {begin:.6g}"
