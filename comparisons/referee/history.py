@@ -165,7 +165,7 @@ class History:
         """Find the load parameter at which the state `own` of a contact ends."""
         phase = self.phases[spec.pair][number]
         around = self._around(spec, phase.begin)
-        state = {**around, spec.pair: own} if spec.friction else around
+        state = {**around, spec.pair: own}
         now = self.near(phase.begin, self.closed(phase.begin) | {spec.pair}, state)
 
         def margin(t: float) -> float:

@@ -11,9 +11,12 @@ from comparisons.models import solve
 from comparisons.models.network import solve_network
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, answer_state, certify, equilibrium
+from comparisons.referee.basis import DEGREE
 from comparisons.referee.energy import dissipated
-from comparisons.referee.friction import Grip
+from comparisons.referee.equations import assemble, mesh_of, properties
+from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.history import History
+from comparisons.referee.layout import lay_out
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import stated
@@ -94,6 +97,52 @@ def test_the_places_of_stick_are_the_tabulated_ones() -> None:
     assert [phase.slip for phase in history.phases[PAIR]] == [-1, 0, 1]
     assert history.begin(PAIR, 1).load_parameter == pytest.approx(0.6204977, abs=5e-8)
     assert history.begin(PAIR, 2).load_parameter == pytest.approx(0.6832873, abs=5e-8)
+
+
+@pytest.mark.parametrize(
+    ("friction", "force", "arc_position"),
+    [
+        (0.1, 2.1935803158557e-3, 0.873335466586),
+        (0.3, 2.110304862086e-3, 0.847142560461),
+        (0.5, 2.122282811362e-3, 0.831119109269),
+    ],
+)
+def test_the_last_slip_is_the_tabulated_one(friction: float, force: float, arc_position: float) -> None:
+    """Reissner rod by shooting; a slip needs no history."""
+    scene = rough("ks-cantilever", friction)
+    given = replace(answer_state(answer(rough("ks-cantilever", 0.3)), scene, -1), load_parameter=1.0)
+    found = equilibrium(scene, replace(given, grips={PAIR: Grip(friction=friction, slip=1)})).contacts[PAIR]
+    assert float(np.hypot(*found.force)) == pytest.approx(force, rel=1e-11)
+    assert found.arc_position == pytest.approx(arc_position, rel=1e-11)
+
+
+@pytest.mark.parametrize("slip", [1, 0])
+@pytest.mark.parametrize("seed", [0, 2])
+def test_the_equations_are_differentiated(slip: int, seed: int) -> None:
+    """Against central differences, off equilibrium, for a sharp and a round pin on a face."""
+    scene = drawn_on_a_face(round_pin=bool(seed))
+    hold = (
+        None if slip else Hold(load_parameter=0.0, arc_position=0.7, stretch=1.02, shear=0.1, direction=0.3)
+    )
+    layout = lay_out(scene, 0.6, {"p->b": 0.72}, {"p->b": Grip(friction=0.4, slip=slip, hold=hold)})
+    mesh = mesh_of(layout, [np.array([0.0, 0.6, 1.0]), np.array([0.0, 1.0])])
+    rng = np.random.default_rng(seed)
+    z, bubbles = rng.uniform(-0.3, 0.3, mesh.unknowns), np.zeros((3, DEGREE - 1))
+    z[layout.touches[0].arc] = 0.72
+    rods = properties(layout, mesh)
+    for _ in range(30):
+        bubbles = bubbles - assemble(layout, mesh, rods, z, bubbles).shift
+
+    def gradient(change: np.ndarray) -> np.ndarray:
+        inside = bubbles
+        for _ in range(6):
+            inside = inside - assemble(layout, mesh, rods, z + change, inside).shift
+        return assemble(layout, mesh, rods, z + change, inside).gradient
+
+    system, step = assemble(layout, mesh, rods, z, bubbles), 1e-5
+    by = np.array([(gradient(e) - gradient(-e)) / (2.0 * step) for e in step * np.eye(len(z))]).T
+    assert (np.abs(by - system.hessian) / np.abs(system.hessian).max(axis=1)[:, None]).max() < 1e-6
+    assert np.abs(by - by.T).max() > 1e-2
 
 
 def test_without_events_the_referee_finds_them_itself() -> None:
@@ -310,6 +359,19 @@ def test_a_slip_against_the_pin_is_refused() -> None:
     found = certify(forged, FAULTY, at=[5])
     assert found.verdict is Verdict.INADMISSIBLE, found.line()
     assert "slips against the stated direction" in found.judged[0].reason
+
+
+def drawn_on_a_face(*, round_pin: bool) -> Scene:
+    """A thick cantilever under a sharp or a round pin, whose shear and face matter."""
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.2), clamped=("start",), width=0.1, height=0.2, youngs_modulus=1e4,
+        poissons_ratio=0.3,
+    )  # fmt: skip
+    return Scene(
+        name="face", load_parameters=1, beams=(beam,),
+        pins=(PinSpec(name="p", path=((0.8, -0.2), (0.7, 0.2)), radius=0.15 if round_pin else None),),
+        contacts=(ContactSpec(node="p", beam="b", side="right", surface="face", friction=0.4),),
+    )  # fmt: skip
 
 
 def drawn(seed: int) -> Scene:
