@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fem_reference.friction import mapped
 from fem_reference.model import Model
 from fem_reference.newton import Attempt, force_scale, iterate
 from fem_reference.settings import Settings
@@ -12,15 +13,17 @@ from fem_reference.status import Status
 
 
 @np.errstate(all="ignore")  # values that are not finite become a status
-def equilibrium(model: Model, guess: State, settings: Settings) -> Attempt:
+def equilibrium(model: Model, guess: State, settings: Settings, *, keep_set: bool = False) -> Attempt:
     """Find the equilibrium with unilateral contact at the load parameter of ``guess``; never raises.
 
     Newton's method converges with a fixed set of closed contacts. Then contacts with tensile force are opened, penetrated
-    open contacts are closed, and Newton's method is repeated, so that gaps of unconverged iterates cause no change. A set
-    that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian steps follow when the set no longer
-    changes.
+    open contacts are closed, friction is mapped to its cone, and Newton's method is repeated, so that gaps of unconverged
+    iterates cause no change. A set that was tried before ends the iteration with `Status.CYCLING`. Augmented Lagrangian
+    steps follow when the set no longer changes. With ``keep_set`` the set of the guess is kept.
     """
-    state = with_conditions(guess, tuple(_closed_if_penetrated(model, touch) for touch in guess.touches))
+    state = guess
+    if not keep_set:
+        state = with_conditions(guess, tuple(_closed_if_penetrated(model, touch) for touch in guess.touches))
     tried, iterations, augmentations = [state.contact_set], 0, 0
     while True:
         attempt = iterate(model, state, settings)
@@ -29,16 +32,14 @@ def equilibrium(model: Model, guess: State, settings: Settings) -> Attempt:
         if attempt.status is not Status.CONVERGED:
             return attempt
         state = attempt.state
-        revised = with_conditions(state, tuple(_revised(model, touch) for touch in state.touches))
-        if revised.contact_set != state.contact_set:
-            changed = next(
-                i for i, touch in enumerate(revised.touches) if touch.closed != state.touches[i].closed
-            )
-            if revised.contact_set in tried:
+        following = state if keep_set else revised(model, state, settings)
+        if following.contact_set != state.contact_set:
+            changed = next(i for i, now in enumerate(following.contact_set) if now != state.contact_set[i])
+            if following.contact_set in tried:
                 return replace(attempt, status=Status.CYCLING, pair=changed)
             if len(tried) > settings.max_contact_changes:
                 return replace(attempt, status=Status.UNDECIDED_CONTACT, pair=changed)
-            state = revised
+            state = following
             tried.append(state.contact_set)
             continue
         deep = [number for number, touch in enumerate(state.touches) if _exceeds_penetration(model, touch)]
@@ -51,16 +52,34 @@ def equilibrium(model: Model, guess: State, settings: Settings) -> Attempt:
 
 
 def _closed_if_penetrated(model: Model, touch: Touch) -> Condition:
-    """Close an open contact that is penetrated by more than round-off."""
+    """Close an open contact that is penetrated by more than round-off. With friction it first slips as it did while open."""
     if touch.closed or not _penetrated(model, touch):
         return touch.condition
-    return replace(touch.condition, closed=True)
+    return replace(slipping(touch), closed=True)
 
 
-def _revised(model: Model, touch: Touch) -> Condition:
-    """Open a closed contact with tensile force; close a penetrated open contact."""
+def slipping(touch: Touch) -> Condition:
+    """Condition of a contact that slips as it has slid since the last accepted state."""
+    friction = touch.condition.friction
+    if friction is None:
+        return touch.condition
+    return replace(touch.condition, friction=replace(friction, direction=int(np.sign(touch.slip))))
+
+
+def revised(model: Model, state: State, settings: Settings) -> State:
+    """Return a converged state with contacts that open, close, stick or slip where their conditions do not hold."""
+    allowed = settings.tolerance * force_scale(model, state)
+    slip = allowed / model.axial_stiffness + model.length_round_off
+    return with_conditions(state, tuple(_revised(model, touch, (slip, allowed)) for touch in state.touches))
+
+
+def _revised(model: Model, touch: Touch, allowed: tuple[float, float]) -> Condition:
+    """Open a closed contact with tensile force; close a penetrated open contact; map friction with ``allowed`` errors."""
     if touch.closed and touch.force < 0:
         return touch.condition.opened(armed=True)
+    if touch.friction is not None:
+        largest = touch.pair.contact.friction * touch.force
+        return replace(touch.condition, friction=mapped(touch.friction, touch.slip, largest, allowed))
     return _closed_if_penetrated(model, touch)
 
 

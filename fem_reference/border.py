@@ -8,29 +8,36 @@ from scipy.linalg import block_diag
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.end_section import COLUMNS, ROTATION
+from fem_reference.friction import slip_gradient
 from fem_reference.model import Model
 from fem_reference.state import State, section_actions
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Border:
-    """Curvatures and constraints over the k columns U: three of each closed contact, then four of each end section.
+    """Curvatures and constraints over the k columns U: three or four of each closed contact, then four of each end section.
 
     Parameters
     ----------
     blocks
         Diagonal blocks of A, one for each closed contact and end section.
     N
-        Gradients of the constraints ``U N``, ``(k, c)``: gaps of closed contacts, then ties.
+        Directions of the constraints' forces ``U N``, ``(k, c)``: gaps of closed contacts, friction, then ties.
+    M
+        Gradients of the constraints ``U M``, ``(k, c)``. They differ from N for friction only.
     C
-        Flexibilities of the constraints ``(c,)`` [m/N].
+        Flexibilities of the constraints ``(c,)`` [m/N]; for a contact that slips, the factor 1 of its tangential force.
+    coupling
+        Factors ``(c, c)`` of the forces of other constraints: ``-sigma mu`` of a normal force where the contact slips.
     removed
         Whether augmented Lagrangian steps remove the flexibility, ``(c,)``.
     """
 
     blocks: tuple[Floats, ...]
     N: Floats
+    M: Floats
     C: Floats
+    coupling: Floats
     removed: Array
 
     @cached_property
@@ -46,32 +53,48 @@ class Border:
             block if number >= len(chosen) or chosen[number] else np.zeros_like(block)
             for number, block in enumerate(self.blocks)
         )
-        return Border(blocks=blocks, N=self.N[:, kept], C=self.C[kept], removed=self.removed[kept])
+        return Border(
+            blocks=blocks,
+            N=self.N[:, kept],
+            M=self.M[:, kept],
+            C=self.C[kept],
+            coupling=self.coupling[np.ix_(kept, kept)],
+            removed=self.removed[kept],
+        )
 
 
 def build_border(model: Model, state: State) -> Border:
     """Curvatures and constraints of the closed contacts, ties, dead moments and anchors of a state."""
     closed, ties = state.closed, model.ties
-    contacts = len(closed)
+    rubbing = state.rubbing
+    contacts = len(closed) + len(rubbing)
+    first_columns = np.cumsum([0, *(touch.slopes.shape[1] for touch in closed)])
     moments = section_actions(model, state)[:, ROTATION]
-    blocks = [touch.force * touch.curvature for touch in closed]
+    blocks = [touch.stiffness for touch in closed]
     blocks += [
         moment * pose.curvature + section.anchor_stiffness * np.eye(COLUMNS)
         for section, pose, moment in zip(model.sections, state.poses, moments, strict=True)
     ]
-    N = np.zeros((3 * contacts + COLUMNS * len(model.sections), contacts + len(ties)))
-    N[3 * np.arange(contacts), np.arange(contacts)] = 1.0
+    N = np.zeros((first_columns[-1] + COLUMNS * len(model.sections), contacts + len(ties)))
+    N[first_columns[:-1], np.arange(len(closed))] = 1.0
     for number, tie in enumerate(ties, contacts):
         for section, sign in ((tie.section, 1.0), (tie.other, -1.0)):
             if section is not None:
-                first = 3 * contacts + COLUMNS * section
+                first = first_columns[-1] + COLUMNS * section
                 N[first : first + COLUMNS, number] += sign * state.poses[section].gradient[:, tie.component]
-    return Border(
-        blocks=tuple(blocks),
-        N=N,
-        C=np.array([*(1 / touch.pair.penalty for touch in closed), *(0.0 for _ in ties)]),
-        removed=np.array(
-            [*(touch.pair.contact.penetration is not None for touch in closed), *(False for _ in ties)],
-            dtype=bool,
-        ),
-    )
+    M, coupling = N.copy(), np.zeros((N.shape[1], N.shape[1]))
+    C = np.zeros(N.shape[1])
+    C[: len(closed)] = [1 / touch.pair.penalty for touch in closed]
+    removed = np.zeros(N.shape[1], dtype=bool)
+    removed[: len(closed)] = [touch.pair.contact.penetration is not None for touch in closed]
+    for number, touch in enumerate(rubbing, len(closed)):
+        contact = closed.index(touch)
+        columns = slice(first_columns[contact], first_columns[contact + 1])
+        assert touch.friction is not None, "a rubbing contact has friction"
+        N[columns, number] = np.eye(len(touch.stiffness))[1]
+        if touch.friction.direction:
+            C[number] = 1.0
+            coupling[number, contact] = -touch.friction.direction * touch.pair.contact.friction
+        else:
+            M[columns, number] = slip_gradient(touch.pair, touch.projection, touch.friction)
+    return Border(blocks=tuple(blocks), N=N, M=M, C=C, coupling=coupling, removed=removed)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.active_set import revised
 from fem_reference.arrays import Floats
 from fem_reference.model import Model
 from fem_reference.newton import check_convergence, updated
@@ -204,7 +205,7 @@ def _displacement_controlled(
         status, _ = check_convergence(model, state, R, settings)
         missing = delta - float(np.sum(c * (state.u - origin)))
         if status is Status.CONVERGED and abs(missing) <= displacement_tolerance(model, settings):
-            return state if _contact_set_holds(model, state) else None
+            return state if _contact_set_holds(model, state, settings) else None
         if status not in (Status.CONVERGED, Status.ITERATION_LIMIT):
             return None
         tangent = linearise(model, state)
@@ -221,14 +222,10 @@ def _displacement_controlled(
     return None
 
 
-def _contact_set_holds(model: Model, state: State) -> bool:
-    """Whether closed contacts push and lie on their strips, and open contacts are not penetrated."""
-    return all(
-        touch.force >= 0 and touch.projection.inside
-        if touch.closed
-        else not touch.condition.armed or touch.reported_gap >= -model.length_round_off
-        for touch in state.touches
-    )
+def _contact_set_holds(model: Model, state: State, settings: Settings) -> bool:
+    """Whether closed contacts lie on their strips, and no contact closes, opens, sticks or slips otherwise."""
+    inside = all(touch.projection.inside for touch in state.closed)
+    return inside and revised(model, state, settings).contact_set == state.contact_set
 
 
 def smallest_eigenpair(model: Model, tangent: Tangent) -> tuple[float, Floats]:

@@ -165,8 +165,8 @@ class Projection:
         Spline values and derivatives at ``zeta``, ``(3, m)``.
     tangent, normal
         Unit tangent and left normal of the curve, ``(2,)``.
-    stretch, bend
-        ``rho = |r'|`` [-] and ``n . r''`` [1/m].
+    stretch, bend, stretch_slope
+        ``rho = |r'|`` [-], ``n . r''`` and ``t . r''`` [1/m].
     """
 
     zeta: Any
@@ -179,6 +179,7 @@ class Projection:
     normal: Array
     stretch: Any
     bend: Any
+    stretch_slope: Any
 
 
 def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
@@ -203,6 +204,7 @@ def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
         normal=normal,
         stretch=stretch,
         bend=normal @ r2,
+        stretch_slope=tangent @ r2,
     )
 
 

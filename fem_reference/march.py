@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fem_reference.active_set import equilibrium
+from fem_reference.active_set import equilibrium, slipping
 from fem_reference.arrays import Floats
 from fem_reference.critical import (
     CriticalPoint,
@@ -24,6 +24,7 @@ from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
 from fem_reference.newton import Attempt
 from fem_reference.settings import Settings
+from fem_reference.slip_events import first_slip_event
 from fem_reference.state import Condition, State, Touch, at_rest, build_state, with_conditions
 from fem_reference.status import Status
 from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
@@ -52,6 +53,9 @@ class Step:
         Numbers of linear solutions, rejected attempts and accepted states since the previous requested load parameter.
     slips
         Indices of contacts that slipped off, with the load parameters.
+    slip_changes
+        Indices of contacts whose friction changed, with the load parameters and the directions of the slip from there on; 0
+        where the contact sticks.
     critical
         Critical points since the previous requested load parameter.
     """
@@ -66,6 +70,7 @@ class Step:
     cutbacks: int
     substeps: int
     slips: tuple[tuple[int, float], ...]
+    slip_changes: tuple[tuple[int, float, int], ...]
     critical: tuple[CriticalPoint, ...]
 
 
@@ -83,6 +88,7 @@ class _Progress:
     cause: Status = Status.CONVERGED
     pair: int | None = None
     slips: list[tuple[int, float]] = field(default_factory=list)
+    slip_changes: list[tuple[int, float, int]] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
     ended_at: float | None = None
 
@@ -140,6 +146,7 @@ def _step(progress: _Progress, status: Status) -> Step:
         cutbacks=progress.cutbacks,
         substeps=progress.substeps,
         slips=tuple(progress.slips),
+        slip_changes=tuple(progress.slip_changes),
         critical=tuple(progress.critical),
     )
 
@@ -153,7 +160,11 @@ def _advance(model: Model, target: float, progress: _Progress, settings: Setting
         attempt = equilibrium(model, predict(model, progress.track, goal, progress.order), settings)
         progress.iterations += attempt.iterations
         progress.cause, progress.pair = attempt.status, attempt.pair
-        candidate = accept(model, attempt.state, settings) if attempt.status is Status.CONVERGED else None
+        candidate = (
+            accept(model, attempt.state, settings, progress.last)
+            if attempt.status is Status.CONVERGED
+            else None
+        )
         ended = _accept_or_shorten(model, progress, candidate, goal, settings)
         if ended is None and progress.failures:
             ended = _find_obstacle(model, progress, attempt, goal, target, settings)
@@ -190,6 +201,11 @@ def _accept_or_shorten(
             progress.cause, progress.pair = Status.LINE_CONTACT, tightest[0]
         elif not comparable and settings.branch != "primary" and candidate.index > max(last.index, 0):
             progress.cause = Status.LIMIT_POINT
+        elif (event := first_slip_event(model, last, candidate, settings)) is not None:
+            progress.accept(event.at, restart=True)
+            if event.direction is not None:
+                progress.slip_changes.append((event.pair, event.at.state.t, event.direction))
+            return None
         elif not comparable or candidate.index == last.index:
             step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
             progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
@@ -308,7 +324,24 @@ def _after_slip(
         _condition_after(model, touch, strip if free else None, number == attempt.pair)
         for number, touch in enumerate(before.touches)
     ]
-    return equilibrium(model, build_state(model, u, goal, tuple(conditions), before.tie_forces), settings)
+    guess = build_state(model, u, goal, tuple(conditions), before.tie_forces)
+    return equilibrium(model, _slid_without_friction(model, guess, settings), settings)
+
+
+def _slid_without_friction(model: Model, guess: State, settings: Settings) -> State:
+    """Return the equilibrium without friction, with slip in the directions that lead there; the guess without friction."""
+    if not guess.rubbing:
+        return guess
+    smooth = tuple(replace(condition, friction=None) for condition in guess.conditions)
+    slid = equilibrium(model, build_state(model, guess.u, guess.t, smooth, guess.tie_forces), settings)
+    if slid.status is not Status.CONVERGED:
+        return guess
+    conditions = tuple(
+        replace(now, friction=before.friction)
+        for now, before in zip(slid.state.conditions, guess.conditions, strict=True)
+    )
+    state = build_state(model, slid.state.u, guess.t, conditions, slid.state.tie_forces)
+    return with_conditions(state, tuple(slipping(touch) for touch in state.touches))
 
 
 def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost: bool) -> Condition:

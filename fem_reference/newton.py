@@ -1,6 +1,6 @@
 """Newton's method for displacements and contact forces with a fixed set of closed contacts."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from fem_reference.arrays import Floats
 from fem_reference.end_section import ROTATION
 from fem_reference.model import Model
 from fem_reference.settings import Settings
-from fem_reference.state import State, build_state, residual, tie_residuals
+from fem_reference.state import State, build_state, residual, tie_residuals, with_contact_forces
 from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
 
@@ -66,15 +66,20 @@ def check_convergence(model: Model, state: State, R: Floats, settings: Settings)
     error = float(np.abs(R).max())
     gap_residuals = [abs(touch.gap_residual) for touch in state.touches]
     tie_residual = largest_tie_residual(model, state)
-    if not np.isfinite(error + sum(gap_residuals) + tie_residual):
+    slip_residuals = [abs(touch.slip_residual) for touch in state.rubbing]
+    if not np.isfinite(error + sum(gap_residuals) + sum(slip_residuals) + tie_residual):
         return Status.NOT_FINITE, None
     for number, touch in enumerate(state.touches):
         if touch.closed and not touch.projection.stationary:
             return Status.LOST_CONTACT, number
     allowed = settings.tolerance * force_scale(model, state)
-    tied = tie_residual <= allowed / model.axial_stiffness + model.length_round_off
+    allowed_slip = allowed / model.axial_stiffness + model.length_round_off
     converged = (
-        tied
+        tie_residual <= allowed_slip
+        and all(
+            residual <= (allowed if touch.friction and touch.friction.direction else allowed_slip)
+            for residual, touch in zip(slip_residuals, state.rubbing, strict=True)
+        )
         and error <= allowed + model.round_off
         and all(
             gap_residual <= allowed / touch.pair.penalty + model.length_round_off
@@ -93,7 +98,7 @@ def force_scale(model: Model, state: State) -> float:
         abs(float(force)) / (model.length if tie.component == ROTATION else 1.0)
         for tie, force in zip(model.ties, state.tie_forces, strict=True)
     ]
-    contacts = [abs(touch.force) for touch in state.touches]
+    contacts = [abs(float(force)) for force in state.contact_forces]
     return max(model.force_scale, state.t * model.largest_load, *contacts, *ties)
 
 
@@ -107,11 +112,7 @@ def largest_tie_residual(model: Model, state: State) -> float:
 
 def updated(model: Model, state: State, correction: Correction, damping: float) -> State:
     """Return the state after ``damping`` times a correction."""
-    changes = damping * correction.forces
-    forces = iter(changes)
-    conditions = tuple(
-        replace(condition, force=condition.force + float(next(forces))) if condition.closed else condition
-        for condition in state.conditions
-    )
-    ties = state.tie_forces + changes[changes.size - state.tie_forces.size :]
+    changes, forces = damping * correction.forces, state.contact_forces
+    conditions = with_contact_forces(state.conditions, forces + changes[: forces.size])
+    ties = state.tie_forces + changes[forces.size :]
     return build_state(model, state.u + damping * correction.u, state.t, conditions, ties)

@@ -86,7 +86,7 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """Frictionless unilateral contact of a pin, or of another strip's end, with a strip.
+    """Unilateral contact of a pin, or of another strip's end, with a strip.
 
     Parameters
     ----------
@@ -110,6 +110,8 @@ class Contact:
     keep
         Whether the solution ends with `Status.LOST_CONTACT` when the closed contact slips off an end of the strip.
         Otherwise the solution continues without this contact.
+    friction
+        Coefficient mu of Coulomb friction, see `fem_reference.friction`. A pin does not turn.
 
     Raises
     ------
@@ -125,6 +127,7 @@ class Contact:
     penetration: float | None = None
     spread: float | None = None
     keep: bool = True
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         owner = f"Contact({self.name!r})"
@@ -138,6 +141,8 @@ class Contact:
         if self.penetration is not None:
             fits = 1e-13 <= self.penetration <= 1
             require(fits, owner, "penetration", self.penetration, "must lie between 1e-13 and 1")
+        fits = isfinite(self.friction) and self.friction >= 0
+        require(fits, owner, "friction", self.friction, "must be finite and not negative")
 
     @property
     def name(self) -> str:

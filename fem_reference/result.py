@@ -17,6 +17,9 @@ class ContactHistory:
     ----------
     force
         Magnitude of the contact force, ``(s,)`` [N].
+    normal_force, tangential_force
+        Components of the force, ``(s,)`` [N]: the compression, and the friction on the strip along its direction from start
+        to end.
     arc_position
         Undeformed axial coordinate of the contact; nan while open, ``(s,)`` [m].
     gap
@@ -25,13 +28,27 @@ class ContactHistory:
         Contact force on the strip in the global frame, ``(s, 2)`` [N].
     slip_off
         Load parameter at which the contact first slipped off an end of the strip; nan without slip-off.
+    direction
+        Direction in which the node slips along the strip, 1 or -1, ``(s,)``; 0 where it sticks, is open or has no friction.
+    slip
+        Sum of the slips, along the strip positive, ``(s,)`` [m].
+    dissipated
+        Energy that friction has dissipated, ``(s,)`` [J].
+    slip_changes
+        Load parameters at which the contact came to stick or began to slip, with the direction from there on.
     """
 
     force: Floats
+    normal_force: Floats
+    tangential_force: Floats
     arc_position: Floats
     gap: Floats
     vector: Floats
     slip_off: float
+    direction: Ints
+    slip: Floats
+    dissipated: Floats
+    slip_changes: tuple[tuple[float, int], ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,7 +92,8 @@ class Result:
         Total number of accepted states, including sub-steps.
     index
         Number of negative eigenvalues of the energy's Hessian over the displacements that supports and closed contacts
-        admit, ``(s,)``. Zero is stable. -1 if a closed contact without force makes the index ambiguous.
+        admit, ``(s,)``. Zero is stable. -1 if a closed contact without force makes the index ambiguous, or if a closed
+        contact has friction: then stability is not judged.
     critical
         Critical points on the path, including sub-steps.
     unknowns

@@ -93,7 +93,17 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         load_parameter=np.array([step.load_parameter for step in done]),
         reached=steps[-1].load_parameter,
         contacts={
-            pair.name: _contact_history(states, number, slips.get(number, np.nan))
+            pair.name: _contact_history(
+                states,
+                number,
+                slips.get(number, np.nan),
+                tuple(
+                    (t, way)
+                    for step in steps
+                    for pair_number, t, way in step.slip_changes
+                    if pair_number == number
+                ),
+            )
             for number, pair in enumerate(model.pairs)
         },
         supports=_supports(model, states),
@@ -126,14 +136,23 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     )
 
 
-def _contact_history(states: tuple[State, ...], number: int, slip_off: float) -> ContactHistory:
+def _contact_history(
+    states: tuple[State, ...], number: int, slip_off: float, slip_changes: tuple[tuple[float, int], ...]
+) -> ContactHistory:
     touches = [state.touches[number] for state in states]
+    frictions = [touch.condition.friction for touch in touches]
     return ContactHistory(
-        force=np.array([touch.force for touch in touches]),
+        force=np.array([float(np.hypot(touch.force, touch.tangential_force)) for touch in touches]),
+        normal_force=np.array([touch.force for touch in touches]),
+        tangential_force=np.array([touch.tangential_force for touch in touches]),
         arc_position=np.array([touch.projection.zeta if touch.closed else np.nan for touch in touches]),
         gap=np.array([touch.reported_gap for touch in touches]),
         vector=np.array([contact_force(touch) for touch in touches]).reshape(-1, 2),
         slip_off=slip_off,
+        direction=np.array([state.contact_set[number][1] for state in states], dtype=np.int64),
+        slip=np.array([0.0 if friction is None else friction.slip for friction in frictions]),
+        dissipated=np.array([0.0 if friction is None else friction.dissipated for friction in frictions]),
+        slip_changes=slip_changes,
     )
 
 

@@ -8,6 +8,15 @@ from fem_reference.arrays import Floats
 from fem_reference.contact import Pair
 from fem_reference.curve import Projection
 from fem_reference.end_section import ROTATION, Pose
+from fem_reference.friction import (
+    Friction,
+    force_curvature,
+    friction_at,
+    settled,
+    slip_increment,
+    slip_residual,
+    stretch_column,
+)
 from fem_reference.model import Model
 
 
@@ -26,16 +35,20 @@ class Condition:
         Contact force lam, positive in compression; zero if open [N].
     multiplier
         Multiplier lam_0 of the augmented Lagrangian; zero for the penalty method [N].
+    friction
+        Friction of the contact, open or closed; None without friction.
     """
 
     closed: bool = False
     armed: bool = True
     force: float = 0.0
     multiplier: float = 0.0
+    friction: Friction | None = None
 
     def opened(self, *, armed: bool) -> "Condition":
         """Return the condition of the contact after opening."""
-        return Condition(closed=False, armed=armed)
+        friction = None if self.friction is None else self.friction.opened()
+        return Condition(closed=False, armed=armed, friction=friction)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,7 +62,8 @@ class Touch:
     projection
         Projection of the node on the contact curve.
     slopes, curvature
-        Factors ``U (2 n, 3)`` and ``H (3, 3)`` of the gap's derivatives, see `fem_reference.contact`.
+        Factors ``U (2 n, 3)`` and ``H (3, 3)`` of the gap's derivatives, see `fem_reference.contact`. With friction U has a
+        fourth column, see `fem_reference.friction`.
     """
 
     pair: Pair
@@ -84,6 +98,39 @@ class Touch:
         """Residual ``g + (lam - lam_0) / eps`` of the contact equation; zero if open [m]."""
         added = self.force - self.condition.multiplier
         return self.gap + added / self.pair.penalty if self.closed else 0.0
+
+    @property
+    def friction(self) -> Friction | None:
+        """Friction of the contact if it is closed; None without friction."""
+        return self.condition.friction if self.closed else None
+
+    @property
+    def tangential_force(self) -> float:
+        """Tangential force T on the strip along the tangent [N]."""
+        return 0.0 if self.friction is None else self.friction.force
+
+    @property
+    def slip(self) -> float:
+        """Slip since the last accepted state, also where the contact is open; zero without friction [m]."""
+        friction = self.condition.friction
+        return 0.0 if friction is None else float(slip_increment(self.pair, self.projection, friction))
+
+    @property
+    def slip_residual(self) -> float:
+        """Residual of the friction's equation, see `fem_reference.friction.slip_residual`; zero without friction."""
+        if self.friction is None:
+            return 0.0
+        return slip_residual(self.pair, self.projection, self.friction, self.force)
+
+    @property
+    def stiffness(self) -> Floats:
+        """Derivative of the contact force in the columns: ``lam H``, and ``T G`` of friction, ``(3, 3)`` or ``(4, 4)``."""
+        normal = self.force * self.curvature
+        if self.friction is None:
+            return normal
+        both = self.friction.force * force_curvature(self.pair, self.projection)
+        both[: len(normal), : len(normal)] += normal
+        return both
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,9 +168,27 @@ class State:
         return tuple(touch for touch in self.touches if touch.closed)
 
     @property
-    def contact_set(self) -> tuple[bool, ...]:
-        """Whether each contact is closed."""
-        return tuple(touch.closed for touch in self.touches)
+    def rubbing(self) -> tuple[Touch, ...]:
+        """Closed contacts with friction."""
+        return tuple(touch for touch in self.closed if touch.friction is not None)
+
+    @property
+    def contact_set(self) -> tuple[tuple[bool, int], ...]:
+        """Whether each contact is closed, and the direction in which it slips."""
+        return tuple(
+            (touch.closed, 0 if touch.friction is None else touch.friction.direction)
+            for touch in self.touches
+        )
+
+    @property
+    def contact_forces(self) -> Floats:
+        """Forces of the closed contacts, then tangential forces of those with friction, ``(c,)`` [N]."""
+        return np.array(
+            [
+                *(touch.force for touch in self.closed),
+                *(touch.tangential_force for touch in self.rubbing),
+            ]
+        )
 
 
 def build_state(
@@ -134,6 +199,8 @@ def build_state(
     for pair, condition in zip(model.pairs, conditions, strict=True):
         projection = pair.project(u, t)
         U, H = pair.gap_derivatives(projection)
+        if condition.friction is not None:
+            U = np.hstack([U, stretch_column(pair, projection)])
         consistent = condition if condition.closed else condition.opened(armed=condition.armed)
         touches.append(Touch(pair=pair, condition=consistent, projection=projection, slopes=U, curvature=H))
     return State(
@@ -147,7 +214,45 @@ def build_state(
 
 def at_rest(model: Model, t: float = 0.0) -> State:
     """Return the undeformed state with all contacts open."""
-    return build_state(model, np.zeros((model.nodes, 2)), t, (Condition(),) * len(model.pairs))
+    u = np.zeros((model.nodes, 2))
+    conditions = tuple(
+        Condition(friction=friction_at(pair.project(u, t)) if pair.contact.friction else None)
+        for pair in model.pairs
+    )
+    return build_state(model, u, t, conditions)
+
+
+def as_accepted(state: State) -> State:
+    """Return the state with slip counted from it, see `fem_reference.friction.settled`."""
+    if all(condition.friction is None for condition in state.conditions):
+        return state
+    return with_conditions(
+        state,
+        tuple(
+            touch.condition
+            if touch.condition.friction is None
+            else replace(
+                touch.condition,
+                friction=settled(touch.pair, touch.projection, touch.condition.friction, closed=touch.closed),
+            )
+            for touch in state.touches
+        ),
+    )
+
+
+def with_contact_forces(conditions: tuple[Condition, ...], forces: Floats) -> tuple[Condition, ...]:
+    """Return the conditions with ``forces`` ``(c,)`` in the order of `State.contact_forces`."""
+    values = iter(forces)
+    normal = tuple(
+        replace(condition, force=float(next(values))) if condition.closed else condition
+        for condition in conditions
+    )
+    return tuple(
+        replace(condition, friction=replace(condition.friction, force=float(next(values))))
+        if condition.closed and condition.friction is not None
+        else condition
+        for condition in normal
+    )
 
 
 def with_conditions(state: State, conditions: tuple[Condition, ...]) -> State:
@@ -161,6 +266,8 @@ def residual(model: Model, state: State) -> Floats:
     R = model.internal_force(state.u) - state.t * model.load
     for touch in state.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
+        if touch.friction is not None:
+            R -= touch.friction.force * touch.slopes[:, 1].reshape(-1, 2)
     if model.sections:
         R -= section_forces(model, state, section_actions(model, state))
     return R
@@ -189,8 +296,11 @@ def tie_residuals(model: Model, state: State) -> Floats:
 
 
 def contact_force(touch: Touch) -> Floats:
-    """Force ``-s lam n`` ``(2,)`` of the node on the strip, in the global frame [N]."""
-    return np.asarray(-touch.pair.contact.sign * touch.force * touch.projection.normal)
+    """Force ``-s lam n + T t`` ``(2,)`` of the node on the strip, in the global frame [N]."""
+    normal = -touch.pair.contact.sign * touch.force * touch.projection.normal
+    if touch.friction is None:
+        return np.asarray(normal)
+    return np.asarray(normal + touch.friction.force * touch.projection.tangent)
 
 
 Reaction = tuple[Floats, float]
@@ -245,6 +355,8 @@ def imbalance(model: Model, state: State) -> float:
         if len(touch.pair.strips) == 1:
             total += contact_force(touch)
             moment += _moment(touch.pair.position(state.u, state.t), contact_force(touch))
+        if touch.friction is not None:  # T acts on the touched curve, not at the node
+            moment += touch.friction.force * float(touch.projection.distance)
     return float(np.abs([*total, moment / model.length]).max())
 
 

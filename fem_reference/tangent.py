@@ -6,9 +6,10 @@ rotation times its moment, is a block of A, and the gradient of a constraint is 
 contact is ``1 / eps``, or zero where augmented Lagrangian steps remove the penetration; a tie has none. The motion of the
 pin alone changes ``U^T u`` by p. With the constraint residual r,
 
-    K du - U A (U^T du + p) - U N dlam = -R,     N^T (U^T du + p) + C dlam = -r.
+    K du - U A (U^T du + p) - U N dlam = -R,     M^T (U^T du + p) + C dlam = -r.
 
-Only the stiffness K of the bodies is factorised. A strip without a clamp has an anchor in K, four springs on its start's
+Without friction M is N, A is symmetric and C diagonal; see `fem_reference.friction` for the others. Only the stiffness K of
+the bodies is factorised, which is symmetric; the equations in the columns are solved by elimination with row exchanges. A strip without a clamp has an anchor in K, four springs on its start's
 section, whose stiffness in A cancels it.
 """
 
@@ -65,17 +66,21 @@ class Tangent:
     def correction(self, R: Floats) -> Correction | None:
         """Newton correction for the residual ``R`` ``(m,)``; None if the constraint equations are singular."""
         r = np.concatenate(
-            [[touch.gap_residual for touch in self.state.closed], tie_residuals(self.model, self.state)]
+            [
+                [touch.gap_residual for touch in self.state.closed],
+                [touch.slip_residual for touch in self.state.rubbing],
+                tie_residuals(self.model, self.state),
+            ]
         )
         return self._correction(self._respond(R, np.zeros(self.U.shape[1]), r, augmented=False))
 
     def rate(self, before: float, after: float) -> Correction | None:
         """Change per load parameter with the mean velocity of the pins between two load parameters."""
-        model, closed = self.model, self.state.closed
+        model, state = self.model, self.state
         p = np.concatenate(
-            [*(_pin_motion(touch, before, after) for touch in closed), np.zeros(model.columns.shape[1])]
+            [*(pin_motion(touch, before, after) for touch in state.closed), np.zeros(model.columns.shape[1])]
         )
-        r = np.array([*(0.0 for _ in closed), *(-tie.rate for tie in model.ties)])
+        r = np.array([*(0.0 for _ in state.contact_forces), *(-tie.rate for tie in model.ties)])
         load = model.load
         if model.sections:
             actions = np.outer(model.moments, np.eye(3)[ROTATION])
@@ -96,17 +101,17 @@ class Tangent:
         """Changes ``Y z - K^-1 R`` of the unknowns and dlam of the constraint forces; None if singular.
 
         With ``z = A (U^T du + p) + N dlam`` and ``W = U^T Y`` the remaining equations are
-        ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``N^T W z + C dlam = -r - N^T (p - U^T K^-1 R)``.
+        ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``M^T W z + C dlam = -r - M^T (p - U^T K^-1 R)``.
         """
         y, border = self.solve(R) if R.any() else R, self.border
         k = len(border.A)
         if not k:
             return -y, np.zeros(0)
-        A, N, W = border.A, border.N, self.U.T @ self.Y
+        A, M, W = border.A, border.M, self.U.T @ self.Y
         C = np.where(border.removed, 0.0, border.C) if augmented else border.C
-        matrix = np.block([[np.eye(k) - A @ W, -N], [N.T @ W, np.diag(C)]])
+        matrix = np.block([[np.eye(k) - A @ W, -border.N], [M.T @ W, np.diag(C) + border.coupling]])
         known = p - self.U.T @ y
-        right = np.concatenate([A @ known, -r - N.T @ known])
+        right = np.concatenate([A @ known, -r - M.T @ known])
         scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
         try:
             z = np.linalg.solve(scale[:, None] * matrix, scale * right)
@@ -126,8 +131,10 @@ class Tangent:
 
         A closed contact is a spring ``eps`` along its gap, or a constraint where the penetration is removed. A contact
         with a force of at most ``force_tolerance`` [N] may be open or closed. If the index depends on this choice, the
-        result is -1.
+        result is -1. With friction the Hessian is not symmetric and the result is -1: stability is not judged.
         """
+        if self.state.rubbing:
+            return -1
         loaded = [touch.force > force_tolerance for touch in self.state.closed]
         index = self._count([True] * len(loaded))
         return index if all(loaded) or self._count(loaded) == index else -1
@@ -156,13 +163,14 @@ class Tangent:
         return negatives - len(border.C) - int((signs < 0).sum())
 
 
-def _pin_motion(touch: Touch, before: float, after: float) -> Floats:
-    """Change p ``(3,)`` of ``U^T u`` per load parameter by the motion of the pin alone."""
+def pin_motion(touch: Touch, before: float, after: float) -> Floats:
+    """Change p ``(3,)`` or ``(4,)`` of ``U^T u`` per load parameter by the motion of the pin alone."""
     pair, state = touch.pair, touch.projection
-    if not isinstance(pair.node, Pin):
-        return np.zeros(3)
-    velocity = (pair.node.position(after) - pair.node.position(before)) / (after - before)
-    return np.array([pair.contact.sign * state.normal @ velocity, -state.tangent @ velocity, 0.0])
+    p = np.zeros(touch.slopes.shape[1])
+    if isinstance(pair.node, Pin):
+        velocity = (pair.node.position(after) - pair.node.position(before)) / (after - before)
+        p[:2] = pair.contact.sign * state.normal @ velocity, -state.tangent @ velocity
+    return p
 
 
 def linearise(model: Model, state: State) -> Tangent | None:

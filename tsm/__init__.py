@@ -4,7 +4,7 @@ from tsm.arc_length import trace
 from tsm.batch import BatchResult, solve_batch
 from tsm.elements import ELEMENTS
 from tsm.events import Event, EventKind
-from tsm.result import ContactHistory, Result, SupportHistory
+from tsm.result import ContactHistory, FrictionHistory, Result, SupportHistory
 from tsm.settings import Settings
 from tsm.solve import SolveError, march, solve
 from tsm.status import Status
@@ -18,6 +18,7 @@ __all__ = [
     "ContactPair",
     "Event",
     "EventKind",
+    "FrictionHistory",
     "Load",
     "Pin",
     "Result",

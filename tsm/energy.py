@@ -63,10 +63,25 @@ def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...
     return spent
 
 
+class Spent(NamedTuple):
+    """Work and dissipation of a step.
+
+    Attributes
+    ----------
+    total : ndarray, shape (1 + pairs,)
+        As for `power`, over the step.
+    between : tuple of Equilibrium
+        Equilibria inside the step, in order of the load parameter.
+    """
+
+    total: Array
+    between: tuple[Equilibrium, ...]
+
+
 def spent(
     newton: Newton, history: list[State], ends: tuple[Equilibrium, Equilibrium], velocities: tuple[Point, ...]
-) -> Array | None:
-    """Work and dissipation, as for `power`, between two equilibria on a smooth part of the path.
+) -> Spent | None:
+    """Work and dissipation between two equilibria on a smooth part of the path.
 
     Parameters
     ----------
@@ -81,14 +96,19 @@ def spent(
 
     Returns
     -------
-    ndarray, shape (1 + pairs,) or None
+    Spent or None
         None where a tangent is singular at an end. A part in which no equilibrium is found counts by the mean of its ends.
     """
     trail = [*(state for state in history if state is not ends[0].state), *(end.state for end in ends)]
 
+    between: list[Equilibrium] = []
+
     def at(t: float) -> Array | None:
         reached = newton.solve(newton.prescribed(extrapolate(newton.model, trail, t), t))
-        return power(newton, reached, velocities) if reached.status is Status.CONVERGED else None
+        if reached.status is not Status.CONVERGED:
+            return None
+        between.append(reached)
+        return power(newton, reached, velocities)
 
     first, last = (power(newton, end, velocities) for end in ends)
     if first is None or last is None:
@@ -114,4 +134,4 @@ def spent(
                 _Span(span.begin, middle, span.first, powers[2]),
                 _Span(middle, span.end, powers[2], span.last),
             ]
-    return total
+    return Spent(total, tuple(sorted(between, key=lambda inner: inner.state.load_parameter)))

@@ -24,6 +24,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from tsm.friction import cone, traction
 from tsm.line_contact import curvature
 from tsm.model import Model
@@ -34,6 +36,8 @@ from tsm.root import find_root
 ROUND_OFF = 1e-10
 """Absolute margin below which a margin counts as zero."""
 
+_DEGREE, _FINE = 4, 41
+"""Degree of the polynomial through a margin, and points at which it is evaluated."""
 _LOCATED = 1e-12
 """Largest margin of a located event. Results at the event may depend on its load parameter with a factor of a thousand."""
 _APART = 1e-14
@@ -190,7 +194,7 @@ def margins(
     upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if touch is not None:
-            arc = arc_position(pair.target, touch.element, touch.xi)
+            arc = pair.arc_position(touch)
             inside = min(arc, pair.target.beam.length - arc) / model.length
             force = normal_force(model, equilibrium, k) / model.force_scale
             upcoming.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
@@ -218,6 +222,17 @@ def margins(
 def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:
     """Pairs of margins, before and after, of the events whose margin became negative."""
     return [(a, b) for a, b in zip(before, after, strict=True) if b.value < -ROUND_OFF]
+
+
+def below(values: list[float], times: list[float]) -> float | None:
+    """Load parameter at which the polynomial through some values of a margin is least, if it is below zero there; else None."""
+    middle, half = (times[0] + times[-1]) / 2, (times[-1] - times[0]) / 2
+    places = (np.array(times) - middle) / half
+    line = np.polynomial.Polynomial.fit(places, values, min(len(values) - 1, _DEGREE), domain=[-1, 1])
+    fine = np.linspace(-1, 1, _FINE)
+    found = np.concatenate([places, fine]), np.concatenate([values, line(fine)])
+    least = int(np.argmin(found[1]))
+    return float(middle + half * found[0][least]) if found[1][least] < -ROUND_OFF else None
 
 
 def locate(

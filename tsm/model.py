@@ -17,6 +17,7 @@ from tsm.elements.beam import Coefficients
 from tsm.elements.contact_law import Rub
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
+from tsm.projection import arc_position
 from tsm.rods.assembly import Rods
 from tsm.sizes import Sizes, joined_extents, sizes_of
 from tsm.state import Grip, Touch
@@ -122,6 +123,10 @@ class PairModel:
     def lean(self, grip: Grip) -> float:
         """Tangent of the angle from the normal to the contact force in slip, positive clockwise; 0 in stick."""
         return grip.slip * self.pair.friction * self.side
+
+    def arc_position(self, touch: Touch) -> float:
+        """Distance of a contact along the undeformed axis from the beam's start."""
+        return arc_position(self.target, touch.element, touch.xi)
 
     def rub(self, touch: Touch) -> Rub:
         """State of the friction for the contact law, the travel counted from the element's start."""

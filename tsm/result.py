@@ -17,7 +17,6 @@ from tsm.events import Event, normal_force
 from tsm.friction import grips, traction
 from tsm.model import Model
 from tsm.newton import Equilibrium
-from tsm.projection import arc_position
 from tsm.rods.shape import Stations
 from tsm.status import Status
 from tsm.step import Step
@@ -298,7 +297,7 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
         if pair.slot >= 0:
             residual = equilibrium.system.residual[model.equations + pair.slot :]
             left = float(np.hypot(residual[0], residual[1]))
-        arc = arc_position(pair.target, touch.element, touch.xi)
+        arc = pair.arc_position(touch)
         return normal_force(model, equilibrium, k), arc, left
     seen = pair.group.project(pair, state)
     over = state.armed[k] and seen.overshoot <= 0

@@ -30,6 +30,7 @@ from tsm.events import (
     Event,
     EventKind,
     Margin,
+    below,
     broken,
     locate,
     margins,
@@ -41,7 +42,6 @@ from tsm.friction import grips, regripped, same, slip_rates, turned
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
-from tsm.projection import arc_position
 from tsm.settings import Settings
 from tsm.state import State
 from tsm.status import Status
@@ -54,6 +54,8 @@ _STRAIGHT = 0.02
 """Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Start of a fall at a critical point: load parameter beyond the point, and displacement along its mode over the longest beam."""
+_FINE = 2e-3
+"""Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
 _NEAR = 1e-9
 """Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
 _COINCIDENT = 1e-6
@@ -195,7 +197,7 @@ class Stepper:
                 continue
             touch, pair = state.touches[k], self.model.pairs[k]
             assert touch is not None, "a grip is of a closed contact"
-            arc = arc_position(pair.target, touch.element, touch.xi)
+            arc = pair.arc_position(touch)
             kind = EventKind.SLIP if grip.slip else EventKind.STICK
             self._note(kind, k, touch.element, arc, normal_force(self.model, gripped, k))
         return gripped
@@ -242,12 +244,26 @@ class Stepper:
         if self.model.rubbed:
             velocities = self._velocities(reached.state.load_parameter)
             more = spent(self.newton, self.track.history, (self.accepted, reached), velocities)
-            if more is None:
-                return self.control.refuse()
-            self.log.spent = self.log.spent + more
+            part = 1 / 2 if more is None else self._dips(more.between, reached)
+            if more is None or part is not None:
+                return self.control.refuse(part or 1 / 2)
+            self.log.spent = self.log.spent + more.total
         self._accept(reached, tangent)
         self.control.grow(reached.state.load_parameter - before.load_parameter, fitting)
         return Status.CONVERGED
+
+    def _dips(self, between: tuple[Equilibrium, ...], reached: Equilibrium) -> float | None:
+        """Part of the step at which a margin of slip or stick is below zero, though not at the step's end; None if none is."""
+        begin, end = self.accepted.state.load_parameter, reached.state.load_parameter
+        measured = [self.margins, *map(self._measure, (*between, reached))]
+        times = [begin, *(inner.state.load_parameter for inner in between), end]
+        dips = [
+            below([margin.value for margin in trail], times)
+            for trail in zip(*measured, strict=True)
+            if trail[0].kind in GRIPS
+        ]
+        found = [t for t in dips if t is not None]
+        return (min(found) - begin) / (end - begin) if found and end - begin > _FINE else None
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the equilibrium beyond."""
@@ -361,7 +377,7 @@ class Stepper:
                 continue
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens, slips or sticks"
-            arc = arc_position(pair.target, touch.element, touch.xi)
+            arc = pair.arc_position(touch)
             self._note(margin.kind, k, touch.element, arc, normal_force(model, event, k))
             if margin.kind in GRIPS:
                 state = turned(model, state, event.system, k)
@@ -385,7 +401,7 @@ class Stepper:
             return changed(self.model, state, k, None, armed=False)
         seen = pair.group.project(pair, state)
         touch = closed_at(pair, seen)
-        arc = arc_position(pair.target, touch.element, touch.xi)
+        arc = pair.arc_position(touch)
         self._note(EventKind.TOUCH, k, touch.element, arc, 0.0)
         return changed(self.model, state, k, touch, armed=True)
 
@@ -410,7 +426,7 @@ class Stepper:
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
             before = normal_force(self.model, event, k) if event.state.touches[k] is not None else 0.0
-            arc = arc_position(pair.target, touch.element, touch.xi)
+            arc = pair.arc_position(touch)
             self._note(EventKind.RELEASE, k, touch.element, arc, before)
             if pair.pair.keep:
                 return Status.LOST_CONTACT

@@ -82,6 +82,11 @@ class ElasticaEquations:
             roll=np.zeros_like(part.arc),
         )
 
+    def exists(self, z: Real) -> bool:
+        """Whether the curve has a length, no more than one inflection, and a force that is not a pull."""
+        q, ell, wc = z
+        return bool(abs(q) < 4.0 * np.pi**2 and ell > 0.0 and abs(wc) < np.pi / 2.0)
+
     def touching(self, x: float, sense: int, friction: float) -> Real:
         """Unknowns (3,) of the straight beam with a pin at x that slips in a sense."""
         wc = -sense * np.arctan(friction)

@@ -68,6 +68,9 @@ class Equations(Protocol):
     def contact(self, z: Array, pin: Real) -> Contact:
         """Residual and quantities of the contact at unknowns (..., n)."""
 
+    def exists(self, z: Real) -> bool:
+        """Whether unknowns (n,) state a rod that presses on the pin, or all but presses."""
+
     def touching(self, x: float, sense: int, friction: float) -> Real:
         """Unknowns (n,) of the straight rod with a pin at x."""
 
@@ -77,9 +80,10 @@ class Equations(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Phase:
-    """Slip of a sense, or stick, whose sense is 0, with the contact where it began."""
+    """Slip of a sense, or stick, whose sense is 0, with the contact where it began, and the load parameter there."""
 
     sense: int
+    since: float
     start: Contact | None = None
 
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from comparisons.exact.checks import path_points
 from comparisons.exact.friction_law import Equations, Linear, Phase, Real, linearise
 from comparisons.exact.friction_result import FrictionEvent, FrictionPath, FrictionState
-from comparisons.exact.friction_step import Ending, Piece, Problem, node_at, take
+from comparisons.exact.friction_step import AT_ONCE, EDGE, Ending, Piece, Problem, node_at, take
 
 _TOUCH = 1e-12  # distance, in lengths of the rod, below which the pin touches
 _FIRST_STEP, _SMALLEST_STEP = 0.05, 1e-11  # of the path
@@ -67,7 +67,7 @@ def follow(
     require_friction(friction)
     pins = path_points(points) / length
     reach = equations_of_side(1).reach
-    problem = Problem(equations=equations_of_side(_side(pins, reach)), friction=friction)
+    problem = Problem(equations=equations_of_side(_side(pins)), friction=friction)
     if 0.0 < pins[0, 0] <= 1.0 and abs(pins[0, 1]) < reach - _TOUCH:
         raise ValueError(f"points[0] = {pins[0]} length: the path must not start inside the rod")
     distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])
@@ -87,13 +87,12 @@ def follow(
     return _collect(problem.equations, at_vertices, t, EI=EI, length=length)
 
 
-def _side(pins: Real, reach: float) -> int:
+def _side(pins: Real) -> int:
     """Return 1 where the path starts below the rod, or on its surface and then rises; -1 in the mirror image."""
-    for y in pins[:, 1] if reach == 0.0 else pins[:1, 1]:
-        if abs(y) > _TOUCH:
-            below = y < 0.0 if reach or y == pins[0, 1] else y > 0.0
-            return 1 if below else -1
-    return 1
+    start, away = pins[0, 1], pins[np.abs(pins[:, 1]) > _TOUCH, 1]
+    if abs(start) > _TOUCH:
+        return 1 if start < 0.0 else -1
+    return -1 if len(away) and away[0] < 0.0 else 1
 
 
 @dataclass(frozen=True)
@@ -112,17 +111,17 @@ class _Walk:
 
     def along(self, standing: Standing, finish: float) -> Standing:
         """Equilibrium at the end of the piece."""
-        step = _FIRST_STEP
-        while standing.t < finish and not standing.state.ends:
+        step, growth = _FIRST_STEP, 2.0
+        while finish - standing.t > AT_ONCE and not standing.state.ends:
             if not standing.state.touches:
                 standing = self._until_touch(standing, finish)
                 continue
             assert standing.phase is not None
             start = node_at(self.problem, self.piece, standing.phase, standing.t, standing.z)
-            end = min(standing.t + step, finish)
+            end = finish if finish - standing.t <= 1.001 * step else standing.t + step
             found = None if start is None else take(self.problem, self.piece, standing.phase, start, end)
             if found is None:
-                step = (end - standing.t) / 4.0
+                step, growth = (end - standing.t) / 3.0, 1.0
                 if step < _SMALLEST_STEP:
                     standing = self._change(standing, FrictionState.LOST)
                 continue
@@ -135,7 +134,7 @@ class _Walk:
             )
             if found.ending is not None:
                 standing = self._after(standing, found.ending)
-            step = 2.0 * step
+            step, growth = growth * step, 2.0
         return replace(standing, t=finish)
 
     def _until_touch(self, standing: Standing, finish: float) -> Standing:
@@ -180,20 +179,22 @@ class _Walk:
         return -1.0 if node is None else float(node.margins[0])
 
     def _turned(self, standing: Standing) -> Standing:
-        """Return the state after a corner of the pin's path, at which a slip may go on or stick."""
-        old = standing.phase
+        """Return the state after a corner of the pin's path; on the edge of the cone a slip goes on or begins, or the pin sticks."""
+        old, friction = standing.phase, self.problem.friction
         assert old is not None
-        if not old.sense or not self.problem.friction:
+        contact = self._begin(standing.z, standing.t, 1)[1].contact
+        sense = old.sense or (1 if contact.tangential > 0.0 else -1)
+        if not friction or friction * contact.normal - sense * contact.tangential > EDGE:
             return standing
         possible = list[tuple[int, Real]]()
-        for sense in (old.sense, 0):
-            _, linear = self._begin(standing.z, standing.t, sense)
+        for state in (sense, 0):
+            linear = self._begin(standing.z, standing.t, state)[1]
             rates = self._rates(linear)
             if rates is None:
                 continue
-            excess = old.sense * linear.tangential - self.problem.friction * linear.normal
-            if (sense * linear.slip @ rates if sense else -excess @ rates) > 0.0:
-                possible.append((sense, standing.z))
+            excess = sense * linear.tangential - friction * linear.normal
+            if (state * linear.slip @ rates if state else -excess @ rates) > 0.0:
+                possible.append((state, standing.z))
         return self._one_of(standing, possible)
 
     def _after(self, standing: Standing, ending: Ending) -> Standing:
@@ -217,7 +218,7 @@ class _Walk:
     def _one_of(self, standing: Standing, possible: list[tuple[int, Real]]) -> Standing:
         """Return the only possible state."""
         if len(possible) != 1:
-            return self._change(standing, FrictionState.TWO_SLIPS if possible else FrictionState.JAMMED)
+            return self._change(standing, FrictionState.JAMMED)
         sense, z = possible[0]
         old = standing.phase
         if standing.state.touches and old is not None and sense == old.sense:
@@ -227,11 +228,11 @@ class _Walk:
 
     def _begin(self, z: Real, t: float, sense: int) -> tuple[Phase, Linear]:
         """Phase that begins at unknowns, and the equations in it."""
-        pin, phase = self.piece.pin(t), Phase(sense=sense or 1)
+        pin, phase = self.piece.pin(t), Phase(sense=sense or 1, since=t)
         linear = linearise(self.problem.equations, z, pin, phase, self.problem.friction)
         if sense:
             return phase, linear
-        phase = Phase(sense=0, start=linear.contact)
+        phase = Phase(sense=0, since=t, start=linear.contact)
         return phase, linearise(self.problem.equations, z, pin, phase, self.problem.friction)
 
     def _rates(self, linear: Linear) -> Real | None:

@@ -25,9 +25,7 @@ class FrictionState(StrEnum):
     LOST = "lost"
     """No equilibrium with this pin is connected with the last one; the results are nan from here on."""
     JAMMED = "jammed"
-    """The forces of no slip and of no stick continue the last equilibrium; the results are nan from here on."""
-    TWO_SLIPS = "two slips"
-    """More than one state of the contact continues the last equilibrium; the results are nan from here on."""
+    """No state of the contact continues the last equilibrium, or more than one; the results are nan from here on."""
 
     @property
     def sense(self) -> int:
@@ -42,7 +40,7 @@ class FrictionState(StrEnum):
     @property
     def ends(self) -> bool:
         """Whether the path has no results beyond."""
-        return self in (FrictionState.LOST, FrictionState.JAMMED, FrictionState.TWO_SLIPS)
+        return self in (FrictionState.LOST, FrictionState.JAMMED)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -87,6 +87,10 @@ class RodEquations:
             roll=self.side * (self.offset * shear + self.radius * (end.theta + shear)),
         )
 
+    def exists(self, z: Real) -> bool:
+        """Whether the contact is not behind the clamp."""
+        return bool(z[3] > 0.0)
+
     def touching(self, x: float, sense: int, friction: float) -> Real:  # noqa: ARG002  the elastica's unknowns depend on them
         """Unknowns (4,) of the straight rod with a pin at x."""
         return np.array([0.0, 0.0, 0.0, x])

@@ -15,12 +15,18 @@ _GAUSS, _WEIGHTS = (_GAUSS + 1.0) / 2.0, _WEIGHTS / 2.0
 _FEWER = np.linalg.solve(np.vander(_GAUSS[[0, 1, 3, 4, 6, 7]], increasing=True).T, 1.0 / np.arange(1, 7))
 _DIFFERENCE = _WEIGHTS.copy()
 _DIFFERENCE[[0, 1, 3, 4, 6, 7]] -= _FEWER
-"""Weights of the difference between eight points and six of them: the accuracy of a step's integrals is far better."""
-_ALLOWED_DIFFERENCE = 1e-9
+"""Weights of the difference between eight points, of degree 15, and six of them, of degree 5."""
+_ALLOWED_DIFFERENCE = 1e-6
+_LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
+_ROUND_OFF, _NOISE = 1e-14, 1e-5
+"""A residual at round-off, and the correction that it may leave where the equations are stiff."""
+_TOGETHER, AT_ONCE, EDGE = 1e-9, 1e-14, 1e-12
+"""Load parameters nearer than the first are one event (a pin that leaves square to the rod ends its slip where it leaves), nearer
+than the second are one; a margin within the third is at its edge."""
 
 
 class Ending(Enum):
-    """Why a phase ends, in the order of `margins`."""
+    """Why a phase ends, in the order of `margins`; of two at one load parameter the later one counts."""
 
     FRICTION = 0
     RELEASE = 1
@@ -48,22 +54,23 @@ class Problem:
 
     def solve(self, z: Real, pin: Real, phase: Phase) -> tuple[Real, Linear] | None:
         """Unknowns at a position of the pin from nearby ones by Newton's method; None without convergence."""
-        last = 0.5
+        last = _LARGEST_CORRECTION
         for _ in range(14):
             linear = linearise(self.equations, z, pin, phase, self.friction)
-            if not (np.all(np.isfinite(linear.tangent)) and np.all(np.isfinite(linear.residual))):
+            if not (self.equations.exists(z) and np.all(np.isfinite(linear.tangent))):
                 return None
             try:
                 change = np.linalg.solve(linear.tangent, -linear.residual)
             except np.linalg.LinAlgError:
                 return None
             size = float(np.max(np.abs(change) / (1.0 + np.abs(z))))
-            if size < 1e-9:
+            at_round_off = np.max(np.abs(linear.residual)) < _ROUND_OFF
+            if size < (_NOISE if at_round_off else _CONVERGED):
                 z = z + change
                 return z, linearise(self.equations, z, pin, phase, self.friction)
             if not size <= last:
                 return None
-            z, last = z + change, max(size / 2.0, 1e-9)
+            z, last = z + change, size / 2.0
         return None
 
 
@@ -114,7 +121,7 @@ def take(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) 
         return None
     before = start
     for node in nodes:
-        if np.any(node.margins < 0.0):
+        if np.any(node.margins < -EDGE):
             return _up_to_event(problem, piece, phase, start, (before, node))
         before = node
     return _integrate(start, nodes, None)
@@ -123,13 +130,26 @@ def take(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) 
 def _nodes(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) -> list[Node] | None:
     """Equilibria at the Gauss points of a step and at its end."""
     nodes = [start]
-    for t in start.t + (end - start.t) * np.append(_GAUSS, 1.0):
-        last = nodes[-1]
-        node = node_at(problem, piece, phase, float(t), last.z + (t - last.t) * last.rates)
+    for t in (*(start.t + (end - start.t) * _GAUSS).tolist(), end):
+        node = node_at(problem, piece, phase, t, _extrapolate(nodes[-2:], t))
         if node is None:
             return None
         nodes.append(node)
     return nodes[1:]
+
+
+def _extrapolate(nodes: list[Node], t: float) -> Real:
+    """Unknowns beyond one node by their rates, or beyond two nodes by the cubic through both with their rates."""
+    last = nodes[-1]
+    linear = last.z + (t - last.t) * last.rates
+    if len(nodes) < 2:
+        return linear
+    width, ahead = last.t - nodes[0].t, (t - last.t) / (last.t - nodes[0].t)
+    slope = (last.z - nodes[0].z) / width
+    curvature = 2.0 * last.rates + nodes[0].rates - 3.0 * slope
+    return np.asarray(
+        linear + width * ahead**2 * (curvature + (1.0 + ahead) * (curvature - last.rates + slope))
+    )
 
 
 def _integrate(start: Node, nodes: list[Node], ending: Ending | None) -> Step | None:
@@ -155,15 +175,21 @@ def _up_to_event(
     roots: list[tuple[float, Ending]] = []
     for ending in Ending:
         k = ending.value
-        if after.margins[k] >= 0.0:
+        if after.margins[k] >= -EDGE:
             continue
+        goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF
+        if before is start and start.margins[k] <= EDGE and goes_on:
+            return Step(start, 0.0, 0.0, ending)
         if before.margins[k] <= 0.0:
             return None
         root = _root(at, k, bracket)
         if root is None:
             return None
         roots.append((root, ending))
-    t, ending = min(roots, key=lambda item: item[0])
+    first = min(t for t, _ in roots)
+    t, ending = max((item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1].value)
+    if t - start.t < AT_ONCE:
+        return Step(start, 0.0, 0.0, ending)
     nodes = _nodes(problem, piece, phase, start, t)
     return None if nodes is None else _integrate(start, nodes, ending)
 

@@ -121,6 +121,15 @@ def _friction(history: Any) -> FrictionHistory | None:
     return None if history is None else FrictionHistory(**vars(history))
 
 
+def _solid_friction(history: Any) -> FrictionHistory:
+    return FrictionHistory(
+        tangential=history.tangential_force,
+        normal=history.normal_force,
+        slip=history.direction,
+        dissipated=history.dissipated,
+    )
+
+
 def _by_beam(scene: Scene, reaction: Callable[[SupportSpec], SupportHistory]) -> dict[str, SupportHistory]:
     """Return the reactions of the supports by beam."""
     supports: dict[str, SupportHistory] = {}
@@ -183,6 +192,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
             compliance=1.0 / problem.penalty(contact) if contact.penetration is None else 0.0,
             slip_off=result.contacts[contact.name].slip_off,
             vector=result.contacts[contact.name].vector,
+            friction=_solid_friction(result.contacts[contact.name]) if contact.friction else None,
         )
         for contact in problem.contacts
     }

@@ -17,7 +17,6 @@ from comparisons.scene import Scene
 
 STOPS = {
     FrictionState.JAMMED: "the contact can neither stick nor slip",
-    FrictionState.TWO_SLIPS: "the contact could go on in more than one state",
 }
 """Reasons why an exact solution with friction stops, besides those without."""
 

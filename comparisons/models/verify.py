@@ -134,7 +134,8 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
     if pulls.any():
         yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
     closed = contact.force > 0.0
-    ajar = closed & (np.abs(contact.gap + contact.compliance * contact.force) > CLOSED * length)
+    pressing = contact.force if contact.friction is None else contact.friction.normal
+    ajar = closed & (np.abs(contact.gap + contact.compliance * pressing) > CLOSED * length)
     if ajar.any():
         yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
     deep = closed & (contact.gap < -PENETRATION * length)

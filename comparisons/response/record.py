@@ -33,7 +33,7 @@ class ContactHistory:
     gap : ndarray, shape (s,)
         Zero where closed, or minus the penetration for a penalty model; positive or nan where open.
     compliance : float or ndarray, shape (s,)
-        Penetration per force of a penalty model, ``gap = -compliance force``.
+        Penetration per normal force of a penalty model, ``gap = -compliance force``.
     slip_off : float
         Load parameter at which the node left the beam over its free end; nan if it did not.
     vector : ndarray, shape (s, 2), optional

@@ -170,11 +170,11 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             render=False,
         )
         for colour, numbers in panel.pin_colours().items():
-            plotter.remove_actor(f"pins {colour}", render=False)
+            plotter.remove_actor(f"pins {i} {colour}", render=False)
             if len(numbers):
                 plotter.add_mesh(
                     _pins(panel, numbers, scale),
-                    name=f"pins {colour}",
+                    name=f"pins {i} {colour}",  # a name is removed from all panels
                     color=colour,
                     lighting=False,
                     render=False,

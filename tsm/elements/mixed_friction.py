@@ -120,10 +120,8 @@ def response(
     rows = (*(-load for load in beam.nodal), -rx, -ry, last)
     residual = np.array([row.value for row in rows]) @ REDUCE
     tangent = REDUCE.T @ np.array([row.gradient for row in rows]) @ REDUCE - LEVER
-    residual[[0, 1]] -= force
-    residual[[6, 7]] += force
-    residual[[8, 9]] -= lever
-    return residual, tangent
+    at_node = np.array([*(-part for part in force), 0, 0, 0, 0, *force, *(-part for part in lever), 0])
+    return residual + at_node, tangent
 
 
 def split(p: Properties, x: Any, xi: Any, force: Any, surface: Surface, rub: Rub) -> tuple[Any, Any, Any]:

@@ -120,7 +120,7 @@ class ClosedFormGroup(ElementGroup):
         surface, rub = Surface(pair.side, pair.pair.offset), self._tilted(k, state)
         tangential, normal, _ = friction.split(p, x, touch.xi, touch.force, surface, rub)
         here = friction.hold(p, x, touch.xi, touch.force, surface, rub)
-        arc = arc_position(pair.target, touch.element, touch.xi)
+        arc = pair.arc_position(touch)
         place = Place(arc, float(here.shear), float(here.slope), float(here.path))
         return Traction(float(tangential), float(normal), place)
 

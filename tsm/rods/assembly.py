@@ -16,7 +16,6 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.elements.rod import INPUTS, Arrival, Field, Flexibility, Segments
-from tsm.projection import arc_position
 from tsm.rods import contact_rows
 from tsm.rods.friction_rows import Rubbing, placed, rubbing
 from tsm.rods.layout import COLUMNS, CUT, FIXED, OWN, ROWS, Layout, chain, layout
@@ -235,7 +234,7 @@ class Rods:
         """Contact with friction at the end of segment s, with the moment before it."""
         pair, touch, bend = self.model.pairs[k], touch_of(state, k), segments.flexibility.bend[s, 0]
         contact = rubbing(pair, touch.force, self._tangents(state, k, segments, s), touch.angle, bend)
-        return placed(contact, arc_position(pair.target, touch.element, touch.xi), moment)
+        return placed(contact, pair.arc_position(touch), moment)
 
     def _owned(self, cuts: Cuts) -> Owned:
         if cuts not in self._constants:

@@ -60,6 +60,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
                 penalty=contact.penalty,
                 penetration=contact.penetration,
                 keep=contact.keep,
+                friction=contact.friction,
             )
             for contact in scene.contacts
         ),

@@ -42,7 +42,8 @@ def check_states(path, friction):
 
 def balance(path):
     """Work of the pin that is neither stored nor dissipated nor set free, over the whole work."""
-    return np.abs(path.work - path.stored - path.dissipated - path.released) / np.nanmax(np.abs(path.work))
+    lost = np.abs(path.work - path.stored - path.dissipated - path.released)
+    return lost / (np.nanmax(np.abs(path.work)) or 1.0)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,329 @@
+"""States of a contact with friction: stick on a face and on a round pin, limits, events, drawn paths, input."""
+
+import numpy as np
+import pytest
+
+from comparisons.exact import (
+    FrictionState,
+    Surface,
+    elastica_with_friction,
+    friction_law,
+    rod_under_pin,
+    rod_with_friction,
+)
+from tests.comparisons.exact.test_friction import (
+    FACE,
+    KS,
+    KS_STATES,
+    THICK,
+    along_the_axis,
+    balance,
+    check_states,
+    ks_pins,
+)
+
+OPEN, STICK, TO_TIP, TO_CLAMP = (
+    FrictionState.OPEN,
+    FrictionState.STICK,
+    FrictionState.SLIP_TO_TIP,
+    FrictionState.SLIP_TO_CLAMP,
+)
+
+
+def states(path):
+    return [event.after for event in path.events]
+
+
+def stick_terms(path, k, stiffness, surface):
+    """`A`, the arc position and the roll of the contact, from the reactions of the clamp."""
+    end, mean = along_the_axis(path, k, stiffness)
+    phi = np.arctan2(mean[1], mean[0])
+    couple = surface.offset * path.force[k] @ [np.cos(phi), np.sin(phi)]
+    factor = np.hypot(*mean) + surface.offset * couple / stiffness["EI"] / 2.0
+    return factor, path.arc_position[k], surface.offset * (phi - end[2]) + surface.radius * phi
+
+
+@pytest.mark.parametrize("surface", [Surface(offset=0.05), Surface(offset=0.05, radius=0.1)])
+def test_the_stick_row_holds_when_integrated_from_the_clamp(surface):
+    whole = rod_with_friction(
+        ks_pins([0.0, 1.0], surface.offset + surface.radius), friction=0.5, **THICK, surface=surface
+    )
+    assert states(whole) == KS_STATES
+    begin, end = (event.load_parameter for event in whole.events[1:])
+    t = [0.0, begin, (2.0 * begin + end) / 3.0, (begin + 2.0 * end) / 3.0]
+    path = rod_with_friction(
+        ks_pins(t, surface.offset + surface.radius), friction=0.5, **THICK, surface=surface
+    )
+    first, *others = (stick_terms(path, k, THICK, surface) for k in (1, 2, 3))
+    assert path.state[2:] == (STICK, STICK)
+    for other in others:
+        slide = (first[0] + other[0]) / 2.0 * (other[1] - first[1]) + other[2] - first[2]
+        assert slide == pytest.approx(0.0, abs=1e-11)
+        assert abs(other[1] - first[1]) > 1e-5
+    check_states(path, 0.5)
+
+
+@pytest.mark.parametrize(("friction", "defect"), [(0.1, 2.5e-8), (0.3, 1.4e-7), (0.5, 3.2e-7)])
+def test_a_held_arc_position_does_not_conserve_energy_on_a_face(monkeypatch, friction, defect):
+    """With `s = s*` the work of the KS path is off by `defect`, with the stick row by less than 1e-11."""
+    row = friction_law.third_row
+    path = rod_with_friction(ks_pins([0.0, 1.0], FACE.offset), friction=friction, **KS, surface=FACE)
+    assert balance(path)[1] < 1e-11
+
+    def held(contact, phase, friction):
+        return row(contact, phase, friction) if phase.sense else np.asarray(contact.arc - phase.start.arc)
+
+    monkeypatch.setattr(friction_law, "third_row", held)
+    path = rod_with_friction(ks_pins([0.0, 1.0], FACE.offset), friction=friction, **KS, surface=FACE)
+    assert balance(path)[1] == pytest.approx(defect, rel=0.05)
+
+
+@pytest.mark.parametrize(("radius", "defect"), [(0.01, 2.7e-9), (0.1, 1.9e-7)])
+def test_energy_of_a_stick_that_rolls(radius, defect):
+    """The stick row is the trapezium of `v = 0`; over a long roll its energy shows."""
+    surface = Surface(offset=0.0 if radius == 0.01 else 0.01, radius=radius)
+    path = rod_with_friction(
+        ks_pins([0.0, 1.0], surface.offset + radius), friction=0.3, **KS, surface=surface
+    )
+    assert states(path) == KS_STATES
+    assert balance(path)[1] == pytest.approx(defect, rel=0.05)
+
+
+@pytest.mark.slow
+def test_a_stiff_rod_rolls_on_a_round_pin():
+    """Without stretch and shear `s + R phi` keeps its value in stick on the axis."""
+    stiff = {"EA": 1e7, "GA": 1e7, "EI": 1.0, "length": 1.0}
+    surface = Surface(radius=0.2)
+    t = np.linspace(0.0, 1.0, 21)
+    path = rod_with_friction(ks_pins(t, 0.2), friction=0.5, **stiff, surface=surface)
+    stick = [k for k, state in enumerate(path.state) if state is STICK]
+    assert len(stick) >= 2
+    roll = path.arc_position[stick] + 0.2 * path.tip_rotation[stick]
+    np.testing.assert_allclose(roll, roll[0], rtol=0, atol=1e-5)
+    assert np.ptp(path.arc_position[stick]) > 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.1, 0.5])
+def test_a_rod_without_stretch_and_shear_is_the_elastica(friction):
+    """Collocation and the quadrature of the first integral share nothing but the law of friction."""
+    rigid = {"EA": np.inf, "GA": np.inf, "EI": 1.0, "length": 1.0}
+    rod = rod_with_friction(ks_pins([0.0, 0.5, 1.0]), friction=friction, **rigid)
+    elastica = elastica_with_friction(ks_pins([0.0, 0.5, 1.0]), friction=friction)
+    for name in ("magnitude", "arc_position", "clamp_moment", "dissipated", "stored", "tip", "tip_rotation"):
+        np.testing.assert_allclose(
+            getattr(rod, name)[1:], getattr(elastica, name)[1:], rtol=1e-11, err_msg=name
+        )
+    for first, second in zip(rod.events, elastica.events, strict=True):
+        assert first.load_parameter == pytest.approx(second.load_parameter, abs=1e-12)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.01])
+def test_without_friction_the_rod_is_the_frictionless_one(offset):
+    pins = ks_pins([0.0, 0.25, 0.5, 0.75, 1.0], offset)
+    path = rod_with_friction(pins, friction=0.0, **KS, surface=Surface(offset=offset))
+    frictionless = rod_under_pin(pins, offset=offset, **KS)
+    for name in ("magnitude", "arc_position", "clamp_moment", "tip_rotation"):
+        np.testing.assert_allclose(
+            getattr(path, name)[1:], getattr(frictionless, name)[1:], rtol=1e-12, err_msg=name
+        )
+    np.testing.assert_allclose(path.dissipated, 0.0, atol=1e-15 * path.work[-1])
+    assert balance(path)[-1] < 1e-13
+
+
+@pytest.mark.parametrize("surface", [Surface(), Surface(offset=0.03, radius=0.05)])
+def test_a_pin_on_the_left_is_the_mirror_image(surface):
+    pins = ks_pins([0.0, 0.4, 0.8], surface.offset + surface.radius)
+    right, left = (
+        rod_with_friction(pins * [1.0, side], friction=0.3, **THICK, surface=surface) for side in (1, -1)
+    )
+    assert left.state == right.state
+    np.testing.assert_allclose(left.force, right.force * [1.0, -1.0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(left.clamp_moment, -right.clamp_moment, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(left.dissipated, right.dissipated, rtol=0, atol=1e-12)
+    assert [item.after for item in left.events] == [item.after for item in right.events]
+
+
+def test_a_pin_on_the_left_of_the_elastica_is_the_mirror_image():
+    right, left = (
+        elastica_with_friction(ks_pins([0.0, 1.0]) * [1.0, side], friction=0.3) for side in (1, -1)
+    )
+    np.testing.assert_allclose(left.force, right.force * [1.0, -1.0], rtol=1e-13)
+    np.testing.assert_allclose(left.tip, right.tip * [1.0, -1.0], rtol=1e-13)
+    assert left.clamp_moment[1] == pytest.approx(-right.clamp_moment[1], rel=1e-13)
+
+
+def test_a_pin_that_rises_square_to_the_rod_sticks_first():
+    """The rod stretches, so that it slips at a small deflection only; the elastica slips at once."""
+    points = [[0.8, -0.1], [0.8, 0.3], [0.8, -0.2]]
+    rod = rod_with_friction(points, friction=0.3, **KS)
+    assert states(rod) == [STICK, TO_TIP, STICK, TO_CLAMP, OPEN]
+    assert 0.0 < rod.events[1].load_parameter * 0.9 - 0.1 < 1e-3
+    elastica = elastica_with_friction(points, friction=0.3)
+    assert states(elastica) == [TO_TIP, STICK, TO_CLAMP, OPEN]
+    for path in (rod, elastica):
+        assert path.events[-1].load_parameter * 0.9 == pytest.approx(0.7, abs=1e-12)
+        assert path.work[-1] == pytest.approx(path.dissipated[-1], rel=1e-12)
+        assert path.magnitude[-1] == 0.0
+        check_states(path, 0.3)
+
+
+def test_touch_slip_off_and_touch_again():
+    points = [[0.8, -0.1], [0.8, 0.7], [0.8, 0.6], [0.8, -0.1], [0.8, 0.1]]
+    path = rod_with_friction(points, friction=0.3, **THICK)
+    slipped = FrictionState.SLIPPED
+    assert path.state == (OPEN, slipped, slipped, OPEN, TO_TIP)
+    assert states(path) == [STICK, TO_TIP, slipped, STICK, TO_TIP]
+    assert path.events[2].arc_position == pytest.approx(1.0, abs=1e-12)
+    again = rod_with_friction([[0.8, 0.0], [0.8, 0.1]], friction=0.3, **THICK)
+    assert path.magnitude[-1] == pytest.approx(again.magnitude[-1], rel=1e-12)
+    assert path.released[1] > 0.0
+    assert np.max(balance(path)) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("k", "turn", "after"), [(1, -0.1, TO_CLAMP), (1, 0.1, STICK), (2, -0.1, STICK), (2, 0.1, TO_TIP)]
+)
+def test_a_pin_that_turns_at_an_event(k, turn, after):
+    """At the corner the force is on the edge of the cone: the slip goes on or begins, or the pin sticks."""
+    event = elastica_with_friction(ks_pins([0.0, 1.0]), friction=0.3).events[k]
+    x, y = ks_pins([event.load_parameter])[0]
+    path = elastica_with_friction([[1.0, 0.0], [x, y], [x + turn, y]], friction=0.3)
+    assert path.state[1] is after
+    assert not path.state[-1].ends
+    assert np.max(balance(path)) < 1e-13
+    check_states(path, 0.3)
+
+
+def test_slip_off_at_the_touch():
+    points = [[1.0, -0.1], [1.0, 0.1]]
+    elastica = elastica_with_friction(points, friction=0.3)
+    assert states(elastica) == [TO_TIP, FrictionState.SLIPPED]
+    assert elastica.events[-1].load_parameter == pytest.approx(0.5, abs=1e-12)
+    rod = rod_with_friction(points, friction=0.3, **KS)
+    assert states(rod) == [STICK, TO_TIP, FrictionState.SLIPPED]
+    assert rod.events[2].load_parameter == pytest.approx(rod.events[1].load_parameter, abs=1e-12)
+    assert 0.5 < rod.events[2].load_parameter < 0.501
+    assert rod.magnitude[-1] == elastica.magnitude[-1] == 0.0
+    assert rod_with_friction(points, friction=0.0, **KS).state[-1] is FrictionState.SLIPPED
+
+
+def test_a_pin_that_turns_sticks_before_it_slips_back():
+    path = elastica_with_friction([[1.0, 0.0], [0.7, 0.2], [0.85, 0.1]], friction=0.3)
+    assert states(path) == [TO_CLAMP, STICK, TO_TIP]
+    turn = path.load_parameter[1]
+    assert path.events[1].load_parameter == turn
+    assert path.state[1] is STICK
+    straight_on = elastica_with_friction([[1.0, 0.0], [0.7, 0.2], [0.4, 0.4]], friction=0.3)
+    assert straight_on.state[1] is TO_CLAMP
+    check_states(path, 0.3)
+
+
+def test_a_contact_that_neither_slip_nor_stick_continues_is_jammed():
+    """The stick is released at the edge of the cone, where the forces of the slip would push the pin the other way."""
+    points = np.array([[0.681, -0.019], [0.291, 0.559], [0.735, 0.173]])
+    paths = [
+        elastica_with_friction(points, friction=1.086),
+        rod_with_friction(points, friction=1.086, EA=3e5, GA=1e5, EI=1.0, length=1.0),
+    ]
+    for path in paths:
+        assert path.events[-1].before is STICK
+        assert path.state[-1] is path.events[-1].after is FrictionState.JAMMED
+        assert np.isnan(path.magnitude[-1])
+        assert np.isfinite(path.magnitude[-2])
+    jammed = [path.events[-1].load_parameter for path in paths]
+    assert jammed[0] == pytest.approx(jammed[1], abs=1e-3)
+
+
+def test_a_path_without_equilibrium_is_lost():
+    path = elastica_with_friction(
+        [[0.709, -0.01], [0.781, 0.236], [-0.181, 0.259]], friction=0.277, length=4.0
+    )
+    assert path.state[-1] is FrictionState.LOST
+    assert np.isnan(path.stored[-1])
+
+
+def drawn_points(rng, reach):
+    """Path of two to five vertices that starts outside the beam."""
+    points = np.column_stack([rng.uniform(0.2, 1.0, 5), rng.uniform(-0.1, 0.5, 5)])
+    points[0, 1] = -0.05
+    return (points - [0.0, reach])[: rng.integers(2, 6)] * [1.0, rng.choice([1, -1])]
+
+
+@pytest.mark.slow
+def test_drawn_paths_of_the_elastica():
+    rng, ended = np.random.default_rng(11), 0
+    for _ in range(30):
+        friction = rng.uniform(0.02, 1.0)
+        path = elastica_with_friction(drawn_points(rng, 0.0), friction=friction)
+        check_states(path, friction)
+        assert np.nanmax(balance(path)) < 1e-12
+        ended += path.state[-1].ends
+    assert ended <= 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("shape", [(0.0, 0.0), (0.02, 0.0), (0.02, 0.05)])
+def test_drawn_paths_of_the_rod(seed, shape):
+    """Work is stored, dissipated or set free, exactly on the axis and to the trapezium of the stick row elsewhere."""
+    rng, ended, surface = np.random.default_rng(seed), 0, Surface(offset=shape[0], radius=shape[1])
+    for _ in range(5):
+        friction, EA = rng.uniform(0.02, 1.0), 10.0 ** rng.uniform(2.5, 4.5)
+        points = drawn_points(rng, sum(shape))
+        path = rod_with_friction(
+            points, friction=friction, EA=EA, GA=EA / 3.0, EI=1.0, length=1.0, surface=surface
+        )
+        check_states(path, friction)
+        assert np.nanmax(balance(path)) < (1e-12 if shape == (0.0, 0.0) else 1e-3)
+        ended += path.state[-1].ends
+    assert ended <= 1
+
+
+@pytest.mark.parametrize(("EI", "length"), [(1e-9, 1e-6), (1e12, 1e4)])
+def test_units(EI, length):
+    stiffness = {"EA": 300.0 * EI / length**2, "GA": 80.0 * EI / length**2, "EI": EI, "length": length}
+    surface, scaled = Surface(offset=0.03), Surface(offset=0.03 * length)
+    one = rod_with_friction(ks_pins([0.0, 0.8], 0.03), friction=0.3, **THICK, surface=surface)
+    other = rod_with_friction(length * ks_pins([0.0, 0.8], 0.03), friction=0.3, **stiffness, surface=scaled)
+    assert other.magnitude[1] * length**2 / EI == pytest.approx(one.magnitude[1], rel=1e-12)
+    assert other.dissipated[1] * length / EI == pytest.approx(one.dissipated[1], rel=1e-12)
+    assert other.events[1].magnitude * length**2 / EI == pytest.approx(one.events[1].magnitude, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
+        ({"EA": 0.0}, "EA = 0.0: must be positive"),
+        ({"length": np.nan}, "length = nan: must be positive and finite"),
+        ({"points": [0.8, 0.1]}, "points"),
+        ({"points": [[0.8, 0.0]], "surface": Surface(offset=0.1)}, "must not start inside the rod"),
+    ],
+)
+def test_bad_input(change, message):
+    arguments = {"points": [[0.8, 0.0]], "friction": 0.3, **KS} | change
+    with pytest.raises(ValueError, match=message):
+        rod_with_friction(**arguments)
+
+
+def test_bad_surface():
+    with pytest.raises(ValueError, match=r"radius = -1\.0: must be finite and not negative"):
+        Surface(radius=-1.0)
+
+
+def test_beside_the_rod_nothing_touches():
+    path = rod_with_friction([[1.1, -0.1], [1.1, 0.1]], friction=0.3, **KS)
+    assert path.state == (OPEN, OPEN)
+    np.testing.assert_array_equal(path.tip, [[1.0, 0.0], [1.0, 0.0]])
+    assert path.events == ()
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.5])
+@pytest.mark.parametrize("shift", [0.0, 2e-16, -1e-15, 1e-13, -1e-11, 1e-9, 1e-7])
+def test_a_load_parameter_at_an_event_changes_nothing(friction, shift):
+    whole = elastica_with_friction(ks_pins([0.0, 1.0]), friction=friction)
+    for event in whole.events[1:]:
+        path = elastica_with_friction(ks_pins([0.0, event.load_parameter + shift, 1.0]), friction=friction)
+        assert states(path) == KS_STATES
+        assert path.magnitude[-1] == pytest.approx(whole.magnitude[-1], rel=1e-12)
