@@ -25,8 +25,9 @@ from fem_reference.model import Model
 from fem_reference.newton import Attempt
 from fem_reference.settings import Settings
 from fem_reference.slip_events import SlipEvent, first_slip_event
-from fem_reference.state import Condition, State, Touch, at_rest, build_state, with_conditions
+from fem_reference.state import State, at_rest, build_state, with_conditions
 from fem_reference.status import Status
+from fem_reference.touch import Condition, Touch
 from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
 
 _LOAD_ROUND_OFF = 1e-9

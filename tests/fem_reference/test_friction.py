@@ -23,9 +23,10 @@ from fem_reference.friction import (
 from fem_reference.model import build
 from fem_reference.newton import updated
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, build_state, residual
+from fem_reference.state import build_state, residual
 from fem_reference.status import Status
 from fem_reference.tangent import linearise
+from fem_reference.touch import Condition
 from fem_reference.track import accept
 from tests.fem_reference.conftest import (
     PAIR,
