@@ -115,6 +115,12 @@ def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() 
     assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
 
 
+@pytest.mark.parametrize(("seed", "defect"), [(32, 4.0e-8), (8, 1.7e-5), (26, 7.9e-5), (9, 8.6e-4)])
+def test_a_long_roll_of_a_thick_rod_shows_in_the_work(seed: int, defect: float) -> None:
+    """The stick row is the trapezium of a slip rate that vanishes: the thicker the rod, the more its stretch changes in stick."""
+    assert balance(drawn(seed).solve(10)) == pytest.approx(defect, rel=0.05)
+
+
 def test_mixed_elements_keep_the_work_but_for_their_jumps_at_nodes() -> None:
     assert balance(ks(0.3).solve(10, "mixed", 10)) <= 5e-7
 
