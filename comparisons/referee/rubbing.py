@@ -188,10 +188,9 @@ def _crept(history: History, k: int, exact: Equilibrium) -> float:
 def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
     """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
     response = history.response
-    if response.work is None:
-        return
     stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
-    largest = max(abs(float(response.work[k])), exact.strain_energy)
+    work = 0.0 if response.work is None else abs(float(response.work[k]))
+    largest = max(work, exact.strain_energy)
     for pair, own in dissipated(history, k, exact).items():
         if pair in stated:
             spent = stated[pair].dissipated

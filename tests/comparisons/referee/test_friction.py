@@ -72,6 +72,18 @@ def test_the_rod_of_quadrature_is_certified(name: str) -> None:
     assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-8
 
 
+@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
+def test_the_solid_is_certified_all_along(name: str) -> None:
+    """It records no events, so that the referee finds slip and stick itself."""
+    scene = rough(name, 0.3, 20)
+    response = solve(scene, "solid", Options(mesh=(50, 2)))
+    assert response.events is None
+    assert set(response.contacts[PAIR].friction.slip) == {-1, 0, 1}
+    found = all_along(scene, response)
+    assert found.certified, found.line()
+    assert 1e-3 < max(item.distance.force for item in found.judged if item.distance) < 6e-3
+
+
 @pytest.mark.parametrize("element", ["exact", pytest.param("mixed", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "name",
@@ -187,6 +199,14 @@ def test_the_exact_rods_of_any_scene_state_their_friction() -> None:
         np.testing.assert_allclose(mine.normal, other.normal, rtol=1e-9)
         np.testing.assert_allclose(mine.dissipated, other.dissipated, rtol=1e-8)
         np.testing.assert_array_equal(mine.slip, other.slip)
+
+
+def test_a_strut_that_does_not_buckle_in_stick_is_refused() -> None:
+    """The strut of the crossed beams sticks and buckles; in long steps the elements follow the straight branch beyond."""
+    scene = rough("crossed-beams", 0.2, 12)
+    found = all_along(scene, answer(scene))
+    assert found.verdict is Verdict.UNSTABLE
+    assert "ends elsewhere" in found.reason
 
 
 def contact(response: Response, **changes: object) -> Response:
