@@ -17,6 +17,7 @@ from comparisons.referee.equations import assemble, mesh_of, properties
 from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out
+from comparisons.referee.phases import OPEN
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import stated
@@ -392,6 +393,33 @@ def drawn_on_a_face(*, round_pin: bool) -> Scene:
         pins=(PinSpec(name="p", path=((0.8, -0.2), (0.7, 0.2)), radius=0.15 if round_pin else None),),
         contacts=(ContactSpec(node="p", beam="b", side="right", surface="face", friction=0.4),),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.003], ids=["from the start", "from a touch"])
+@pytest.mark.parametrize(
+    ("surface", "radius", "friction"),
+    [("axis", None, 1.0), ("axis", 0.1, 1.0), ("face", None, 20.0), ("face", 0.1, 20.0)],
+)
+def test_a_pin_that_sticks_where_it_touches_is_certified(
+    gap: float, surface: str, radius: float | None, friction: float
+) -> None:
+    """A thick beam under a pin raised square to it; with and without events."""
+    offset = (0.1 if surface == "face" else 0.0) + (radius or 0.0)
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), width=0.2, height=0.2, youngs_modulus=1e7, poissons_ratio=0.3
+    )  # fmt: skip
+    scene = Scene(
+        name="raised", load_parameters=8, beams=(beam,),
+        pins=(PinSpec(name="p", path=((0.7, -offset - gap), (0.7, 0.01 - offset)), radius=radius),),
+        contacts=(ContactSpec(node="p", beam="b", side="right", surface=surface, friction=friction),),
+    )  # fmt: skip
+    response = answer(scene)
+    history = History(response, scene)
+    assert [phase.slip for phase in history.phases["p->b"]] == ([OPEN, 0] if gap else [0])
+    for given in (response, replace(response, events=None)):
+        found = all_along(scene, given)
+        assert found.certified, found.line()
+        assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-11
 
 
 def drawn(seed: int) -> Scene:
