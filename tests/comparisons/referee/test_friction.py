@@ -21,6 +21,7 @@ from comparisons.referee.phases import OPEN
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import stated
+from tests.comparisons.referee.test_drawn import two_beams
 
 PAIR = "pin->cantilever"
 EXACT = Options(element="exact")
@@ -464,3 +465,16 @@ def completed_and_certified(seeds: range) -> int:
 def test_drawn_cantilevers_are_certified(first: int) -> None:
     """Two hundred and twenty scenes, twenty in a test."""
     assert completed_and_certified(range(first, first + 20)) >= 16
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [7, 22])
+def test_two_drawn_beams_with_three_contacts_are_certified(seed: int) -> None:
+    """Seed 7 begins without a touch; in seed 22 seven contacts change in one step, two of them at one load parameter."""
+    rng = np.random.default_rng(seed)
+    height, surface = float(10.0 ** rng.uniform(-2.4, -0.9)), ("axis", "face")[rng.integers(2)]
+    scene = two_beams(rng, height, surface)
+    friction = float(rng.uniform(0.02, 1.0))
+    scene = replace(scene, contacts=tuple(replace(spec, friction=friction) for spec in scene.contacts))
+    found = all_along(scene, answer(scene))
+    assert found.certified, found.line()
