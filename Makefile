@@ -15,7 +15,7 @@ test: lint
 	$(PYTEST) -m "not slow"
 
 test-all: lint
-	$(PYTEST)
+	$(PYTEST) --durations=40
 
 # measures every number that the pages state, and writes those that have changed
 results: setup

@@ -100,4 +100,5 @@ def _row(item: "Judgement") -> str:
         return f"{text}, {item.reason}"
     apart = item.distance.sizes()
     sizes = ", ".join(f"{name.replace('_', ' ')} {size:.2g}" for name, size in apart.items())
-    return f"{text}, off by: {sizes}; index {item.index}, residual {item.residual:.1g}"
+    stable = "stability not judged (friction)" if item.index < 0 else f"index {item.index}"
+    return f"{text}, off by: {sizes}; {stable}, residual {item.residual:.1g}"

@@ -11,7 +11,6 @@ import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.friction import LOOSE, Grip, Hold
-from comparisons.referee.layout import Touch
 from comparisons.referee.march import place, rates, reach, slip_rate, speed
 from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.start import answer_state
@@ -81,7 +80,7 @@ class History:
         for pair, spec in self.specs.items():
             number = self.numbers[pair][k]
             if spec.friction and self.phases[pair][number].slip != OPEN:
-                held[pair] = self._grip(spec, number)
+                held[pair] = self.grip(spec, number)
         return held
 
     def around(self, t: float) -> dict[str, Grip]:
@@ -114,19 +113,35 @@ class History:
             self._begins[pair, number] = self._found(self.specs[pair], number)
         return self._begins[pair, number]
 
-    def _grip(self, spec: ContactSpec, number: int) -> Grip:
+    def grip(self, spec: ContactSpec, number: int) -> Grip:
+        """Return how friction holds a contact in a closed phase.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no equilibrium is found where a stick begins, or a slip has no known sign.
+        """
         slip = self.phases[spec.pair][number].slip
         if slip == UNKNOWN:
-            raise UnknownFrictionError(
-                f"{spec.pair} slips between two load parameters, and its sign is not stated"
-            )
+            slip = self._sign(spec, number)
         if slip:
             return Grip(friction=spec.friction, slip=slip)
         if number == 0:
-            return Grip(friction=spec.friction, slip=0, hold=_at_rest(self.scene, spec))
+            return Grip(friction=spec.friction, slip=0, hold=at_rest(self.scene, spec))
         solution = self.begin(spec.pair, number).solution
-        touch = next(item for item in solution.layout.touches if item.spec is spec)
-        return Grip(friction=spec.friction, slip=0, hold=place(solution, touch))
+        return Grip(friction=spec.friction, slip=0, hold=place(solution, solution.layout.touch(spec.pair)))
+
+    def _sign(self, spec: ContactSpec, number: int) -> int:
+        """Sign of a slip between two load parameters: of the slip that ends where it does, or of the force where it begins."""
+        own = self.phases[spec.pair]
+        if number + 1 < len(own) and own[number + 1].slip == 0:
+            return self.begin(spec.pair, number + 1).solution.layout.grips[spec.pair].slip
+        if number and own[number - 1].slip == 0:
+            solution = self.begin(spec.pair, number).solution
+            return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
+        raise UnknownFrictionError(
+            f"{spec.pair} slips between two load parameters, and its sign is not stated"
+        )
 
     def _found(self, spec: ContactSpec, number: int) -> Begin:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
@@ -134,7 +149,7 @@ class History:
         if before.slip == OPEN:
             return self._root(spec, number, LOOSE)
         if before.slip != UNKNOWN:
-            return self._root(spec, number, self._grip(spec, number - 1))
+            return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
         for sign in (1, -1):
             try:
@@ -150,7 +165,7 @@ class History:
         """Find the load parameter at which the state `own` of a contact ends."""
         phase = self.phases[spec.pair][number]
         around = self._around(spec, phase.begin)
-        state = {**around, spec.pair: own} if spec.friction else around
+        state = {**around, spec.pair: own}
         now = self.near(phase.begin, self.closed(phase.begin) | {spec.pair}, state)
 
         def margin(t: float) -> float:
@@ -180,9 +195,9 @@ class History:
             now = self.phases[pair][number]
             if number and abs(now.begin - t) <= SAME and now.slip != OPEN:
                 before = self.phases[pair][number - 1]
-                held[pair] = LOOSE if before.slip == OPEN else self._grip(other, number - 1)
+                held[pair] = LOOSE if before.slip == OPEN else self.grip(other, number - 1)
             elif now.slip != OPEN:
-                held[pair] = self._grip(other, number)
+                held[pair] = self.grip(other, number)
         return held
 
     def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
@@ -213,7 +228,7 @@ def _does(phase: Phase) -> str:
     return {0: "sticks", OPEN: "opens"}.get(phase.slip, "slips")
 
 
-def _at_rest(scene: Scene, spec: ContactSpec) -> Hold:
+def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     """The place of a contact with the undeformed beam."""
     beam = scene.beam(spec.beam)
     x, y = beam.direction
@@ -226,7 +241,7 @@ def _at_rest(scene: Scene, spec: ContactSpec) -> Hold:
 
 def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens: bool) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
-    touch: Touch = next(item for item in now.layout.touches if item.spec is spec)
+    touch = now.layout.touch(spec.pair)
     if own.friction and own.slip and not opens:
         rate = rates(scene, now)
         return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)

@@ -12,7 +12,7 @@ from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, distance, least_force
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.history import History, UnknownFrictionError
-from comparisons.referee.rubbing import rubs_wrongly, unlawful
+from comparisons.referee.rubbing import rubs_wrongly, unlawful, wanders
 from comparisons.referee.start import AnswerState, answer_state
 from comparisons.referee.state import Equilibrium, equilibrium
 from comparisons.response import ContactHistory, Response
@@ -53,7 +53,7 @@ def judged(
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
-        misstated = next(unlawful(response, scene, k, allowed), "")
+        misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
         if misstated:
             return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
         try:

@@ -193,6 +193,10 @@ class Layout:
         """How friction holds the contacts, by pair."""
         return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
 
+    def touch(self, pair: str) -> Touch:
+        """Return the closed contact of a pair."""
+        return next(item for item in self.touches if item.spec.pair == pair)
+
     def beside(self, touch: Touch) -> tuple[Part, Part]:
         """Return the parts before and behind a contact."""
         number = next(

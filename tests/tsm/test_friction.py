@@ -96,6 +96,15 @@ def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float
         assert [event.load_parameter for event in result.events] == pytest.approx(times, abs=1e-9)
 
 
+def test_a_slip_that_has_come_and_gone_within_a_step_is_found() -> None:
+    """A slip between two sticks, whose margins are positive at the end of the step."""
+    scene = drawn(14)
+    turns = [event.load_parameter for event in scene.solve(1).events if event.kind in TURNS]
+    (*_, last), exact = turns, [event.load_parameter for event in scene.exact(1)[0].events[-5:]]
+    assert turns == pytest.approx(exact, abs=1e-8)
+    assert 0.9 < last < 1.0
+
+
 @pytest.mark.slow
 def test_five_hundred_load_steps_give_the_same_answer() -> None:
     many, one = ks(0.3).solve(500), ks(0.3).solve(1)
@@ -114,6 +123,15 @@ def test_work_is_stored_or_dissipated(steps: int) -> None:
 
 def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() -> None:
     assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
+
+
+@pytest.mark.parametrize(("seed", "defect"), [(32, 4.0e-8), (8, 1.7e-5), (26, 7.9e-5), (9, 8.6e-4)])
+def test_a_long_roll_of_a_thick_rod_shows_in_the_work(seed: int, defect: float) -> None:
+    """The stick row is the trapezium of a slip rate that vanishes. The exact rod has the same row and the same defect."""
+    exact, at = drawn(seed).exact(10)
+    lost = exact.work - exact.stored - exact.dissipated - exact.released
+    assert np.abs(lost[at]).max() / exact.work[at].max() == pytest.approx(defect, rel=0.05)
+    assert balance(drawn(seed).solve(10)) == pytest.approx(defect, rel=0.05)
 
 
 def test_mixed_elements_keep_the_work_but_for_their_jumps_at_nodes() -> None:
