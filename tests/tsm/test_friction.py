@@ -7,6 +7,7 @@ import pytest
 
 import tsm
 from comparisons.exact import elastica_with_friction, frictional_three_point_limit
+from tests.fuzz.run_friction import verdict
 from tests.tsm.friction_scenes import LAST, STRIP, Cantilever, drawn, ks
 from tsm.events import EventKind
 from tsm.model import Model
@@ -255,21 +256,40 @@ def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
     assert 0.55 < traced.load_parameter[-1] < 0.6205
 
 
-def judged(seed: int, element: str = "exact", elements: int = 1) -> float | None:
-    """Largest relative error of the force of a drawn cantilever; None if the solution stopped by name."""
-    scene, steps = drawn(seed), 6
-    result, (exact, at) = scene.solve(steps, element, elements), scene.exact(steps)
-    reached = len(result.load_parameter)
-    if result.status is not tsm.Status.COMPLETED:
-        return None
-    true = exact.magnitude[at][:reached]
-    return float(np.abs(result.contacts[PAIR].force - true).max() / np.abs(true).max(initial=1e-300))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 40, 10))
 def test_drawn_cantilevers_with_friction(first: int) -> None:
     """The command ``python -m tests.fuzz.run_friction 500`` judges more."""
-    found = [judged(seed) for seed in range(first, first + 10)]
-    assert sum(error is None for error in found) <= 2
-    assert max(error for error in found if error is not None) <= 1e-8
+    found = [verdict(seed) for seed in range(first, first + 10)]
+    assert not [item for item in found if item.wrong]
+    assert sum(item.ended != tsm.Status.COMPLETED.name for item in found) <= 2
+
+
+MENDED = {
+    156: "a pin at the tip goes in, sticks and slips off within one step",
+    351: "the same, with a larger coefficient",
+}
+"""Cantilevers that were answered wrongly, and why."""
+
+
+@pytest.mark.parametrize("seed", MENDED)
+def test_drawn_cantilevers_that_once_failed(seed: int) -> None:
+    found = verdict(seed)
+    assert not found.wrong
+    assert found.ended == tsm.Status.COMPLETED.name
+
+
+@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 8)])
+def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact(element: str, elements: int) -> None:
+    scene = Cantilever(section=STRIP, friction=0.2, path=((0.5, 0.0), (0.5, -0.1)))
+    result = scene.solve(3, element, elements)
+    assert result.status is tsm.Status.COMPLETED
+    assert [(event.kind, event.load_parameter) for event in result.events] == [(EventKind.RELEASE, 0.0)]
+    assert not result.contacts[PAIR].force.any()
+
+
+@pytest.mark.parametrize("elements", [5, 10])
+def test_work_is_kept_past_a_corner_at_which_the_contact_slips_on(elements: int) -> None:
+    path = ((0.5, 0.0), (0.5, 0.1), (0.6, 0.1), (0.5, 0.1))
+    result = Cantilever(section=STRIP, friction=0.3, path=path).solve(4, "mixed", elements)
+    assert balance(result) <= 5e-9
