@@ -73,9 +73,11 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
         Number of negative eigenvalues; a lower bound for an exact element with more than a few hundred modes. The index is -1, not
         defined, for a singular tangent, for numbers that are not finite, and for more than 1,500 unknowns whose pivots leave the
         diagonal. It is -1 also for closed contacts of the paper's elements: their force is normal to the chord and has no energy, and
-        for contacts with friction, whose force has none either.
+        in slip, whose force has none either. A contact that sticks is held at its arc position; on a face the shear strain moves it.
     """
-    if any(touch is not None and touch.grip is not None for touch in state.touches):
+    if any(
+        touch is not None and touch.grip is not None and touch.grip.held is None for touch in state.touches
+    ):
         return UNDEFINED
     for forces in system.groups:
         if isinstance(forces, RodBalance) and (hidden := modes_at_least(forces)):
@@ -84,6 +86,13 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
         symmetric = _symmetric(assembler, state, system)
     if symmetric is None:
         return UNDEFINED
+    held_there = [
+        assembler.model.border_dofs + pair.slot + 2
+        for pair, touch in zip(assembler.model.pairs, state.touches, strict=True)
+        if touch is not None and touch.grip is not None
+    ]
+    if held_there:
+        symmetric = _freed(symmetric, held_there)
     counted = negatives(symmetric)
     if counted is None:
         return UNDEFINED
@@ -104,7 +113,7 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
 
 
 def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
-    """Symmetric tangent without the force and arc position of the contacts that carry no force."""
+    """Symmetric tangent without some unknowns of the contacts, as the force and arc position of contacts that carry no force."""
     right, corner = symmetric.right.copy(), symmetric.corner.copy()
     right[:, idle] = corner[idle] = corner[:, idle] = 0.0
     corner[idle, idle] = 1.0

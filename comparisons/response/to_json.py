@@ -139,8 +139,6 @@ def _friction_rows(
 
 def stability(response: Response) -> str:
     """Say in a few words where a response is stable."""
-    if any(contact.friction is not None for contact in response.contacts.values()):
-        return "not judged, a contact has friction"
     if response.index is None:
         return "not stated by this model"
     unstable, unknown = response.index > 0, response.index < 0
@@ -151,7 +149,9 @@ def stability(response: Response) -> str:
     elif not unknown.all():
         parts.append("stable")
     if unknown.any():
-        parts.append(f"index not defined at {int(unknown.sum())} of {len(unknown)} load parameters")
+        rubbed = any(contact.friction is not None for contact in response.contacts.values())
+        what = "not judged where a contact slips," if rubbed else "index not defined"
+        parts.append(f"{what} at {int(unknown.sum())} of {len(unknown)} load parameters")
     return "; ".join(parts)
 
 
