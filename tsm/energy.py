@@ -107,7 +107,8 @@ def spent(
     between: list[Equilibrium] = []
 
     def at(t: float) -> Array | None:
-        reached = newton.solve(newton.prescribed(extrapolate(newton.model, trail, t), t))
+        near = [*trail, *(inner.state for inner in between[-3:])]
+        reached = newton.solve(newton.prescribed(extrapolate(newton.model, near, t), t))
         if reached.status is not Status.CONVERGED:
             return None
         between.append(reached)

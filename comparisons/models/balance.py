@@ -33,7 +33,7 @@ def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
     ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M,
     the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, the force that balances all other forces
     is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
-    ``-side R F_t`` of a stated tangential force about the centre of a round pin, side = 1 for a pin on the right.
+    ``-side (R + g) F_t`` of a stated tangential force about the centre of a pin of radius R at the gap g, side = 1 for a pin on the right.
     """
     supports, loads = _supports(response, scene), _loads(response, scene)
     outer = _sum([*supports, *loads], len(response.load_parameter))
@@ -121,7 +121,8 @@ def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.i
 
 
 def _roll(scene: Scene, spec: ContactSpec, history: ContactHistory) -> Array | float:
-    """Moment (s,) of a round pin's tangential force about its centre."""
+    """Moment (s,) of the tangential force on the surface about the pin's centre, which is a radius and a gap away."""
     if history.friction is None:
         return 0.0
-    return (1.0 if spec.side == "left" else -1.0) * scene.radius(spec) * history.friction.tangential
+    lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
+    return np.asarray((1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential)

@@ -135,7 +135,8 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
         yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
     closed = contact.force > 0.0
     pressing = contact.force if contact.friction is None else contact.friction.normal
-    ajar = closed & (np.abs(contact.gap + contact.compliance * pressing) > CLOSED * length)
+    allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
+    ajar = closed & (np.abs(contact.gap + contact.compliance * pressing) > allowed * length)
     if ajar.any():
         yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
     deep = closed & (contact.gap < -PENETRATION * length)

@@ -211,6 +211,15 @@ def test_round_pin_is_the_same_for_every_model(model: str) -> None:
     assert np.abs(response.contacts[PAIR].gap).max() < 1e-10
 
 
+@pytest.mark.parametrize("law", [{"penalty": 10.0}, {"penetration": 1e-6}])
+def test_soft_contacts_with_friction_of_the_solid_pass_the_checks(law: dict[str, float]) -> None:
+    """The tangential force acts on the surface, a gap away from the pin, and a stated penetration is not an open gap."""
+    contact = replace(KS.contacts[0], friction=0.3, **law)
+    response = solve(replace(KS, contacts=(contact,), load_parameters=5), "solid", Options(mesh=(30, 1)))
+    assert response.completed, response.message
+    assert 1e-9 < np.abs(response.contacts[PAIR].gap).max() < 1e-3
+
+
 @pytest.mark.parametrize(("model", "options"), [("tsm", {"element": "exact"}), ("solid", {"mesh": (20, 1)})])
 def test_every_model_states_critical_points_and_takes_a_branch(model: str, options: dict[str, Any]) -> None:
     """A straight column at 1.3 times its Euler load: the solid within .5 % of the rod."""

@@ -79,6 +79,7 @@ KEYS = [
     "penalty",
     "penetration",
     "keep",
+    "friction",
     "units",
     "youngs_modulus",
 ]

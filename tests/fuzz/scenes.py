@@ -117,6 +117,14 @@ def pin_paths(draw: st.DrawFn, place: Place, side: float, offset: float) -> Tabl
     return {"path": [place.point(*point) for point in points]}
 
 
+frictions = st.one_of(
+    st.just({}),
+    st.just({}),
+    st.one_of(parts(0.0, 1.0), st.just(0.0), powers(-9, 2)).map(lambda mu: {"friction": mu}),
+)
+"""Coefficient of friction of a contact, if it has one."""
+
+
 @st.composite
 def cantilevers(draw: st.DrawFn) -> Tables:
     """One clamped beam under one pin: what the exact rod can state."""
@@ -138,6 +146,7 @@ def cantilevers(draw: st.DrawFn) -> Tables:
         offset += radius
     if draw(st.booleans()) and draw(st.booleans()):
         contact["keep"] = True
+    contact |= draw(frictions)
     return {
         "scene": head(draw),
         "beam": [beam],
@@ -200,7 +209,7 @@ def frames(draw: st.DrawFn) -> Tables:
     scene["load"] = [draw(loads(chain[0], "end"))]
     if draw(st.booleans()):
         scene["pin"] = [{"name": "pin", **draw(pin_paths(place, 1.0, 0.0))}]
-        scene["contact"] = [{"node": "pin", "beam": "a", "side": "left"}]
+        scene["contact"] = [{"node": "pin", "beam": "a", "side": "left", **draw(frictions)}]
     return scene
 
 
@@ -219,6 +228,7 @@ def stacks(draw: st.DrawFn) -> Tables:
     contacts += [{"node": f"b{i}.end", "beam": f"b{i + 1}", "side": "left"} for i in range(number - 1)]
     if draw(st.booleans()):
         contacts.append({"node": "pin", "beam": "b1", "side": "left"})
+    contacts = [contact | draw(frictions) for contact in contacts]
     return {
         "scene": head(draw),
         "beam": chain,
