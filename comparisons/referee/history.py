@@ -132,23 +132,30 @@ class History:
         return Grip(friction=spec.friction, slip=0, hold=place(solution, solution.layout.touch(spec.pair)))
 
     def _sign(self, spec: ContactSpec, number: int) -> int:
-        """Sign of a slip between two load parameters: of the slip that ends where it does, or of the force where it begins."""
+        """Sign of a slip between two load parameters: of the force where it ends a stick, or of the slip that ends in a stick."""
         own = self.phases[spec.pair]
-        if number + 1 < len(own) and own[number + 1].slip == 0:
-            return self.begin(spec.pair, number + 1).solution.layout.grips[spec.pair].slip
-        if number and own[number - 1].slip == 0:
+        if self._ends_a_stick(spec, number):
             solution = self.begin(spec.pair, number).solution
             return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
+        if number + 1 < len(own) and own[number + 1].slip == 0:
+            return self.begin(spec.pair, number + 1).solution.layout.grips[spec.pair].slip
         raise UnknownFrictionError(
             f"{spec.pair} slips between two load parameters, and its sign is not stated"
         )
 
+    def _ends_a_stick(self, spec: ContactSpec, number: int) -> bool:
+        return number > 0 and self.phases[spec.pair][number - 1].slip == 0
+
     def _found(self, spec: ContactSpec, number: int) -> Begin:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
-        before = self.phases[spec.pair][number - 1]
+        before, phase = self.phases[spec.pair][number - 1 : number + 1]
         if before.slip == OPEN:
             return self._root(spec, number, LOOSE)
-        if before.slip != UNKNOWN:
+        if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
+            raise UnknownFrictionError(
+                f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
+            )
+        if before.slip != UNKNOWN or self._ends_a_stick(spec, number - 1):
             return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
         for sign in (1, -1):
@@ -158,7 +165,6 @@ class History:
                 reasons.append(error)
         if not found:
             raise reasons[0]
-        phase = self.phases[spec.pair][number]
         return min(found, key=lambda item: abs(item.load_parameter - phase.begin))
 
     def _root(self, spec: ContactSpec, number: int, own: Grip) -> Begin:
