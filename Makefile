@@ -40,6 +40,9 @@ fuzz: setup
 	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000
 	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
 	$(THREADS) $(BIN)/python -m tests.fuzz.run_world 5000
+	$(THREADS) $(BIN)/python -m tests.fuzz.run_world 1000 --friction --models exact,mixed
+	$(THREADS) $(BIN)/python -m tests.fuzz.run_friction 500
+	$(THREADS) $(BIN)/python -m tests.fuzz.run_friction 150 --element mixed
 
 platforms: setup
 	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox

@@ -8,8 +8,9 @@ from fem_reference.friction import mapped
 from fem_reference.model import Model
 from fem_reference.newton import Attempt, force_scale, iterate
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, State, Touch, imbalance, with_conditions
+from fem_reference.state import State, imbalance, with_conditions
 from fem_reference.status import Status
+from fem_reference.touch import Condition, Touch
 
 
 @np.errstate(all="ignore")  # values that are not finite become a status

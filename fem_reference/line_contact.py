@@ -4,7 +4,8 @@ from dataclasses import replace
 
 from fem_reference.model import Model
 from fem_reference.settings import Settings
-from fem_reference.state import State, Touch
+from fem_reference.state import State
+from fem_reference.touch import Touch
 from fem_reference.track import TRACK_LENGTH, Accepted, accepted_state, root_by_inverse_interpolation
 
 _MAX_STEPS = 40

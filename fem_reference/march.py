@@ -24,9 +24,10 @@ from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
 from fem_reference.newton import Attempt
 from fem_reference.settings import Settings
-from fem_reference.slip_events import first_slip_event
-from fem_reference.state import Condition, State, Touch, at_rest, build_state, with_conditions
+from fem_reference.slip_events import SlipEvent, first_slip_event
+from fem_reference.state import State, at_rest, build_state, with_conditions
 from fem_reference.status import Status
+from fem_reference.touch import Condition, Touch
 from fem_reference.track import TRACK_LENGTH, Accepted, accept, departure, predict
 
 _LOAD_ROUND_OFF = 1e-9
@@ -101,6 +102,12 @@ class _Progress:
         self.track = (state,) if restart else (*self.track, state)[-TRACK_LENGTH:]
         self.substeps += 1
         self.failures = 0
+
+    def accept_event(self, event: SlipEvent) -> None:
+        """Start a new track with the state of an event."""
+        self.accept(event.at, restart=True)
+        if event.direction is not None:
+            self.slip_changes.append((event.pair, event.at.state.t, event.direction))
 
 
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
@@ -191,26 +198,27 @@ def _accept_or_shorten(
     h = goal - last.state.t
     if candidate is not None:
         distance = departure(last, candidate, displacement_tolerance(model, settings))
+        near = distance <= settings.largest_departure
+        event = first_slip_event(model, last, candidate, settings) if near else None
+        if event is not None:
+            candidate = event.at
         tightest = least_clearance(candidate.state)
         same_set = candidate.state.contact_set == last.state.contact_set
         comparable = same_set and -1 not in (candidate.index, last.index)
-        if not distance <= settings.largest_departure:
+        if not near:
             progress.cause = Status.ANOTHER_BRANCH
             reduction = max(0.1, min(0.5, 0.7 * settings.largest_departure / distance))
+        elif event is not None and not event.first:
+            progress.cause, progress.pair = Status.UNDECIDED_CONTACT, event.pair
         elif tightest is not None and tightest[1] <= 0:
             progress.cause, progress.pair = Status.LINE_CONTACT, tightest[0]
         elif not comparable and settings.branch != "primary" and candidate.index > max(last.index, 0):
             progress.cause = Status.LIMIT_POINT
-        elif (event := first_slip_event(model, last, candidate, settings)) is not None:
-            progress.accept(event.at, restart=True)
-            if event.direction is not None:
-                progress.slip_changes.append((event.pair, event.at.state.t, event.direction))
-            return None
         elif not comparable or candidate.index == last.index:
-            step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
-            progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
-            progress.order = settings.predictor_order
-            progress.accept(candidate)
+            if event is None:
+                _accept_and_lengthen(progress, candidate, h, distance, settings)
+            else:
+                progress.accept_event(event)
             return None
         else:
             located = bifurcation(model, last, candidate, settings)
@@ -223,6 +231,16 @@ def _accept_or_shorten(
     # A high-order extrapolation may be the reason of the failure.
     progress.order = max(progress.order - 2, 1)
     return None
+
+
+def _accept_and_lengthen(
+    progress: _Progress, candidate: Accepted, h: float, distance: float, settings: Settings
+) -> None:
+    """Accept a state after a step h, and choose the next step from the step's departure."""
+    step = h * max(0.5, min(2.0, 0.8 * settings.largest_departure / max(distance, 1e-9)))
+    progress.trial = step if h >= progress.trial * (1 - 1e-6) else max(step, progress.trial)
+    progress.order = settings.predictor_order
+    progress.accept(candidate)
 
 
 def _continue_from_bifurcation(

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, isfinite, nan
 
-from fem_reference.active_set import equilibrium
+from fem_reference.active_set import equilibrium, revised
 from fem_reference.dissipation import slip_rates
 from fem_reference.model import Model
 from fem_reference.settings import Settings
@@ -21,6 +21,8 @@ _PRECISION = 1e-14
 """Interval of the load parameter at which a search ends."""
 _VANISHED = 1e-9
 """Value at which a search ends, relative to the one at the beginning of the step."""
+_COINCIDENT = 1e-4
+"""Interval of the load parameter in which different events may be simultaneous."""
 _TOUCHING = 1e-9
 """Gap of a contact that touches, relative to the strip's length."""
 
@@ -35,24 +37,37 @@ class SlipEvent:
         Index of the contact, and the direction 1 or -1 in which its node slips afterwards; 0 where it sticks.
     at
         Accepted state at the event.
+    first
+        Whether no other contact opens or closes, sticks or slips before.
     """
 
     pair: int
     direction: int | None
     at: Accepted
+    first: bool = True
 
 
 def first_slip_event(
     model: Model, last: Accepted, candidate: Accepted, settings: Settings
 ) -> SlipEvent | None:
-    """Locate the first event of friction between an accepted state and the next one; None without an event."""
+    """Locate the first event of friction between an accepted state and the next one; None without an event.
+
+    Within a step shorter than `_COINCIDENT` other changes that come first count as simultaneous, and the event is not located.
+    """
     events = [
         event
         for number, touch in enumerate(last.state.touches)
         if touch.condition.friction is not None
         and (event := _event(model, last, candidate, number, settings)) is not None
     ]
-    return min(events, key=lambda event: event.at.state.t) if events else None
+    if not events:
+        return None
+    event = min(events, key=lambda event: event.at.state.t)
+    here, now = event.at.state.contact_set, revised(model, event.at.state, settings).contact_set
+    if all(a == b for number, (a, b) in enumerate(zip(here, now, strict=True)) if number != event.pair):
+        return event
+    short = candidate.state.t - last.state.t < _COINCIDENT
+    return None if short else replace(event, first=False)
 
 
 def _slip_rate(at: Accepted, pair: int, *, forward: bool) -> float:

@@ -12,8 +12,10 @@ class Status(Enum):
     NOT_FINITE = "the iteration produced a value that is not finite"
     SINGULAR = "the tangent stiffness could not be factorised"
     LOST_CONTACT = "the pin passed the end of the strip"
-    UNDECIDED_CONTACT = "the contacts kept changing between open and closed"
-    CYCLING = "the contacts returned to a set of open and closed ones that was tried before"
+    UNDECIDED_CONTACT = "the contacts kept opening and closing, or sticking and slipping"
+    CYCLING = (
+        "the contacts returned to a set of open, closed, sticking and slipping ones that was tried before"
+    )
     TOO_DEEP = "the penalty leaves a penetration above its limit"
     AUGMENTATION_LIMIT = "augmented Lagrangian steps did not reach the requested penetration"
     UNBALANCED = "the clamps' reactions do not balance the contact forces"

@@ -24,7 +24,8 @@ from fem_reference.end_section import ROTATION
 from fem_reference.factor import Factor, factorise
 from fem_reference.model import Model
 from fem_reference.problem import Pin
-from fem_reference.state import State, Touch, section_forces, tie_residuals
+from fem_reference.state import State, section_forces, tie_residuals
+from fem_reference.touch import Touch
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

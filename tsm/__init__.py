@@ -1,4 +1,4 @@
-"""Planar beams by the tangent stiffness method with frictionless node-element contact."""
+"""Planar beams by the tangent stiffness method with node-element contact, frictionless or with Coulomb friction."""
 
 from tsm.arc_length import trace
 from tsm.batch import BatchResult, solve_batch

@@ -24,6 +24,8 @@ _FIVE = np.array([9, 49, 64, 49, 9]) / 180
 _THREE = np.array([1, 0, 4, 0, 1]) / 6
 _APART = 1e-7
 """Largest difference of the rules of five and three points, over EI/L; the error of the former is then about 1e-12."""
+_SHORT = 2e-3
+"""Length of an interval of the load parameter below which the mean of the ends will do."""
 _DEPTH = 20
 """Number of times that a step is halved at most."""
 
@@ -97,7 +99,8 @@ def spent(
     Returns
     -------
     Spent or None
-        None where a tangent is singular at an end. A part in which no equilibrium is found counts by the mean of its ends.
+        None where a tangent is singular at an end, or no equilibrium is found in between. A short part without one counts by the mean
+        of its ends.
     """
     trail = [*(state for state in history if state is not ends[0].state), *(end.state for end in ends)]
 
@@ -121,6 +124,8 @@ def spent(
         length = span.end - span.begin
         inner = [at(span.begin + part * length) for part in _PLACES]
         values = [span.first, *(value for value in inner if value is not None), span.last]
+        if len(values) < 5 and length > _SHORT:
+            return None
         if len(values) < 5:
             total += length * (span.first + span.last) / 2
             continue

@@ -204,7 +204,7 @@ def margins(
             if touch.grip is not None and touch.grip.slip:
                 value = slip_rates.get(k, model.length) / model.length
                 upcoming.append(Margin(kind=EventKind.STICK, pair=k, value=value))
-            elif touch.grip is not None:
+            elif touch.grip is not None and touch.grip.held is not None:
                 inside = cone(model, state, equilibrium.system, k) / model.force_scale
                 upcoming.append(Margin(kind=EventKind.SLIP, pair=k, value=inside))
             if pair.pair.offset > 0:

@@ -27,8 +27,8 @@ _STILL = 1e-9
 """Slip rate, in longest beams per whole load, that counts as zero."""
 _FLAT = 1e-6
 """Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the force moves along the cone."""
-_MOST = 729
-"""Combinations of states that are tried, six contacts at a time."""
+_MOST = 4096
+"""Combinations of states that are tried: six contacts without force."""
 
 
 class Rates(NamedTuple):
@@ -155,10 +155,10 @@ def _idle(model: Model, here: Traction) -> bool:
 
 
 def _choices(model: Model, k: int, grip: Grip, here: Traction) -> list[Grip]:
-    """States in which a contact may go on, the likely one first."""
+    """States in which a contact may go on, the likely one first. A contact without force that opens is undecided up to there."""
     stick = grip if grip.held is not None else Grip(0, here.place)
     if _idle(model, here):
-        return [stick, Grip(1, None), Grip(-1, None)]
+        return [stick, Grip(1, None), Grip(-1, None), UNDECIDED]
     if model.pairs[k].pair.friction * here.normal - abs(here.tangential) > _EDGE * model.force_scale:
         return [stick]
     slip = Grip(here.way, None)
@@ -183,26 +183,28 @@ def _admissible(
     if by is None:
         return not here
     for k, grip in grips(state):
+        if _idle(model, here[k]) and not _grows(model, k, here[k], by, grip):
+            return False
         if grip.slip:
             if grip.slip * slip_rate(newton, state, by, k) <= _STILL * model.length:
                 return False
-        elif _idle(model, here[k]):
-            if not _into_cone(model, k, here[k], by):
-                return False
-        elif cone(model, state, by.system, k) <= _EDGE * model.force_scale:
+        elif not _idle(model, here[k]) and cone(model, state, by.system, k) <= _EDGE * model.force_scale:
             slipping = _with(state, ((k, Grip(here[k].way, None)),))
             if here[k].way * _row_rate(newton, slipping, by, k) > _FLAT * model.force_scale:
                 return False
     return True
 
 
-def _into_cone(model: Model, k: int, here: Traction, by: Rates) -> bool:
-    """Whether the force of a contact without force grows into its cone."""
+def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
+    """Whether the force of a contact without force grows as its state says: into its cone, or below zero where it opens."""
     pair = model.pairs[k]
     fx, fy = by.unknowns[model.equations :][pair.slots][:2]
     c, s = math.cos(here.place.direction), math.sin(here.place.direction)
     tangential, normal = fx * c + fy * s, pair.side * (fy * c - fx * s)
-    return bool(abs(tangential) <= pair.pair.friction * normal + _EDGE * model.force_scale)
+    edge = _EDGE * model.force_scale
+    if grip == UNDECIDED:
+        return bool(normal < -edge)
+    return bool(normal >= -edge if grip.slip else abs(tangential) <= pair.pair.friction * normal + edge)
 
 
 def _row_rate(newton: Newton, slipping: State, by: Rates, k: int) -> float:

@@ -38,7 +38,7 @@ def find_root(
     """
     (t0, y0), (t1, y1) = before, after
     sign = 1.0 if y0 > 0 else -1.0
-    answer: Answer | None = None
+    past: Answer | None = None
     for count in range(_EVALUATIONS):
         t = (t0 + t1) / 2 if count % 3 == 2 else t0 + (t1 - t0) * y0 / (y0 - y1)
         sample = evaluate(t)
@@ -50,7 +50,7 @@ def find_root(
         if sign * y > 0:
             t0, y0, y1 = t, y, y1 / 2
         else:
-            t1, y1, y0 = t, y, y0 / 2
-        if abs(t1 - t0) < apart and sign * y < 0:
-            return answer
-    return answer
+            t1, y1, y0, past = t, y, y0 / 2, answer
+        if abs(t1 - t0) < apart and past is not None:
+            return past
+    return past

@@ -56,6 +56,8 @@ _AHEAD, _PUSH = 1e-4, 0.006
 """Start of a fall at a critical point: load parameter beyond the point, and displacement along its mode over the longest beam."""
 _FINE = 2e-3
 """Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
+_PROBE = 1e-3
+"""Part of a step after which a margin that is zero at its start shows whether its event is there."""
 _NEAR = 1e-9
 """Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
 _COINCIDENT = 1e-6
@@ -177,9 +179,8 @@ class Stepper:
         gripped = self._gripped(self.accepted)
         if isinstance(gripped, Status):
             return gripped
-        if gripped is not self.accepted:
-            self.track.history = []
-            self.track.accept(gripped)
+        self.track.history = []
+        self.track.accept(gripped)
         self.margins = self._measure(self.accepted)
         return Status.CONVERGED
 
@@ -336,6 +337,8 @@ class Stepper:
             if after.kind in GRIPS and before.value <= ROUND_OFF:
                 return self.control.fail(Status.JAMMED)
             if before.value <= ROUND_OFF:
+                if self._rises(before, t + _PROBE * (goal - t)):
+                    return self.control.refuse(_PROBE)
                 located: tuple[Equilibrium, Margin] | None = (self.accepted, before)
             else:
                 located = locate((t, before), (goal, after), self._solve, self._measure)
@@ -358,6 +361,11 @@ class Stepper:
             and other.value < before.value
         ]
         return self._switch(event, sorted([margin, *together], key=lambda m: m.kind is EventKind.TOUCH))
+
+    def _rises(self, margin: Margin, t: float) -> bool:
+        """Whether a margin that is zero at the last equilibrium is positive at a load parameter just beyond."""
+        ahead = self._solve(t)
+        return ahead is not None and self._measure(ahead)[self.margins.index(margin)].value > ROUND_OFF
 
     def _switch(self, event: Equilibrium, changes: list[Margin]) -> Status:
         """Accept the configuration of the events, then open and close its contacts."""

@@ -238,7 +238,7 @@ TURN = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """A control node: a frictionless point that follows a prescribed path.
+    """A control node: a point that follows a prescribed path and does not turn.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ def add_to(commands: "Commands") -> None:
         default=[],
         choices=ModelNames(),
         metavar="MODEL",
-        help="a program file NAME.toml to ask as well, any number of them",
+        help="an adapter or a program file NAME.toml to ask as well, any number of them",
     )
     check.add_argument("--json", metavar="FILE", help="write the resolved scene, which programs read")
     check.set_defaults(run=run_check)

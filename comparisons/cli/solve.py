@@ -1,6 +1,7 @@
 """``crossval scenes`` and ``crossval solve``: one scene, one model."""
 
 import sys
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from comparisons.accuracy import Answer
     from comparisons.cli.outcome import Commands
+    from comparisons.response import Response
     from comparisons.scene import Scene
 
 
@@ -91,7 +93,7 @@ def run(given: "argparse.Namespace") -> int:
 
         write_series(given.vtk, response, scene)
     if given.json != "-":
-        print(summary(response, scene.units, answer.lines() if answer else ()))
+        print(summary(response, scene.units, [*_found(response, scene), *(answer.lines() if answer else ())]))
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
@@ -99,6 +101,21 @@ def run(given: "argparse.Namespace") -> int:
         f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.found.estimate:.2g}, asked {answer.accuracy:g}"
     )
     return STOPPED
+
+
+def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
+    """Return the coefficient of friction that a clamp's reactions show, at the last load parameter in contact, and the scene's."""
+    from comparisons.response.material import frictions_found
+
+    given = {contact.beam: contact.friction for contact in scene.contacts}
+    rows = []
+    for beam, found in frictions_found(response, scene).items():
+        known = [value for value in found.tolist() if not isnan(value)]
+        if known:
+            rows.append(
+                (f"{beam} friction found", f"{abs(known[-1]):.9g} at the clamp, {given[beam]:g} given")
+            )
+    return rows
 
 
 def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":

@@ -22,7 +22,7 @@ _BESIDE = 1e-12
 
 
 def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
-    """Yield a sentence for every violation of frictionless unilateral contact."""
+    """Yield a sentence for every violation of unilateral contact; `comparisons.referee.rubbing` judges friction."""
     for spec in scene.contacts:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)

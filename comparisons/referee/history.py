@@ -132,9 +132,15 @@ class History:
         return Grip(friction=spec.friction, slip=0, hold=place(solution, solution.layout.touch(spec.pair)))
 
     def _sign(self, spec: ContactSpec, number: int) -> int:
+<<<<<<< HEAD
         """Sign of a slip between two load parameters: of the force where it ends a stick, or of the slip that ends in a stick."""
         own = self.phases[spec.pair]
         if self._ends_a_stick(spec, number):
+=======
+        """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
+        own = self.phases[spec.pair]
+        if number and own[number - 1].slip == 0:
+>>>>>>> 8c8d5147734d65b99faad8ca4a715613aa4e40c2
             solution = self.begin(spec.pair, number).solution
             return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
         if number + 1 < len(own) and own[number + 1].slip == 0:
@@ -151,11 +157,15 @@ class History:
         before, phase = self.phases[spec.pair][number - 1 : number + 1]
         if before.slip == OPEN:
             return self._root(spec, number, LOOSE)
+<<<<<<< HEAD
         if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
             raise UnknownFrictionError(
                 f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
         if before.slip != UNKNOWN or self._ends_a_stick(spec, number - 1):
+=======
+        if before.slip != UNKNOWN or (number > 1 and self.phases[spec.pair][number - 2].slip == 0):
+>>>>>>> 8c8d5147734d65b99faad8ca4a715613aa4e40c2
             return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
         for sign in (1, -1):
@@ -183,11 +193,17 @@ class History:
                 )
             return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
 
-        if any(abs(phase.begin - corner) <= SAME for pin in self.scene.pins for corner in pin.corners):
+        if self._jumps(spec, phase.begin):
             margin(phase.begin)
             return Begin(load_parameter=phase.begin, solution=now)
         begin = _secant(margin, phase) if math.isfinite(phase.stated) else _bisected(margin, phase, spec.pair)
         return Begin(load_parameter=begin, solution=now)
+
+    def _jumps(self, spec: ContactSpec, t: float) -> bool:
+        """Whether rates jump at load parameter t: at a corner of a pin's path, and where another contact changes."""
+        corners = [corner for pin in self.scene.pins for corner in pin.corners]
+        others = [phase.stated for pair, own in self.phases.items() if pair != spec.pair for phase in own[1:]]
+        return any(abs(t - other) <= SAME for other in (*corners, *others))
 
     def _around(self, spec: ContactSpec | None, t: float) -> dict[str, Grip]:
         """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there."""
@@ -269,8 +285,10 @@ def _secant(margin: Callable[[float], float], phase: Phase) -> float:
         if abs(other) <= _ZERO or abs(second - first) <= _CLOSE or other == value:
             return second
         ahead = second - other * (second - first) / (other - value)
-        first, value, second = second, other, min(max(ahead, low), high)
-    raise UnknownFrictionError(f"a contact does not change at load parameter {phase.stated:.6g}", wrong=True)
+        if not low <= ahead <= high:
+            break
+        first, value, second = second, other, ahead
+    raise UnknownFrictionError(f"no change of a contact was found near load parameter {phase.stated:.6g}")
 
 
 def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> float:

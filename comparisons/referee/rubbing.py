@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from comparisons.referee.certificate import Judgement
-from comparisons.referee.distance import least_force
+from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.energy import dissipated
 from comparisons.referee.history import History, UnknownFrictionError, at_rest
 from comparisons.referee.layout import Touch
@@ -154,7 +154,7 @@ def _unpaid(history: History, k: int, exact: Equilibrium, tolerance: float) -> I
         return
     spent = sum(float(item.dissipated[k]) for item in rubbing)
     missing = float(response.work[k]) - spent - exact.strain_energy
-    largest = max(abs(float(response.work[k])), exact.strain_energy, spent)
+    largest = max(abs(float(response.work[k])), exact.strain_energy, spent, _least_energy(history.scene))
     if abs(missing) > tolerance * largest + _crept(history, k, exact):
         yield f"the work is not strain energy and dissipation at load parameter {t:.6g}, off by {missing / largest:.2g}"
 
@@ -188,10 +188,9 @@ def _crept(history: History, k: int, exact: Equilibrium) -> float:
 def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
     """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
     response = history.response
-    if response.work is None:
-        return
     stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
-    largest = max(abs(float(response.work[k])), exact.strain_energy)
+    work = 0.0 if response.work is None else abs(float(response.work[k]))
+    largest = max(work, exact.strain_energy, _least_energy(history.scene))
     for pair, own in dissipated(history, k, exact).items():
         if pair in stated:
             spent = stated[pair].dissipated
@@ -213,7 +212,7 @@ def rubs_wrongly_on_the_way(
     for spec in history.scene.contacts:
         friction = response.contacts[spec.pair].friction
         if spec.friction and friction is not None:
-            yield from _falls(spec, friction, response)
+            yield from _falls(spec, friction, response, _least_energy(history.scene))
         if spec.friction:
             yield from _unstated(history, spec)
             yield from _elsewhere(history, spec, allowed)
@@ -225,11 +224,16 @@ def rubs_wrongly_on_the_way(
         yield from _misspent(history, k, exact, ENERGY + _SPREAD * apart)
 
 
-def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response) -> Iterator[str]:
+def _least_energy(scene: Scene) -> float:
+    """Energy below which differences are round-off: of the least force that differences are relative to, ``LEAST^2 EI/L``."""
+    return LEAST**2 * least_force(scene) * min(beam.length for beam in scene.beams)
+
+
+def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, least: float) -> Iterator[str]:
     """Yield the first load parameter at which the dissipation of a contact is smaller than before."""
     spent = np.concatenate([[0.0], friction.dissipated])
     work = friction.dissipated if response.work is None else response.work
-    falls = np.diff(spent) < -FALL * np.abs(np.concatenate([work, friction.dissipated])).max(initial=0.0)
+    falls = np.diff(spent) < -FALL * np.abs(np.concatenate([work, friction.dissipated])).max(initial=least)
     if falls.any():
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 

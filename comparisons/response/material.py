@@ -115,5 +115,20 @@ def friction_coefficient(force: Array, material_force: Array, beam: BeamSpec, *,
     return np.asarray(T / np.sqrt(F**2 - T**2))
 
 
+def frictions_found(response: Response, scene: Scene) -> dict[str, Array]:
+    """Return the coefficients of friction that the reactions of the clamps show, shape (s,) by beam, positive away from the clamp.
+
+    In slip a coefficient is that of the contact or its negative, in stick it is smaller. A beam with several contacts, whose tangential
+    forces only have a sum, is left out, and so is a contact without friction.
+    """
+    found = {}
+    for name, material_force in response.material_force.items():
+        own = [contact for contact in scene.contacts if contact.beam == name]
+        if len(own) == 1 and own[0].friction:
+            force, lever = response.contacts[own[0].pair].force, scene.offset(own[0]) - scene.radius(own[0])
+            found[name] = friction_coefficient(force, material_force, scene.beam(name), lever=lever)
+    return found
+
+
 _ROUNDS = 30
 """Iterations for the length of g; each one reduces its error by a strain."""

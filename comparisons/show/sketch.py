@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.models import MODELS, find
 from comparisons.models.options import ModelError
-from comparisons.models.outside.programs import ADAPTERS, offered
+from comparisons.models.outside.programs import offered
 from comparisons.scene import BeamSpec, Scene
 from comparisons.show import palette
 from comparisons.show.plot import figure, save
@@ -26,12 +26,12 @@ def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     scene : Scene
         The scene.
     others : sequence of str
-        Program files that are asked besides the models, adapters and entry points.
+        Adapters and program files that are asked besides the models of this package and of entry points.
     """
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
     yield f"{scene.name}: {', '.join(parts)}, {scene.load_parameters} load parameters, in {scene.units}"
-    for name in dict.fromkeys((*MODELS, *ADAPTERS, *offered(), *others)):
+    for name in dict.fromkeys((*MODELS, *offered(), *others)):
         try:
             model = find(name)
         except ModelError as error:

@@ -13,7 +13,13 @@ from comparisons.models import certified, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.response import Response, SupportHistory
 from comparisons.response.from_json import restated
-from comparisons.response.material import clamped, friction_coefficient, frictions, material_forces
+from comparisons.response.material import (
+    clamped,
+    friction_coefficient,
+    frictions,
+    frictions_found,
+    material_forces,
+)
 from comparisons.response.to_json import as_json
 from comparisons.scene import BeamSpec, LoadSpec, SupportSpec, load_scene
 from tests.comparisons.drawn_cantilevers import BEAM, drawn_cantilevers
@@ -289,3 +295,22 @@ def test_a_certificate_does_not_replace_the_material_force() -> None:
     assert response.certificate is not None
     assert response.certificate.certified
     assert largest(response) > 1e-2
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
+@pytest.mark.parametrize("surface", ["axis", "face"])
+def test_the_clamp_shows_the_friction_of_the_contact(friction: float, surface: str) -> None:
+    (pin,), (contact,) = KS.pins, KS.contacts
+    below = 0.0 if surface == "axis" else -0.01
+    scene = replace(
+        KS,
+        pins=(replace(pin, start=(1.0, below)),),
+        contacts=(replace(contact, surface=surface, friction=friction),),
+    )
+    response = solve(scene, "tsm", Options(element="exact"))
+    found, history = frictions_found(response, scene)[CANTILEVER], response.contacts[PAIR].friction
+    assert history is not None
+    slips = history.slip != 0
+    assert np.count_nonzero(slips) >= 8
+    assert found[slips] == pytest.approx(friction * history.slip[slips], abs=1e-10)
+    assert np.all(np.abs(found[~slips]) < friction)

@@ -1,7 +1,7 @@
 """The pages that are made from the code say what the code does."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import jsonschema
@@ -13,7 +13,7 @@ from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.models.outside.request import request
 from comparisons.models.outside.status import ProgramStatus
-from comparisons.scene import built_in_scenes, load_scene
+from comparisons.scene import built_in_scenes, load_scene, to_toml
 from comparisons.scene.read import LISTS
 from docs.extensions import response, scene_file, statuses
 from docs.extensions.generated import PAGES, write_pages
@@ -59,6 +59,28 @@ def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
     jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
+
+
+@pytest.mark.parametrize("model", ["tsm", "rod", "solid"])
+def test_json_output_with_friction_obeys_its_schema(
+    model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = load_scene("ks-face")
+    rough = replace(scene, contacts=(replace(scene.contacts[0], friction=0.3),))
+    Path("rough.toml").write_text(to_toml(rough))
+    assert main(["solve", "rough.toml", "--model", model, "--json", "rough.json"]) == 0
+    found = json.loads(Path("rough.json").read_text())
+    jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
+    (contact,) = found["contacts"].values()
+    assert set(contact["friction"]["slip"]) == {-1, 0, 1}
+    assert contact["friction"]["dissipated"][-1] > 0.0
+    assert ("work" in found) is (model != "solid")
+
+
+def test_every_kind_of_event_is_in_the_schema() -> None:
+    kinds = response.SCHEMA["properties"]["events"]["items"]["properties"]["kind"]["enum"]
+    assert set(kinds) == {kind.value for kind in tsm.EventKind}
 
 
 @pytest.mark.parametrize("scene", [*built_in_scenes(), *map(str, sorted(FINDINGS.glob("*.toml")))])

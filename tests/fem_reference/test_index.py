@@ -11,8 +11,9 @@ import fem_reference as fr
 from fem_reference import factor
 from fem_reference.factor import band_of, count_negatives, factorise
 from fem_reference.model import build
-from fem_reference.state import Condition, build_state
+from fem_reference.state import build_state
 from fem_reference.tangent import linearise
+from fem_reference.touch import Condition
 from tests.fem_reference.conftest import dense_hessian
 
 

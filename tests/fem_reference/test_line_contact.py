@@ -9,7 +9,8 @@ import fem_reference as fr
 from fem_reference.curve import closest
 from fem_reference.line_contact import clearance
 from fem_reference.model import build
-from fem_reference.state import Condition, build_state
+from fem_reference.state import build_state
+from fem_reference.touch import Condition
 from tests.fem_reference.conftest import loads, place_pin
 
 PAIR = "drum->cantilever"

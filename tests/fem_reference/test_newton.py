@@ -10,9 +10,10 @@ from fem_reference.material import Law
 from fem_reference.model import build
 from fem_reference.newton import updated
 from fem_reference.settings import Settings
-from fem_reference.state import Condition, at_rest, build_state, imbalance, residual, tie_residuals
+from fem_reference.state import at_rest, build_state, imbalance, residual, tie_residuals
 from fem_reference.status import Status
 from fem_reference.tangent import linearise
+from fem_reference.touch import Condition
 from tests.fem_reference.conftest import dense_hessian, make_portal, make_problem, make_strip, place_pin
 
 

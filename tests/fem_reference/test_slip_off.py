@@ -9,7 +9,8 @@ import fem_reference as fr
 from fem_reference.active_set import _rearmed
 from fem_reference.march import _condition_after
 from fem_reference.model import build
-from fem_reference.state import Condition, build_state
+from fem_reference.state import build_state
+from fem_reference.touch import Condition
 from tests.fem_reference.conftest import loads, make_problem, place_pin
 
 

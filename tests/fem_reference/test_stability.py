@@ -8,8 +8,9 @@ from scipy.special import ellipk
 
 import fem_reference as fr
 from fem_reference.model import build
-from fem_reference.state import Condition, at_rest, build_state
+from fem_reference.state import at_rest, build_state
 from fem_reference.tangent import linearise
+from fem_reference.touch import Condition
 from fem_reference.track import accept, departure, hermite
 from tests.fem_reference.conftest import CLAMP, NU, STRIP, B, E, loads
 

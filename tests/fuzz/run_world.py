@@ -10,7 +10,7 @@ from functools import partial
 from itertools import count, islice
 from pathlib import Path
 
-from tests.fuzz.world import drawn
+from tests.fuzz.world import drawn, drawn_with_friction
 from tests.fuzz.world_judge import MODELS, Judged, judged
 
 NUMBERS = (1, 2, 5, 8, 12, 40)
@@ -19,21 +19,22 @@ MANY, RARELY = 200, 50
 """Number that one scene in so many is solved with as well."""
 
 
-def plan(seed: int, models: tuple[str, ...], numbers: tuple[int, ...]) -> tuple[str, Judged]:
+def plan(seed: int, models: tuple[str, ...], numbers: tuple[int, ...], friction: bool) -> tuple[str, Judged]:
     """Draw, solve and judge the scene of a seed; the report says what is wrong, nothing if nothing is."""
     many = (MANY,) if numbers and seed % RARELY == 0 else ()
-    found = judged(drawn(seed), models, (*numbers, *many))
+    scene = drawn_with_friction(seed) if friction else drawn(seed)
+    found = judged(scene, models, (*numbers, *many))
     # responses hold functions, which do not go from process to process
     return found.report() if found.findings else "", found.bare()
 
 
 def results(
-    seeds: Iterable[int], models: tuple[str, ...], numbers: tuple[int, ...]
+    seeds: Iterable[int], models: tuple[str, ...], numbers: tuple[int, ...], *, friction: bool
 ) -> Iterator[tuple[int, str, Judged]]:
     """Yield seed, report and judgement of every scene, in order, from all cores."""
     seeds = tuple(seeds)
     with ProcessPoolExecutor(os.cpu_count(), max_tasks_per_child=200) as pool:
-        work = partial(plan, models=models, numbers=numbers)
+        work = partial(plan, models=models, numbers=numbers, friction=friction)
         for seed, (report, found) in zip(seeds, pool.map(work, seeds), strict=True):
             yield seed, report, found
 
@@ -49,6 +50,9 @@ def main() -> int:
     parser.add_argument("number", type=int, nargs="?", default=5000, help="of scenes (5,000)")
     parser.add_argument("--seed", type=int, default=0, help="of the first scene (0)")
     parser.add_argument("--round-pins", action="store_true", help="only scenes that have some")
+    parser.add_argument(
+        "--friction", action="store_true", help="only scenes with contacts, some with friction"
+    )
     parser.add_argument("--models", default=",".join(MODELS), help=f"some of {', '.join(MODELS)}")
     parser.add_argument(
         "--numbers", default=",".join(map(str, NUMBERS)), help="of load parameters besides the scene's own"
@@ -59,7 +63,8 @@ def main() -> int:
     numbers = tuple(int(item) for item in given.numbers.split(",") if item)
     seeds = filter(has_round_pin, count(given.seed)) if given.round_pins else count(given.seed)
     ends, kinds, wrong = Counter[tuple[str, str]](), Counter[str](), 0
-    for n, (seed, report, found) in enumerate(results(islice(seeds, given.number), models, numbers), 1):
+    answers = results(islice(seeds, given.number), models, numbers, friction=given.friction)
+    for n, (seed, report, found) in enumerate(answers, 1):
         ends.update((row.model, row.ended) for row in found.rows)
         kinds.update({item.kind for item in found.findings})
         print(f"\r{n} scenes, {wrong} wrong", end="", file=sys.stderr)

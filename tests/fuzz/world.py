@@ -8,6 +8,7 @@ side, on the axis or a face. Forces and motions are of a size that bends.
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from random import Random
 from typing import TypeVar
@@ -19,6 +20,8 @@ from tests.fuzz.scenes import Place, Tables
 Corner = tuple[float, float]
 Item = TypeVar("Item")
 CLAMPED, PINNED = {"kind": "clamped"}, {"kind": "pinned"}
+STRIDE = 1_000_000
+"""From the seed of a scene without contacts to one that stands in for it."""
 ENDS = ("start", "end")
 EULER = {"free": math.pi**2 / 4.0, "pinned": math.pi**2, "held": 4.0 * math.pi**2}
 """Buckling forces of slender struts, over EI/L^2, by the loaded end."""
@@ -32,6 +35,23 @@ def drawn(seed: int) -> Scene:
             return read_scene(toml_text(_World(random).tables(f"drawn-{seed}")), f"seed {seed}")
         except SceneError:
             continue
+
+
+def drawn_with_friction(seed: int) -> Scene:
+    """Return the scene of a seed, or the next one that has contacts, with friction at one of them at least."""
+    while not (scene := drawn(seed)).contacts:
+        seed += STRIDE
+    random = Random(-1 - seed)  # noqa: S311 - nothing is secret
+    contacts = scene.contacts
+    while not any(contact.friction for contact in contacts):
+        coefficients = (
+            random.choice((0.0, random.uniform(0.0, 1.0), 10.0 ** random.uniform(-3.0, 0.5)))
+            for _ in contacts
+        )
+        contacts = tuple(
+            replace(contact, friction=mu) for contact, mu in zip(contacts, coefficients, strict=True)
+        )
+    return replace(scene, contacts=contacts)
 
 
 class _World:

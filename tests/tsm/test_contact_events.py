@@ -35,6 +35,16 @@ def test_touch_is_located(element):
     assert np.isnan(contact.arc_position[:7]).all()
 
 
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+@pytest.mark.parametrize("steps", [1, 4, 8])
+def test_a_node_that_comes_round_the_tip_to_the_far_side_does_not_touch(element, steps):
+    result = tsm.solve(
+        cantilever(((1.2, -0.1), (0.7, 0.2)), element=element), np.arange(1, steps + 1) / steps
+    )
+    assert not result.events
+    assert not result.contacts["p->b"].force.any()
+
+
 def test_offset_surface_is_touched_earlier():
     result = tsm.solve(cantilever(((0.83, -0.3), (0.83, 0.1)), offset=0.05), TENTHS)
     assert result.events[0].load_parameter == pytest.approx(0.625, abs=1e-9)

@@ -7,6 +7,7 @@ import pytest
 
 import tsm
 from comparisons.exact import elastica_with_friction, frictional_three_point_limit
+from tests.fuzz.run_friction import verdict
 from tests.tsm.friction_scenes import LAST, STRIP, Cantilever, drawn, ks
 from tsm.events import EventKind
 from tsm.model import Model
@@ -95,6 +96,15 @@ def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float
         assert [event.load_parameter for event in result.events] == pytest.approx(times, abs=1e-9)
 
 
+def test_a_slip_that_has_come_and_gone_within_a_step_is_found() -> None:
+    """A slip between two sticks, whose margins are positive at the end of the step."""
+    scene = drawn(14)
+    turns = [event.load_parameter for event in scene.solve(1).events if event.kind in TURNS]
+    (*_, last), exact = turns, [event.load_parameter for event in scene.exact(1)[0].events[-5:]]
+    assert turns == pytest.approx(exact, abs=1e-8)
+    assert 0.9 < last < 1.0
+
+
 @pytest.mark.slow
 def test_five_hundred_load_steps_give_the_same_answer() -> None:
     many, one = ks(0.3).solve(500), ks(0.3).solve(1)
@@ -113,6 +123,15 @@ def test_work_is_stored_or_dissipated(steps: int) -> None:
 
 def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() -> None:
     assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
+
+
+@pytest.mark.parametrize(("seed", "defect"), [(32, 4.0e-8), (8, 1.7e-5), (26, 7.9e-5), (9, 8.6e-4)])
+def test_a_long_roll_of_a_thick_rod_shows_in_the_work(seed: int, defect: float) -> None:
+    """The stick row is the trapezium of a slip rate that vanishes. The exact rod has the same row and the same defect."""
+    exact, at = drawn(seed).exact(10)
+    lost = exact.work - exact.stored - exact.dissipated - exact.released
+    assert np.abs(lost[at]).max() / exact.work[at].max() == pytest.approx(defect, rel=0.05)
+    assert balance(drawn(seed).solve(10)) == pytest.approx(defect, rel=0.05)
 
 
 def test_mixed_elements_keep_the_work_but_for_their_jumps_at_nodes() -> None:
@@ -237,21 +256,40 @@ def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
     assert 0.55 < traced.load_parameter[-1] < 0.6205
 
 
-def judged(seed: int, element: str = "exact", elements: int = 1) -> float | None:
-    """Largest relative error of the force of a drawn cantilever; None if the solution stopped by name."""
-    scene, steps = drawn(seed), 6
-    result, (exact, at) = scene.solve(steps, element, elements), scene.exact(steps)
-    reached = len(result.load_parameter)
-    if result.status is not tsm.Status.COMPLETED:
-        return None
-    true = exact.magnitude[at][:reached]
-    return float(np.abs(result.contacts[PAIR].force - true).max() / np.abs(true).max(initial=1e-300))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 40, 10))
 def test_drawn_cantilevers_with_friction(first: int) -> None:
     """The command ``python -m tests.fuzz.run_friction 500`` judges more."""
-    found = [judged(seed) for seed in range(first, first + 10)]
-    assert sum(error is None for error in found) <= 2
-    assert max(error for error in found if error is not None) <= 1e-8
+    found = [verdict(seed) for seed in range(first, first + 10)]
+    assert not [item for item in found if item.wrong]
+    assert sum(item.ended != tsm.Status.COMPLETED.name for item in found) <= 2
+
+
+MENDED = {
+    156: "a pin at the tip goes in, sticks and slips off within one step",
+    351: "the same, with a larger coefficient",
+}
+"""Cantilevers that were answered wrongly, and why."""
+
+
+@pytest.mark.parametrize("seed", MENDED)
+def test_drawn_cantilevers_that_once_failed(seed: int) -> None:
+    found = verdict(seed)
+    assert not found.wrong
+    assert found.ended == tsm.Status.COMPLETED.name
+
+
+@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 8)])
+def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact(element: str, elements: int) -> None:
+    scene = Cantilever(section=STRIP, friction=0.2, path=((0.5, 0.0), (0.5, -0.1)))
+    result = scene.solve(3, element, elements)
+    assert result.status is tsm.Status.COMPLETED
+    assert [(event.kind, event.load_parameter) for event in result.events] == [(EventKind.RELEASE, 0.0)]
+    assert not result.contacts[PAIR].force.any()
+
+
+@pytest.mark.parametrize("elements", [5, 10])
+def test_work_is_kept_past_a_corner_at_which_the_contact_slips_on(elements: int) -> None:
+    path = ((0.5, 0.0), (0.5, 0.1), (0.6, 0.1), (0.5, 0.1))
+    result = Cantilever(section=STRIP, friction=0.3, path=path).solve(4, "mixed", elements)
+    assert balance(result) <= 5e-9

@@ -45,6 +45,19 @@ def test_behind_a_jump_the_last_sample_is_past_it(sign):
     assert 0 <= found - jump < 1e-13
 
 
+def test_behind_a_high_jump_the_answer_is_past_it():
+    """False position comes to this jump from the side of the larger value last."""
+    jump = 0.39999999979993894
+    values = {0.25: 1.0, 0.5: -0.05}
+
+    def evaluate(t):
+        return 1.0 if t < jump else -0.3 * (t - 1 / 3), t
+
+    found = find_root(evaluate, *values.items(), small=1e-12, apart=1e-14)
+    assert evaluate(found)[0] < 0
+    assert 0 <= found - jump < 1e-13
+
+
 def test_no_value_ends_the_search():
     asked = []
 

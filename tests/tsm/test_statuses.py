@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tsm
+import tsm.friction
 from tsm.contact_set import initial_state
 from tsm.model import Model
 from tsm.newton import Newton
@@ -23,7 +24,9 @@ CLAMP = tsm.Support(beam="b", end="start")
 TENTHS = np.arange(1, 11) / 10
 
 
-def structure(path=((0.83, 0.0), (0.83, 0.2)), *, element="mixed", keep=False, clamps=(CLAMP,), more=()):
+def structure(
+    path=((0.83, 0.0), (0.83, 0.2)), *, element="mixed", keep=False, clamps=(CLAMP,), more=(), friction=0.0
+):
     pins = (
         tsm.Pin(name="p", path=path),
         *(tsm.Pin(name=f"q{k}", path=extra) for k, extra in enumerate(more)),
@@ -32,7 +35,9 @@ def structure(path=((0.83, 0.0), (0.83, 0.2)), *, element="mixed", keep=False, c
         beams=(replace(BEAM, element=element),),
         supports=clamps,
         pins=pins,
-        contacts=tuple(tsm.ContactPair(node=pin.name, beam="b", keep=keep) for pin in pins),
+        contacts=tuple(
+            tsm.ContactPair(node=pin.name, beam="b", keep=keep, friction=friction) for pin in pins
+        ),
     )
 
 
@@ -195,6 +200,32 @@ def test_unbalanced():
 
     stepper.newton.solve = leaking
     assert list(stepper.march(TENTHS))[-1].status is Status.UNBALANCED
+
+
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_jammed(element):
+    """The stick is released at the edge of the cone, where the forces of the slip would push the pin the other way."""
+    path = ((0.681, -0.019), (0.291, 0.559), (0.735, 0.173))
+    stiff = replace(BEAM, section=tsm.Section(EA=3e5, GA=1e5, EI=1.0), element=element)
+    result = ends_in(Status.JAMMED, replace(structure(path, friction=1.086), beams=(stiff,)))
+    assert "stopped at load parameter 0.6939" in result.message
+
+
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_rest_unknown(element):
+    """One of two pins with friction leaves the beam over its end; it falls onto the other one."""
+    other = ((0.4, 0.0), (0.4, 0.35))
+    problem = structure(((0.83, 0.0), (0.83, 1.0)), element=element, more=(other,), friction=0.3)
+    result = ends_in(Status.REST_UNKNOWN, problem)
+    assert result.events[-1].kind.value == "slip-off"
+
+
+def test_two_slips(monkeypatch):
+    """The check by rates is replaced by one that admits both slips."""
+    monkeypatch.setattr(
+        tsm.friction, "_admissible", lambda _newton, state, *_: state.touches[0].grip.slip != 0
+    )
+    ends_in(Status.TWO_SLIPS, structure(friction=0.3))
 
 
 def test_contact_changed_under_arc_length():

@@ -106,7 +106,7 @@ class Coupling:
         ``(p, (xi, eta), force, force) -> (gradient, tangent)``: coupling of two contacts on one element, over force (2) and arc position
         of the first contact, then of the second. The arguments are numbers, or arrays over many elements with ``xi <= eta``.
     friction : Friction or None
-        The law with friction; None if it is frictionless only.
+        The law with friction; None if the law has none.
     """
 
     jet: Callable[[Properties, Any, Any, Any, Any, Any], tuple[Array, Array]]

@@ -8,7 +8,7 @@ import numpy as np
 
 from comparisons.errors import error_columns, forces, moments, size
 from comparisons.response import Array, Response
-from comparisons.response.material import frictions
+from comparisons.response.material import frictions, frictions_found
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.pages.markup import scrolling, text
@@ -62,12 +62,18 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
     """
     force, length = _units(scene)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
+    rubbed = any(frictions_found(response, scene) for response in shown.values())
     acting = "contact force" if scene.contacts else "support force"
     quantities: dict[str, tuple[str, str, str, Callable[[Response], Mapping[str, Array]]]] = {
         "force": (acting, force, "the largest force", forces),
         "arc": ("arc position", length, "the length", _arcs),
         "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
-        "friction": ("friction", "1", "the contact forces", lambda response: frictions(response, scene)),
+        "friction": (
+            "friction found" if rubbed else "spurious friction",
+            "1",
+            "the contact forces",
+            lambda response: frictions_found(response, scene) if rubbed else frictions(response, scene),
+        ),
     }
     found = []
     for quantity, (title, unit, scale, read) in quantities.items():

@@ -17,9 +17,11 @@ from comparisons.referee.equations import assemble, mesh_of, properties
 from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out
+from comparisons.referee.phases import OPEN
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import stated
+from tests.comparisons.referee.test_drawn import two_beams
 
 PAIR = "pin->cantilever"
 EXACT = Options(element="exact")
@@ -70,6 +72,18 @@ def test_the_rod_of_quadrature_is_certified(name: str) -> None:
     found = all_along(scene, solve(scene, "rod"))
     assert found.certified, found.line()
     assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-8
+
+
+@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
+def test_the_solid_is_certified_all_along(name: str) -> None:
+    """It records no events, so that the referee finds slip and stick itself."""
+    scene = rough(name, 0.3, 20)
+    response = solve(scene, "solid", Options(mesh=(50, 2)))
+    assert response.events is None
+    assert set(response.contacts[PAIR].friction.slip) == {-1, 0, 1}
+    found = all_along(scene, response)
+    assert found.certified, found.line()
+    assert 1e-3 < max(item.distance.force for item in found.judged if item.distance) < 6e-3
 
 
 @pytest.mark.parametrize("element", ["exact", pytest.param("mixed", marks=pytest.mark.slow)])
@@ -208,6 +222,14 @@ def test_the_exact_rods_of_any_scene_state_their_friction() -> None:
         np.testing.assert_allclose(mine.normal, other.normal, rtol=1e-9)
         np.testing.assert_allclose(mine.dissipated, other.dissipated, rtol=1e-8)
         np.testing.assert_array_equal(mine.slip, other.slip)
+
+
+def test_a_strut_that_does_not_buckle_in_stick_is_refused() -> None:
+    """The strut of the crossed beams sticks and buckles; in long steps the elements follow the straight branch beyond."""
+    scene = rough("crossed-beams", 0.2, 12)
+    found = all_along(scene, answer(scene))
+    assert found.verdict is Verdict.UNSTABLE
+    assert "ends elsewhere" in found.reason
 
 
 def contact(response: Response, **changes: object) -> Response:
@@ -395,6 +417,33 @@ def drawn_on_a_face(*, round_pin: bool) -> Scene:
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.003], ids=["from the start", "from a touch"])
+@pytest.mark.parametrize(
+    ("surface", "radius", "friction"),
+    [("axis", None, 1.0), ("axis", 0.1, 1.0), ("face", None, 20.0), ("face", 0.1, 20.0)],
+)
+def test_a_pin_that_sticks_where_it_touches_is_certified(
+    gap: float, surface: str, radius: float | None, friction: float
+) -> None:
+    """A thick beam under a pin raised square to it; with and without events."""
+    offset = (0.1 if surface == "face" else 0.0) + (radius or 0.0)
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), width=0.2, height=0.2, youngs_modulus=1e7, poissons_ratio=0.3
+    )  # fmt: skip
+    scene = Scene(
+        name="raised", load_parameters=8, beams=(beam,),
+        pins=(PinSpec(name="p", path=((0.7, -offset - gap), (0.7, 0.01 - offset)), radius=radius),),
+        contacts=(ContactSpec(node="p", beam="b", side="right", surface=surface, friction=friction),),
+    )  # fmt: skip
+    response = answer(scene)
+    history = History(response, scene)
+    assert [phase.slip for phase in history.phases["p->b"]] == ([OPEN, 0] if gap else [0])
+    for given in (response, replace(response, events=None)):
+        found = all_along(scene, given)
+        assert found.certified, found.line()
+        assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-11
+
+
 def drawn(seed: int) -> Scene:
     """A cantilever under a sharp or round pin, on its axis or face, on a path with up to two corners."""
     rng = np.random.default_rng(seed)
@@ -437,3 +486,16 @@ def completed_and_certified(seeds: range) -> int:
 def test_drawn_cantilevers_are_certified(first: int) -> None:
     """Two hundred and twenty scenes, twenty in a test."""
     assert completed_and_certified(range(first, first + 20)) >= 16
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [7, 22])
+def test_two_drawn_beams_with_three_contacts_are_certified(seed: int) -> None:
+    """Seed 7 begins without a touch; in seed 22 seven contacts change in one step, two of them at one load parameter."""
+    rng = np.random.default_rng(seed)
+    height, surface = float(10.0 ** rng.uniform(-2.4, -0.9)), ("axis", "face")[rng.integers(2)]
+    scene = two_beams(rng, height, surface)
+    friction = float(rng.uniform(0.02, 1.0))
+    scene = replace(scene, contacts=tuple(replace(spec, friction=friction) for spec in scene.contacts))
+    found = all_along(scene, answer(scene))
+    assert found.certified, found.line()

@@ -138,6 +138,12 @@ def _output_aside() -> Iterator[Any]:
         yield answer
 
 
+def rough(scene: Table) -> str | None:
+    """Return why a program whose contacts are frictionless cannot state a scene; None if the scene has no friction."""
+    pairs = [item["pair"] for item in scene["contacts"] if item["friction"]]
+    return f"the adapter has frictionless contacts, the scene has friction at {pairs[0]}" if pairs else None
+
+
 def points_along(beam: Table, count: int) -> tuple[list[float], list[tuple[float, float]]]:
     """Return arc lengths and undeformed positions of `count` equal parts of a beam's axis, ends included."""
     (x, y), (c, s), length = beam["start"], beam["direction"], beam["length"]

@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy import interp, zeros
 
-from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
+from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, rough, serve
 from comparisons.models.outside.adapters.frame import Frame, frame, projection
 
 STEPS, SHORTER, NEAR = 400, (1, 2, 4), 1e-6
@@ -34,7 +34,7 @@ def refusal(scene: Table) -> str | None:
         part, left = projection(beam["start"], beam["end"], pins[0]["path"][0]) if pins else (0.0, 1.0)
         if item["offset"] or abs(left) > NEAR * beam["length"] or not -NEAR <= part <= 1.0 + NEAR:
             return f"a sliding joint holds a pin on the axis from the start on, {item['node']} is not there"
-    return None
+    return rough(scene)
 
 
 def states(scene: Table, histories: Histories) -> Iterator[float]:

@@ -7,7 +7,7 @@ for a pin on the axis. There, pin and axis are `APART`.
 from collections.abc import Iterator
 from typing import Any
 
-from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
+from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, rough, serve
 from comparisons.models.outside.adapters.frame import Frame, frame, projection
 
 STEPS = 1000
@@ -19,7 +19,9 @@ APART, INSIDE = 5e-5, 1e-6
 def refusal(scene: Table) -> str | None:
     """Return why OpenSees cannot state the scene."""
     ends = [item["node"] for item in scene["contacts"] if "." in item["node"]]
-    return f"BeamContact2D touches beams with pins only, the scene with {ends[0]}" if ends else None
+    if ends:
+        return f"BeamContact2D touches beams with pins only, the scene with {ends[0]}"
+    return rough(scene)
 
 
 def states(scene: Table, histories: Histories) -> Iterator[float]:

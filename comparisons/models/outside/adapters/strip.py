@@ -4,17 +4,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from comparisons.models.outside.adapters.exchange import Table
+from comparisons.models.outside.adapters.exchange import Table, rough
 
 
 def one_strip(scene: Table) -> str | None:
-    """Return why a scene is no strip, clamped at rest at its start; None if it is one."""
+    """Return why a scene is no strip without friction, clamped at rest at its start; None if it is one."""
     beam, support = scene["beams"][0], scene["supports"][0]
     if len(scene["beams"]) > 1 or len(scene["supports"]) > 1 or beam["height"] is None:
         return "the adapter has one strip of rectangular section with one support"
     if support["motion"] != [0.0, 0.0, 0.0] or support["end"] != "start":
         return "the adapter has a strip that is clamped at rest at its start"
-    return None
+    return rough(scene)
 
 
 def axes(beam: Table) -> Any:

@@ -157,6 +157,11 @@ def test_exudyn_is_off_in_the_middle_of_a_path_and_reports_success() -> None:
     assert max(one.distance.largest[1] for one in judged if one.distance is not None) > 0.05
 
 
+def rough(scene: Scene) -> Scene:
+    """Return a scene with friction at its contacts."""
+    return replace(scene, contacts=tuple(replace(item, friction=0.3) for item in scene.contacts))
+
+
 PORTAL, DOUBLE = STATED["portal"], load_scene("double-beam")
 REASONS: list[tuple[Callable[[dict[str, Any]], str | None], Scene, str]] = [
     (opensees.refusal, DOUBLE, "BeamContact2D touches beams with pins only, the scene with upper.end"),
@@ -168,6 +173,14 @@ REASONS: list[tuple[Callable[[dict[str, Any]], str | None], Scene, str]] = [
     (calculix.refusal, KS, "the adapter has a sharp pin on the right face, on a straight path"),
     (calculix.refusal, ROLL, "the adapter has a transverse force at the free end"),
     (calculix.refusal, DOUBLE, "the adapter has one strip of rectangular section with one support"),
+    *(
+        (
+            adapter.refusal,
+            rough(scene),
+            "the adapter has frictionless contacts, the scene has friction at pin->",
+        )
+        for adapter, scene in ((opensees, KS), (exudyn, KS), (felupe, FACE), (calculix, FACE))
+    ),
 ]
 
 

@@ -130,8 +130,8 @@ def test_an_exception_of_a_function_is_a_status(place: Path, tmp_path: Path) -> 
 def test_check_lists_every_model(place: Path) -> None:
     (place / "own.toml").write_text('[program]\nname = "own"\ncommand = ["no-such-program"]\n')
     found = crossval(
-        place, "check", "double-beam", "--with", "own.toml", "--json", "scene.json", "--out", "a.svg"
-    )
+        place, "check", "double-beam", "--with", "own.toml", "--with", "opensees", "--json", "scene.json", "--out", "a.svg"
+    )  # fmt: skip
     assert found.returncode == 0, found.stderr
     lines = dict(line.strip().split(": ", 1) for line in found.stdout.splitlines()[1:])
     assert lines["stiff"] == lines["borrowed"] == "no, one beam only"

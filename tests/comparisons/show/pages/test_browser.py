@@ -51,7 +51,7 @@ def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Pa
     assert all((compared / name).is_file() for name in fourth["vtu"])
     runs = {run["label"]: run for run in json.loads((compared / "summary.json").read_text())["runs"]}
     assert {row[0] for row in fourth["table"]} == set(runs)
-    for label, force, _, arc, _, moment, _ in fourth["table"]:
+    for label, force, _, arc, _, moment, _, _, _ in fourth["table"]:
         run = runs[label]
         stated = (
             run["contacts"]["pin->cantilever"]["force"][3],
@@ -122,7 +122,7 @@ def test_everything_that_acts_has_a_name_and_a_place_among_the_tabs(browser: Bro
     found = told(browser, compared, script)
     assert (found["negative"], found["unnamed"], found["images"]) == (0, [], 0)
     links, inputs, buttons, charts = found["kinds"]
-    assert (inputs, buttons, charts) == (10, 1, 6)
+    assert (inputs, buttons, charts) == (10, 1, 8)
     assert links > 15
     assert (found["focus"], found["aria"]) == ("range", "load parameter 1")
 
