@@ -132,15 +132,9 @@ class History:
         return Grip(friction=spec.friction, slip=0, hold=place(solution, solution.layout.touch(spec.pair)))
 
     def _sign(self, spec: ContactSpec, number: int) -> int:
-<<<<<<< HEAD
-        """Sign of a slip between two load parameters: of the force where it ends a stick, or of the slip that ends in a stick."""
-        own = self.phases[spec.pair]
-        if self._ends_a_stick(spec, number):
-=======
         """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
         own = self.phases[spec.pair]
         if number and own[number - 1].slip == 0:
->>>>>>> 8c8d5147734d65b99faad8ca4a715613aa4e40c2
             solution = self.begin(spec.pair, number).solution
             return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
         if number + 1 < len(own) and own[number + 1].slip == 0:
@@ -149,23 +143,16 @@ class History:
             f"{spec.pair} slips between two load parameters, and its sign is not stated"
         )
 
-    def _ends_a_stick(self, spec: ContactSpec, number: int) -> bool:
-        return number > 0 and self.phases[spec.pair][number - 1].slip == 0
-
     def _found(self, spec: ContactSpec, number: int) -> Begin:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
         before, phase = self.phases[spec.pair][number - 1 : number + 1]
         if before.slip == OPEN:
             return self._root(spec, number, LOOSE)
-<<<<<<< HEAD
         if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
             raise UnknownFrictionError(
                 f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
-        if before.slip != UNKNOWN or self._ends_a_stick(spec, number - 1):
-=======
         if before.slip != UNKNOWN or (number > 1 and self.phases[spec.pair][number - 2].slip == 0):
->>>>>>> 8c8d5147734d65b99faad8ca4a715613aa4e40c2
             return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
         for sign in (1, -1):

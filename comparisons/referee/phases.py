@@ -96,7 +96,7 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
     for k, now in enumerate(map(int, column)):
         low, high = float(times[k]), float(times[k + 1])
         between = [event for event in events if event.load_parameter <= high]
-        before = found[-1].slip if found else now
+        before = found[-1].slip if found else _before(between, now)
         if between and between[-1].load_parameter >= high - SAME and not _may_be(between[-1], before, now):
             between = [event for event in between if event.load_parameter < high - SAME]
         events = events[len(between) :]
