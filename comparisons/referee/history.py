@@ -145,9 +145,13 @@ class History:
 
     def _found(self, spec: ContactSpec, number: int) -> Begin:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
-        before = self.phases[spec.pair][number - 1]
+        before, phase = self.phases[spec.pair][number - 1 : number + 1]
         if before.slip == OPEN:
             return self._root(spec, number, LOOSE)
+        if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
+            raise UnknownFrictionError(
+                f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
+            )
         if before.slip != UNKNOWN or (number > 1 and self.phases[spec.pair][number - 2].slip == 0):
             return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
@@ -158,7 +162,6 @@ class History:
                 reasons.append(error)
         if not found:
             raise reasons[0]
-        phase = self.phases[spec.pair][number]
         return min(found, key=lambda item: abs(item.load_parameter - phase.begin))
 
     def _root(self, spec: ContactSpec, number: int, own: Grip) -> Begin:

@@ -87,7 +87,7 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
     """Return the phases of a contact in order, and the number of the phase at every load parameter.
 
     The first phase begins at 0. A phase that begins at an event is stated there; one that the events leave out begins somewhere
-    between two load parameters.
+    between two load parameters. At an event an answer may state the state before or behind it.
     """
     times = np.concatenate([[0.0], response.load_parameter])
     events = [event for event in response.events or () if event.pair == spec.pair and event.kind != PASSES]
@@ -95,11 +95,11 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
     numbers: list[int] = []
     for k, now in enumerate(map(int, column)):
         low, high = float(times[k]), float(times[k + 1])
-        between = [
-            event
-            for event in events
-            if low < event.load_parameter <= high or (not k and event.load_parameter == 0.0)
-        ]
+        between = [event for event in events if event.load_parameter <= high]
+        before = found[-1].slip if found else _before(between, now)
+        if between and between[-1].load_parameter >= high - SAME and not _may_be(between[-1], before, now):
+            between = [event for event in between if event.load_parameter < high - SAME]
+        events = events[len(between) :]
         if not found:
             found.append(Phase(low=0.0, high=0.0, stated=0.0, slip=_before(between, now)))
         for n, event in enumerate(between):
@@ -110,6 +110,11 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
             found.append(Phase(low=low, high=high, stated=np.nan, slip=now))
         numbers.append(len(found) - 1)
     return tuple(found), tuple(numbers)
+
+
+def _may_be(event: ContactEvent, before: int, now: int) -> bool:
+    """Whether a state is the one behind an event, and not still the one before."""
+    return {"stick": now == 0, "slip": now not in (0, before)}.get(event.kind, True)
 
 
 def _before(events: list[ContactEvent], now: int) -> int:

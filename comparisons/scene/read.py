@@ -24,10 +24,10 @@ LISTS: dict[str, type[BeamSpec | SupportSpec | LoadSpec | PinSpec | ContactSpec]
 def built_in_scenes() -> dict[str, str]:
     """Return the TOML text of the scenes that come with the package, by name."""
     folder = resources.files("comparisons.scene") / "scenes"
-    files = sorted(
-        (item for item in folder.iterdir() if item.name.endswith(".toml")), key=lambda item: item.name
-    )
-    return {item.name.removesuffix(".toml"): item.read_text(encoding="utf-8") for item in files}
+    files = {
+        item.name.removesuffix(".toml"): item for item in folder.iterdir() if item.name.endswith(".toml")
+    }
+    return {name: files[name].read_text(encoding="utf-8") for name in sorted(files)}
 
 
 def load_scene(scene: str) -> Scene:

@@ -169,6 +169,27 @@ def test_without_events_the_referee_finds_them_itself() -> None:
     assert all_along(scene, replace(response, events=None)).certified
 
 
+@pytest.mark.parametrize(("name", "load_parameters"), [("hysteresis", 5), ("three-point-friction", 12)])
+def test_a_load_parameter_at_the_turn_of_a_pin_is_certified(name: str, load_parameters: int) -> None:
+    """There an answer states the slip before the turn, and the event behind it; without events its slip turns with no stick in between."""
+    scene = replace(load_scene(name), load_parameters=load_parameters)
+    response = answer(scene)
+    assert {event.load_parameter for event in response.events} & set(response.load_parameter)
+    for item in (response, replace(response, events=None)):
+        found = all_along(scene, item)
+        assert found.certified, found.line()
+
+
+def test_slips_and_sticks_between_two_load_parameters_are_found() -> None:
+    """The sign of a slip that no load parameter shows is the sign of the force at the end of the stick before it."""
+    scene = replace(load_scene("hysteresis"), load_parameters=1)
+    response = answer(scene)
+    found, history = all_along(scene, response), History(response, scene)
+    assert found.certified, found.line()
+    spent = dissipated(history, 0, found.judged[0].exact)[PAIR]
+    assert spent == pytest.approx(response.contacts[PAIR].friction.dissipated[0], rel=1e-11)
+
+
 def test_a_model_without_states_of_friction_is_judged_by_its_forces() -> None:
     scene = rough("ks-cantilever", 0.3, 20)
     response = answer(scene)

@@ -7,17 +7,19 @@ import pytest
 
 from comparisons.claims.problems.peaks import summit
 from comparisons.cli import main
+from comparisons.exact import frictional_three_point_limit
 from comparisons.exact.chain import Chain, load_path
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.response import Response
+from comparisons.response import Array, Response
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from tsm.elements import EXACT, MIXED
 
 NAMES = tuple(built_in_scenes())
 PAPER = ("cantilever-critical-area", "double-beam")
-OTHERS = tuple(name for name in NAMES if name not in PAPER and not name.startswith("ks-"))
+KS = ("ks-cantilever", "ks-face", "ks-printed-shear", "ks-tied-tip")
+OTHERS = tuple(name for name in NAMES if name not in {*PAPER, *KS})
 """Scenes that no other fast test solves; `tests/verification` has those of the paper and KS."""
 ELEMENTS = (EXACT.name, MIXED.name)
 
@@ -28,8 +30,8 @@ def answer(scene: Scene, element: str = EXACT.name) -> Response:
     return response
 
 
-def test_there_are_seventeen() -> None:
-    assert len(NAMES) == 17
+def test_there_are_twenty_two() -> None:
+    assert len(NAMES) == 22
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -97,6 +99,96 @@ def test_three_point_bending() -> None:
     load, place = summit(70.0 * response.load_parameter, -response.supports["left"].force[:, 1])
     assert [load * 100.0**2 / 1.4e6, place / 100.0] == pytest.approx([1.667952, 0.476378], rel=3e-4)
     assert [load, place] == pytest.approx([233.474683, 47.6442], rel=1e-6)
+
+
+def test_ks_with_friction() -> None:
+    """Exact Reissner rod with friction."""
+    response = answer(load_scene("ks-friction"))
+    contact = response.contacts["pin->cantilever"]
+    assert contact.force[[9, 19]] == pytest.approx([1.440282590723e-3, 2.110304862086e-3], rel=1e-9)
+    assert contact.arc_position[[9, 19]] == pytest.approx([0.613373425413, 0.847142560461], rel=1e-9)
+    assert response.events is not None
+    located = {event.kind: event.load_parameter for event in response.events}
+    assert located == pytest.approx({"stick": 0.620498, "slip": 0.683287}, abs=1e-6)
+
+
+def rises_and_loads(scene: Scene) -> tuple[Array, Array]:
+    """Rise of the supports, and the load at the hinge of three-point bending."""
+    response = answer(scene)
+    rise = np.array([scene.pins[0].position(t)[1] for t in response.load_parameter])
+    return rise, -response.supports["left"].force[:, 1]
+
+
+def test_three_point_bending_with_friction() -> None:
+    """The greatest loads of the elastica while the beam is drawn in and pushed back, of a strip with h/a = 1/50."""
+    rise, load = rises_and_loads(replace(load_scene("three-point-friction"), load_parameters=48))
+    limits = []
+    for way, place in ((slice(28), 52.2161), (slice(28, None), 42.7696)):
+        order = np.argsort(rise[way])
+        greatest, at = summit(rise[way][order], load[way][order])
+        assert at == pytest.approx(place, rel=2e-6)
+        limits.append(greatest)
+    assert limits == pytest.approx([265.581876, 203.628071], rel=1e-8)
+    exact = [2.0 * limit.load * 140.0 for limit in frictional_three_point_limit(0.2)]
+    assert [2.0 * limit.load for limit in frictional_three_point_limit(0.2)] == pytest.approx(
+        [1.897302759, 1.454743301], abs=1e-9
+    )
+    assert limits == pytest.approx(exact, rel=3e-4)
+
+
+def test_a_cycle_with_friction_closes() -> None:
+    """At equal places of the pin the second cycle has the state of the first, and its work is dissipated."""
+    response = answer(load_scene("hysteresis"))
+    (contact,) = response.contacts.values()
+    assert contact.friction is not None
+    assert response.work is not None
+    first, second = slice(4, 12), slice(12, 20)
+    for history in (contact.force, contact.arc_position, contact.friction.tangential):
+        assert history[first] == pytest.approx(history[second], rel=1e-12)
+    assert contact.force[[7, 11]] == pytest.approx([44.8989432868, 19.1915545096], rel=1e-11)
+    assert contact.arc_position[[7, 11]] == pytest.approx([63.9216785603, 82.9545104381], rel=1e-11)
+    spent = np.diff(contact.friction.dissipated[[3, 11, 19]])
+    assert spent[1] == pytest.approx(322.7135308, abs=1e-7)
+    assert response.work[19] - response.work[11] == pytest.approx(spent[1], rel=1e-9)
+
+
+def test_double_beam_with_friction() -> None:
+    """Exact rods by the referee's equations."""
+    scene = load_scene("double-beam-friction")
+    for model in ("tsm", "rod"):
+        response = answer(scene) if model == "tsm" else solve(scene, model)
+        pin, tip = response.contacts["pin->upper"], response.contacts["upper.end->lower"]
+        assert [pin.force[-1], tip.force[-1]] == pytest.approx([1.492913849, 0.687397776], abs=2e-9)
+        assert [pin.arc_position[-1], tip.arc_position[-1]] == pytest.approx(
+            [0.985892541, 0.887840364], abs=1e-9
+        )
+        assert pin.friction is not None
+        assert tip.friction is not None
+        spent = [pin.friction.dissipated[-1], tip.friction.dissipated[-1]]
+        assert spent == pytest.approx([0.038616279, 0.005564158], abs=1e-9)
+        if response.events is not None:
+            touch = next(event for event in response.events if event.kind == "touch")
+            assert 0.52 * touch.load_parameter == pytest.approx(0.149852, abs=1e-6)
+    smooth = replace(scene, contacts=tuple(replace(item, friction=0.0) for item in scene.contacts))
+    forces = [contact.force[-1] for contact in answer(smooth).contacts.values()]
+    assert forces[:2] == pytest.approx([1.480763310, 0.659472563], abs=1e-9)
+
+
+@pytest.mark.parametrize("distance", [10.0, 2.0, 1.0, 0.1])
+def test_a_sleeve_exerts_a_configurational_force(distance: float) -> None:
+    """M^2/2EI as the material force at the clamp, at every distance of its pins."""
+    scene = load_scene("sleeve")
+    inner, outer = scene.pins
+    outer = replace(outer, start=(inner.points[0][0] + distance, 0.0))
+    response = answer(replace(scene, pins=(inner, outer)))
+    beam, clamp = scene.beams[0], response.supports["cantilever"]
+    N, Q = -clamp.force.T
+    H = clamp.moment**2 / (2 * beam.EI) + N + N**2 / (2 * beam.EA) + Q**2 / (2 * beam.GA)
+    M = scene.loads[0].moment * response.load_parameter
+    assert pytest.approx(M**2 / (2 * beam.EI), rel=1e-9) == H
+    if distance == 2.0:
+        assert H[-1] == pytest.approx(8.75, rel=1e-9)
+        assert N[-1] == pytest.approx(8.7486, abs=5e-5)
 
 
 def test_portal_frame_under_a_small_load() -> None:

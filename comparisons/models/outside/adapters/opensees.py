@@ -1,27 +1,28 @@
 """OpenSees: corotational Euler-Bernoulli beams, and `BeamContact2D` between a pin and every element of a beam.
 
 The contact element keeps projection and normal from the last load step, so that its error falls with the step. Its normal is undefined
-for a pin on the axis. There, pin and axis are `APART`.
+for a pin on the axis. There, pin and axis are `APART`. Its friction is Coulomb's law with an elastic stick; its slip is the distance times
+the length of the element, so that its coefficient is the scene's over this length.
 """
 
 from collections.abc import Iterator
 from typing import Any
 
-from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, rough, serve
+from comparisons.models.outside.adapters.exchange import Histories, StoppedError, Table, refined, serve
 from comparisons.models.outside.adapters.frame import Frame, frame, projection
 
 STEPS = 1000
 """Least number of load steps."""
 APART, INSIDE = 5e-5, 1e-6
 """Distance of a point in contact from the axis, and of a pin's start from the beam's end, over the length."""
+STICK = 3600.0
+"""Tangential stiffness of a contact that sticks, over EI/L^3."""
 
 
 def refusal(scene: Table) -> str | None:
     """Return why OpenSees cannot state the scene."""
     ends = [item["node"] for item in scene["contacts"] if "." in item["node"]]
-    if ends:
-        return f"BeamContact2D touches beams with pins only, the scene with {ends[0]}"
-    return rough(scene)
+    return f"BeamContact2D touches beams with pins only, the scene with {ends[0]}" if ends else None
 
 
 def states(scene: Table, histories: Histories) -> Iterator[float]:
@@ -90,8 +91,9 @@ def _contact(ops: Any, mesh: Frame, item: Table) -> dict[int, int]:
         ops.timeSeries("Path", first + k, "-time", *times, "-values", *ways[k])
         ops.pattern("Plain", first + k, first + k)
         ops.sp(first, k + 1, 1.0)
-    ops.nDMaterial("ContactMaterial2D", first, 0.0, 1.0, 0.0, 0.0)
     touching = {first + k: k for k in mesh.elements_of(beam)}
+    part, stiffness = beam["length"] / len(touching), STICK * beam["EI"] / beam["length"] ** 3
+    ops.nDMaterial("ContactMaterial2D", first, item["friction"] / part, stiffness / part**2, 0.0, 0.0)
     for contact, k in touching.items():
         ops.node(contact + 500_000, 0.0, 0.0)
         nodes = (*mesh.elements[k].nodes, first, contact + 500_000)
