@@ -63,13 +63,15 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
     force, length = _units(scene)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     rubbed = any(frictions_found(response, scene) for response in shown.values())
+    title = "friction" if any(contact.friction for contact in scene.contacts) else "spurious friction"
+    title = "friction found" if rubbed else title
     acting = "contact force" if scene.contacts else "support force"
     quantities: dict[str, tuple[str, str, str, Callable[[Response], Mapping[str, Array]]]] = {
         "force": (acting, force, "the largest force", forces),
         "arc": ("arc position", length, "the length", _arcs),
         "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
         "friction": (
-            "friction found" if rubbed else "spurious friction",
+            title,
             "1",
             "the contact forces",
             lambda response: frictions_found(response, scene) if rubbed else frictions(response, scene),
@@ -84,7 +86,11 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
             if label != reference and reference in shown
         }
         names = list(dict.fromkeys(name for one in values.values() for name in one))
-        names = [name for name in names if any(np.any(one.get(name, 0.0)) for one in values.values())]
+        names = [
+            name
+            for name in names
+            if any(np.any(np.nan_to_num(one.get(name, 0.0))) for one in values.values())
+        ]
         found += [
             Track(
                 title=f"{title} {_node(name, scene)}" if len(names) > 1 else title,

@@ -9,7 +9,7 @@ from comparisons.response import CONTACT_STATES, Response
 from comparisons.show.pages.markup import scrolling, text
 from comparisons.show.pages.page import Section
 
-WIDTH, HEIGHT, LABEL, GAP = 900, 18, 260, 8
+WIDTH, HEIGHT, LABEL, GAP = 900, 18, 340, 8
 """Sizes of the picture: of the bands, one band, the labels, and the space between bands."""
 
 
