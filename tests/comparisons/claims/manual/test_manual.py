@@ -19,6 +19,7 @@ from comparisons.claims.manual.columns import clamped_column, pinned_column
 from comparisons.claims.manual.contacts import crossed_beams, touch_again, two_pins
 from comparisons.claims.manual.elastica import identity, slip_off, three_point_bending
 from comparisons.claims.manual.frames import portal, toggle
+from comparisons.claims.manual.friction import hysteresis, ks_friction, sleeve, three_point_friction
 from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.loads import dead_load, roll_up
 from comparisons.claims.manual.pictures import STYLES
@@ -273,6 +274,9 @@ BUILT_IN = (
     two_pins,
     crossed_beams,
     touch_again,
+    hysteresis,
+    sleeve,
+    *(pytest.param(state, marks=pytest.mark.slow) for state in (ks_friction, three_point_friction)),
 )
 """Problems of the built-in scenes without a test of their own in `tests/verification`."""
 
@@ -290,7 +294,7 @@ def test_the_whole_manual_passes(tmp_path: Path):
     wrong = [item.failure for item in items if not item.passed]
     assert wrong == []
     assert [case.problem.name for case in manual.cases] == list(PROBLEMS)
-    assert len(PROBLEMS) == 34
+    assert len(PROBLEMS) == 39
     assert all(item.claim.allowance.why and item.claim.allowance.error <= 0.3 for item in items)
     assert {trial.model for case in manual.cases for trial in case.problem.trials} >= {
         "tsm exact",
