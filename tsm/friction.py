@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import product
+from itertools import islice, product
 from typing import NamedTuple
 
 from tsm.elements.properties import Array
@@ -26,7 +26,8 @@ _EDGE = 1e-9
 _STILL = 1e-9
 """Slip rate, in longest beams per whole load, that counts as zero."""
 _FLAT = 1e-6
-"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the force moves along the cone."""
+"""Rate at which a force leaves its cone, in ``EI/L^2`` per whole load, that counts as zero. Where a slip ends, the force moves along the cone.
+A slip at the rate `_STILL` moves the force of a stick by up to EA times this rate, which counts as zero where no other state is admissible."""
 _MOST = 4096
 """Combinations of states that are tried: six contacts without force."""
 
@@ -106,15 +107,16 @@ def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> St
     system = newton.assembler.linearise(state)
     here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
     choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
-    for n, chosen in enumerate(product(*choices)):
-        if n == _MOST:
-            break
-        if not _admissible(newton, _with(state, chosen), velocities, here):
-            continue
-        for other in _reversed(newton.model, chosen, here):
-            if _admissible(newton, _with(state, other), velocities, here):
-                return Status.TWO_SLIPS
-        return _with(state, chosen)
+    stiff = max(beam.section.EA for beam in newton.model.structure.beams)
+    flat = _FLAT * newton.model.force_scale
+    for least in (flat, flat + _STILL * stiff):
+        for chosen in islice(product(*choices), _MOST):
+            if not _admissible(newton, _with(state, chosen), velocities, here, least):
+                continue
+            for other in _reversed(newton.model, chosen, here):
+                if _admissible(newton, _with(state, other), velocities, here, least):
+                    return Status.TWO_SLIPS
+            return _with(state, chosen)
     return Status.JAMMED
 
 
@@ -175,9 +177,9 @@ def _reversed(
 
 
 def _admissible(
-    newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Traction]
+    newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Traction], flat: float
 ) -> bool:
-    """Whether the structure can go on with its contacts as they are stated."""
+    """Whether the structure can go on with its contacts as they are stated; a force may leave its cone at the rate `flat`."""
     model = newton.model
     by = rates(newton, state, newton.assembler.linearise(state), velocities)
     if by is None:
@@ -190,7 +192,7 @@ def _admissible(
                 return False
         elif not _idle(model, here[k]) and cone(model, state, by.system, k) <= _EDGE * model.force_scale:
             slipping = _with(state, ((k, Grip(here[k].way, None)),))
-            if here[k].way * _row_rate(newton, slipping, by, k) > _FLAT * model.force_scale:
+            if here[k].way * _row_rate(newton, slipping, by, k) > flat:
                 return False
     return True
 

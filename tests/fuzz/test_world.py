@@ -10,7 +10,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import penetration
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
-from tests.fuzz.world import drawn
+from tests.fuzz.world import drawn, drawn_with_friction
 from tests.fuzz.world_judge import Row, findings, judged
 
 BEAMS = ("exact", "mixed")
@@ -65,9 +65,31 @@ def test_drawn_scenes_that_once_failed(seed: int) -> None:
     assert set(falls) <= {"COMPLETED"}
 
 
+@pytest.mark.slow
+def test_drawn_scenes_with_friction_are_certified() -> None:
+    found = [judged(drawn_with_friction(seed), BEAMS, ()).bare() for seed in (2, 10, 17)]
+    assert not [item.report() for item in found if item.findings]
+    assert all(row.completed for item in found for row in item.rows)
+
+
+@pytest.mark.slow
+def test_a_slip_of_a_stiff_beam_ends_in_a_stick_with_any_number_of_load_parameters() -> None:
+    """Round-off of the slip rate, times a stiffness of a million EI/L^3, moves the force at the event."""
+    scene = drawn_with_friction(14)
+    one, many = (
+        solve(replace(scene, load_parameters=number), "tsm", Options(element="exact")) for number in (1, 13)
+    )
+    assert one.status == many.status == "COMPLETED"
+    for pair, contact in one.contacts.items():
+        assert many.contacts[pair].force[-1] == pytest.approx(contact.force[-1], rel=1e-9)
+
+
 def test_the_seed_alone_decides_what_is_drawn() -> None:
     scenes = [drawn(seed) for seed in range(60)]
     assert scenes == [drawn(seed) for seed in range(60)]
+    assert [drawn_with_friction(seed) for seed in range(20)] == [
+        drawn_with_friction(seed) for seed in range(20)
+    ]
     assert len(set(scenes)) == 60
     assert all(read_scene(to_toml(scene), "copy") == scene for scene in scenes)
 
