@@ -170,6 +170,7 @@ def test_a_loop_closes_after_one_cycle() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_thousand_cycles_do_not_drift() -> None:
     structure = cycles(1000).structure()
     result = tsm.solve(structure, np.array(structure.pins[0].corners[1::2]))
