@@ -16,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.model import BeamModel, Model, PairModel
+from tsm.model import Model
+from tsm.pairs import BeamModel, PairModel
 from tsm.projection import project_on_chords, slide
 from tsm.state import State, Touch
 

@@ -12,7 +12,8 @@ from tsm.rods.layout import CUT, OWN
 from tsm.state import Touch
 
 if TYPE_CHECKING:
-    from tsm.model import Model, PairModel
+    from tsm.model import Model
+    from tsm.pairs import PairModel
 
 
 class Bordered(NamedTuple):

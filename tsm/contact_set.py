@@ -8,7 +8,8 @@ import numpy as np
 
 from tsm.contact import chord_owner, with_touches
 from tsm.events import ROUND_OFF, EventKind
-from tsm.model import Model, PairModel
+from tsm.model import Model
+from tsm.pairs import PairModel
 from tsm.projection import Projection
 from tsm.state import UNDECIDED, State, Touch
 from tsm.status import Status

@@ -6,7 +6,8 @@ After such a step the node no longer projects onto the beam, so the gap at the e
 from __future__ import annotations
 
 from tsm.events import ROUND_OFF
-from tsm.model import Model, PairModel
+from tsm.model import Model
+from tsm.pairs import PairModel
 from tsm.predictor import extrapolate
 from tsm.projection import Projection
 from tsm.root import find_root

@@ -235,6 +235,13 @@ def below(values: list[float], times: list[float]) -> float | None:
     return float(middle + half * found[0][least]) if found[1][least] < -ROUND_OFF else None
 
 
+def passed_within(measured: list[list[Margin]], times: list[float]) -> float | None:
+    """First load parameter at which the margin of a slip or stick is below zero between others, from margins at all these times."""
+    trails = (trail for trail in zip(*measured, strict=True) if trail[0].kind in GRIPS)
+    dips = [below([margin.value for margin in trail], times) for trail in trails]
+    return min((t for t in dips if t is not None), default=None)
+
+
 def locate(
     before: tuple[float, Margin],
     after: tuple[float, Margin],

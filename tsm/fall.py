@@ -6,7 +6,7 @@ lower its potential and may be as short as necessary. Beams and pins that the st
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +15,10 @@ from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, EventKind, Margin
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
+from tsm.path import PathTangent
 from tsm.state import State
 from tsm.status import Status
-from tsm.system import Drag
+from tsm.system import Drag, Linearisation
 
 _LAST_PART = 1e-2
 """Accuracy of a touch within a fall, as a part of the lost force. It may be low, because the path of a fall has no physical meaning."""
@@ -49,6 +50,14 @@ class Fall:
     measure: Callable[[Equilibrium], list[Margin]]
     close: Callable[[State, Margin], State]
     iterations: int = 0
+
+    def rests_beside(self, state: State, push: Array, system: Linearisation) -> Iterator[Equilibrium]:
+        """Yield the stable equilibria at which falls end that begin at a state pushed one way and the other."""
+        for way in (1.0, -1.0):
+            start = self.newton.update(state, way * push, system)
+            rest = self.rest(start, self.newton.potential(start))
+            if rest is not None and PathTangent(self.newton, rest).index <= 0:
+                yield rest
 
     def rest(self, state: State, energy: float) -> Equilibrium | None:
         """Find the equilibrium that the structure reaches against a drag which is reduced from step to step.

@@ -9,7 +9,8 @@ from typing import Any
 
 from tsm.contact import handed_over
 from tsm.contact_set import owned
-from tsm.model import Model, PairModel
+from tsm.model import Model
+from tsm.pairs import PairModel
 from tsm.projection import arc_position
 from tsm.state import State, Touch
 

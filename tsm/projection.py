@@ -11,7 +11,7 @@ import numpy as np
 from tsm.elements.properties import Array
 
 if TYPE_CHECKING:
-    from tsm.model import BeamModel
+    from tsm.pairs import BeamModel
 
 AT_NODE = 1e-9
 """Part of an element's length that a contact may lie past its end: at a node, round-off would send it back and forth for ever."""

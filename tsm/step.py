@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from tsm.critical import CriticalPoint
 from tsm.elements.properties import Array
-from tsm.events import Event
+from tsm.events import Event, EventKind
 from tsm.newton import Equilibrium
+from tsm.pairs import PairModel
+from tsm.state import Touch
 from tsm.status import Status
 
 
@@ -59,6 +61,26 @@ class StepLog:
     events: list[Event] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
     spent: Array = field(default_factory=lambda: np.zeros(0))
+
+    def note(
+        self, kind: EventKind, load_parameter: float, pair: PairModel, touch: Touch, force: float
+    ) -> None:
+        """Record an event of a closed contact, with the force before the event."""
+        self.events.append(
+            Event(
+                kind=kind,
+                load_parameter=load_parameter,
+                pair=pair.pair.name,
+                element=touch.element - pair.target.first,
+                arc_position=pair.arc_position(touch),
+                force=force,
+            )
+        )
+
+    def note_release(self, released: float) -> None:
+        """Record the released energy of a jump with the slip-off that caused it, the last one in the log."""
+        n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
+        self.events[n] = replace(self.events[n], released=released)
 
     def hand_on(self, equilibrium: Equilibrium, requested: bool, status: Status, index: int) -> Step:
         """Return the step that ends here, and start anew."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
+
 from tsm.path import FOLLOWED
 from tsm.settings import Settings
 from tsm.status import Status
 
+NEAR = 1e-9
+"""Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
 _SAFE = 0.8
 """Safety factor: next step over the step that the tangents would still allow."""
 _SHORTEST = 0.1
@@ -19,6 +23,14 @@ _NAMED = {
     Status.JAMMED,
 }
 """Failures that are reported by their own status instead of the general status of a step at its floor."""
+
+
+def ends(load_parameters: list[float], turns: tuple[float, ...], begin: float) -> list[float]:
+    """Load parameters at which a step must end: the prescribed ones, and the turns of pin paths after `begin` before the last of them."""
+    ahead = turns[bisect_right(turns, begin + NEAR) : bisect_left(turns, load_parameters[-1])]
+    places = [bisect_left(load_parameters, turn - NEAR) for turn in ahead]
+    apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + NEAR]
+    return sorted([*load_parameters, *apart])
 
 
 def allowed(unexplained: float) -> float:

@@ -7,7 +7,6 @@ goes on from there.
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -30,11 +29,11 @@ from tsm.events import (
     Event,
     EventKind,
     Margin,
-    below,
     broken,
     locate,
     margins,
     normal_force,
+    passed_within,
     passes,
 )
 from tsm.fall import Fall, descends, met
@@ -46,7 +45,7 @@ from tsm.settings import Settings
 from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step, StepLog
-from tsm.step_control import StepControl, allowed
+from tsm.step_control import NEAR, StepControl, allowed, ends
 from tsm.structure import Point
 from tsm.track import FAR, Track
 
@@ -58,8 +57,6 @@ _FINE = 2e-3
 """Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
 _PROBE = 1e-3
 """Part of a step after which a margin that is zero at its start shows whether its event is there."""
-_NEAR = 1e-9
-"""Distance in the load parameter below which a corner of a pin's path coincides with a prescribed load parameter."""
 _COINCIDENT = 1e-6
 """Distance over the longest beam below which a touch and a slip-off are one event, a hand-over."""
 
@@ -132,7 +129,8 @@ class Stepper:
             yield self._record(False, self.accepted.status)
             return
         asked = frozenset(load_parameters.tolist())
-        for target in self._ends(load_parameters.tolist()):
+        begin = self.accepted.state.load_parameter
+        for target in ends(load_parameters.tolist(), self.model.turns, begin):
             attempts, self.target = 0, target
             while (t := self.accepted.state.load_parameter) < target:
                 if attempts == self.settings.max_attempts:
@@ -160,19 +158,10 @@ class Stepper:
                         if status is not Status.CONVERGED:
                             return
 
-    def _ends(self, load_parameters: list[float]) -> list[float]:
-        """Load parameters at which a step must end: the prescribed ones, and the corners of pin paths before the last of them."""
-        turns = self.model.turns
-        begin, end = self.accepted.state.load_parameter, load_parameters[-1]
-        ahead = turns[bisect_right(turns, begin + _NEAR) : bisect_left(turns, end)]
-        places = [bisect_left(load_parameters, turn - _NEAR) for turn in ahead]
-        apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + _NEAR]
-        return sorted([*load_parameters, *apart])
-
     def _turn_corner(self) -> Status:
         """Let contacts with friction go on as the pins do, at the start and where a path has a corner."""
         t = self.accepted.state.load_parameter
-        corner = t == 0 or any(abs(t - turn) <= _NEAR for turn in self.model.turns)
+        corner = t == 0 or any(abs(t - turn) <= NEAR for turn in self.model.turns)
         if not (self.model.rubbed and corner) or t == self.turned:
             return Status.CONVERGED
         self.turned = t
@@ -198,9 +187,8 @@ class Stepper:
                 continue
             touch, pair = state.touches[k], self.model.pairs[k]
             assert touch is not None, "a grip is of a closed contact"
-            arc = pair.arc_position(touch)
             kind = EventKind.SLIP if grip.slip else EventKind.STICK
-            self._note(kind, k, touch.element, arc, normal_force(self.model, gripped, k))
+            self.log.note(kind, state.load_parameter, pair, touch, normal_force(self.model, gripped, k))
         return gripped
 
     def _record(self, requested: bool, status: Status) -> Step:
@@ -257,14 +245,8 @@ class Stepper:
         """Part of the step at which a margin of slip or stick is below zero, though not at the step's end; None if none is."""
         begin, end = self.accepted.state.load_parameter, reached.state.load_parameter
         measured = [self.margins, *map(self._measure, (*between, reached))]
-        times = [begin, *(inner.state.load_parameter for inner in between), end]
-        dips = [
-            below([margin.value for margin in trail], times)
-            for trail in zip(*measured, strict=True)
-            if trail[0].kind in GRIPS
-        ]
-        found = [t for t in dips if t is not None]
-        return (min(found) - begin) / (end - begin) if found and end - begin > _FINE else None
+        dip = passed_within(measured, [begin, *(inner.state.load_parameter for inner in between), end])
+        return (dip - begin) / (end - begin) if dip is not None and end - begin > _FINE else None
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the equilibrium beyond."""
@@ -296,14 +278,12 @@ class Stepper:
             return Status.FALLING
         push = mode[0] * (_PUSH * model.length)
         held = self.newton.prescribed(critical.state, ahead)
-        rests: list[tuple[float, Equilibrium]] = []
-        for way in (1.0, -1.0):
-            start = self.newton.update(held, way * push, critical.system)
-            fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
-            rest = fall.rest(start, self.newton.potential(start))
-            self.log.iterations += fall.iterations
-            if rest is not None and PathTangent(self.newton, rest).index <= 0:
-                rests.append((self.newton.potential(rest.state), rest))
+        fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
+        rests = [
+            (self.newton.potential(rest.state), rest)
+            for rest in fall.rests_beside(held, push, critical.system)
+        ]
+        self.log.iterations += fall.iterations
         if not rests:
             return Status.FALLING
         if any(grips(rest.state) for _, rest in rests):
@@ -385,12 +365,11 @@ class Stepper:
                 continue
             touch = state.touches[k]
             assert touch is not None, "only a closed contact opens, slips or sticks"
-            arc = pair.arc_position(touch)
-            self._note(margin.kind, k, touch.element, arc, normal_force(model, event, k))
+            self.log.note(margin.kind, state.load_parameter, pair, touch, normal_force(model, event, k))
             if margin.kind in GRIPS:
                 state = turned(model, state, event.system, k)
                 continue
-            refused = forbidden(model, margin.kind, pair, arc)
+            refused = forbidden(model, margin.kind, pair, pair.arc_position(touch))
             if refused is not None:
                 return refused
             jump |= margin.kind is EventKind.SLIP_OFF
@@ -409,8 +388,7 @@ class Stepper:
             return changed(self.model, state, k, None, armed=False)
         seen = pair.group.project(pair, state)
         touch = closed_at(pair, seen)
-        arc = pair.arc_position(touch)
-        self._note(EventKind.TOUCH, k, touch.element, arc, 0.0)
+        self.log.note(EventKind.TOUCH, state.load_parameter, pair, touch, 0.0)
         return changed(self.model, state, k, touch, armed=True)
 
     def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
@@ -434,13 +412,12 @@ class Stepper:
             assert touch is not None, "a pulling contact is closed"
             pair = self.model.pairs[k]
             before = normal_force(self.model, event, k) if event.state.touches[k] is not None else 0.0
-            arc = pair.arc_position(touch)
-            self._note(EventKind.RELEASE, k, touch.element, arc, before)
+            self.log.note(EventKind.RELEASE, state.load_parameter, pair, touch, before)
             if pair.pair.keep:
                 return Status.LOST_CONTACT
             state = changed(self.model, state, k, None, armed=True)
         if jump:
-            self._note_release(began - energy)
+            self.log.note_release(began - energy)
         if jump and grips(state):
             return Status.REST_UNKNOWN
         gripped = self._gripped(equilibrium)
@@ -467,24 +444,6 @@ class Stepper:
             return rest
         self.control.fail(equilibrium.status)
         return equilibrium if converged else None
-
-    def _note_release(self, released: float) -> None:
-        """Record the released energy of a jump with the slip-off that caused it, the last one in the log."""
-        n = max(n for n, event in enumerate(self.log.events) if event.kind is EventKind.SLIP_OFF)
-        self.log.events[n] = replace(self.log.events[n], released=released)
-
-    def _note(self, kind: EventKind, k: int, element: int, arc: float, force: float) -> None:
-        pair = self.model.pairs[k]
-        self.log.events.append(
-            Event(
-                kind=kind,
-                load_parameter=self.accepted.state.load_parameter,
-                pair=pair.pair.name,
-                element=element - pair.target.first,
-                arc_position=arc,
-                force=force,
-            )
-        )
 
     def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""

@@ -15,7 +15,8 @@ from tsm.batch.elimination import eliminate, reach, row_length
 from tsm.elements import Coupling, beam
 from tsm.elements.contact_law import UPPER
 from tsm.elements.properties import Array, Properties
-from tsm.model import Model, PairModel
+from tsm.model import Model
+from tsm.pairs import PairModel
 
 OWN = 3
 """Unknowns of a contact: force (x, y) and arc position."""

@@ -11,7 +11,7 @@ from tsm.batch.constants import BatchConstants
 from tsm.batch.equations import Configurations, Equations, coupling_of, properties_of
 from tsm.elements.curve import Curve
 from tsm.elements.properties import Array, Properties
-from tsm.model import BeamModel
+from tsm.pairs import BeamModel
 
 
 class Projections(NamedTuple):

@@ -12,7 +12,8 @@ from tsm.rods.shape import Stations
 from tsm.state import State, Touch, Traction
 
 if TYPE_CHECKING:
-    from tsm.model import BeamModel, Model, PairModel
+    from tsm.model import Model
+    from tsm.pairs import BeamModel, PairModel
 
 
 class GroupForces(Protocol):

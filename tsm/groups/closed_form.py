@@ -30,7 +30,7 @@ from tsm.rods.shape import Stations
 from tsm.state import Place, State, Touch, Traction
 
 if TYPE_CHECKING:
-    from tsm.model import BeamModel, PairModel
+    from tsm.pairs import BeamModel, PairModel
 
 _POINTS = 10
 """Intervals in which an element is drawn."""

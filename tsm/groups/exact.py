@@ -21,7 +21,7 @@ from tsm.rods.shape import RodShape, Stations, pieces, tangent_at
 from tsm.state import Profile, State, Touch, Traction
 
 if TYPE_CHECKING:
-    from tsm.model import BeamModel, PairModel
+    from tsm.pairs import BeamModel, PairModel
 
 _SAMPLES = 33
 """Points of an element in the search for the nearest one."""

@@ -25,7 +25,7 @@ from tsm.elements.properties import Array, cosine, sine
 from tsm.state import Grip, Place
 
 if TYPE_CHECKING:
-    from tsm.model import PairModel
+    from tsm.pairs import PairModel
 
 Tangents = tuple[rod.Tangent, rod.Tangent]
 Pair = tuple[Any, Any]
