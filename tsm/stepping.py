@@ -53,8 +53,6 @@ _STRAIGHT = 0.02
 """Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
 _AHEAD, _PUSH = 1e-4, 0.006
 """Start of a fall at a critical point: load parameter beyond the point, and displacement along its mode over the longest beam."""
-_FINE = 2e-3
-"""Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
 _PROBE = 1e-3
 """Part of a step after which a margin that is zero at its start shows whether its event is there."""
 _COINCIDENT = 1e-6
@@ -128,9 +126,9 @@ class Stepper:
         if self.accepted.status is not Status.CONVERGED:
             yield self._record(False, self.accepted.status)
             return
-        asked = frozenset(load_parameters.tolist())
-        begin = self.accepted.state.load_parameter
-        for target in ends(load_parameters.tolist(), self.model.turns, begin):
+        times = load_parameters.tolist()
+        asked = frozenset(times)
+        for target in ends(times, self.model.turns, self.accepted.state.load_parameter):
             attempts, self.target = 0, target
             while (t := self.accepted.state.load_parameter) < target:
                 if attempts == self.settings.max_attempts:
@@ -246,7 +244,7 @@ class Stepper:
         begin, end = self.accepted.state.load_parameter, reached.state.load_parameter
         measured = [self.margins, *map(self._measure, (*between, reached))]
         dip = passed_within(measured, [begin, *(inner.state.load_parameter for inner in between), end])
-        return (dip - begin) / (end - begin) if dip is not None and end - begin > _FINE else None
+        return (dip - begin) / (end - begin) if dip is not None else None
 
     def _meet_bifurcation(self, reached: Equilibrium, tangent: PathTangent) -> Status:
         """At a bifurcation within a step, end the path, turn to the stable branch, or accept the equilibrium beyond."""
