@@ -225,9 +225,16 @@ class History:
             answer = answer_state(self.response, self.scene, k)
             if closed <= answer.arcs.keys():
                 kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
-                found = solve(self.scene, replace(answer, arcs=kept, grips=state))
-                if found.status is SearchStatus.FOUND:
-                    return found
+                # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
+                loose = dict.fromkeys(state, LOOSE)
+                for first in (state, loose):
+                    found = solve(self.scene, replace(answer, arcs=kept, grips=first))
+                    if first is loose and found.status is SearchStatus.FOUND:
+                        found = reach(self.scene, found, t, loose)
+                        if found.status is SearchStatus.FOUND:
+                            found = reach(self.scene, found, t, state)
+                    if found.status is SearchStatus.FOUND:
+                        return found
         raise UnknownFrictionError(
             f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
         )
