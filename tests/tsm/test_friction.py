@@ -190,7 +190,7 @@ def test_no_friction_is_the_frictionless_contact(element: str, elements: int) ->
     assert result.contacts[PAIR].friction is None
     assert not len(result.work)
     little = ks(1e-6).solve(20, element, elements)
-    assert little.contacts[PAIR].force == pytest.approx(result.contacts[PAIR].force, rel=1e-5)
+    assert little.contacts[PAIR].force == pytest.approx(result.contacts[PAIR].force, rel=1e-6)
     assert np.abs(little.contacts[PAIR].force / result.contacts[PAIR].force - 1).max() > 1e-9
 
 
