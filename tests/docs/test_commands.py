@@ -117,11 +117,12 @@ def test_python_snippet(tmp_path):
     assert float(printed[1]) == pytest.approx(2.288274307175e-03, rel=1e-4)
 
 
-def test_study_snippet(tmp_path, capsys):
+@pytest.mark.parametrize(("name", "runs"), [("stiffness", 14), ("friction", 12)])
+def test_study_snippet(tmp_path, capsys, name, runs):
     page = PAGES[FOLDER / "how-to" / "study.md"]
-    [stated] = (text for kind, text in blocks(page) if kind == "toml")
-    study, results = tmp_path / "stiffness.toml", tmp_path / "results.sqlite"
+    stated = next(text for kind, text in blocks(page) if kind == "toml" and f"# {name}.toml" in text)
+    study, results = tmp_path / f"{name}.toml", tmp_path / "results.sqlite"
     study.write_text(stated)
     assert main(["study", str(study), "--results", str(results), "--quiet"]) == 0
     assert main(["results", str(results), "--csv"]) == 0
-    assert len(capsys.readouterr().out.strip().splitlines()[1:]) >= 14
+    assert len(capsys.readouterr().out.strip().splitlines()[1:]) >= runs
