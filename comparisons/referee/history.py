@@ -67,6 +67,7 @@ class History:
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
         self._begins: dict[tuple[str, int], Begin] = {}
+        self._sought: set[tuple[str, int]] = set()
 
     def grips(self, k: int) -> dict[str, Grip]:
         """Return how friction holds the closed contacts at load parameter number k.
@@ -110,7 +111,13 @@ class History:
             If no beginning is found.
         """
         if (pair, number) not in self._begins:
-            self._begins[pair, number] = self._found(self.specs[pair], number)
+            if (pair, number) in self._sought:
+                raise UnknownFrictionError(f"the changes of {pair} and of another contact depend on each other")
+            self._sought.add((pair, number))
+            try:
+                self._begins[pair, number] = self._found(self.specs[pair], number)
+            finally:
+                self._sought.discard((pair, number))
         return self._begins[pair, number]
 
     def grip(self, spec: ContactSpec, number: int) -> Grip:
