@@ -151,8 +151,8 @@ def error_histories(
     quantities: Iterable[str] = KEPT,
 ) -> tuple[Array, dict[str, Array]]:
     """Return the n load parameters that both responses have, and the errors there, shape (n,) by quantity."""
-    shared, ours, theirs = _shared(response, reference)
-    pair = _Pair(response, reference, ours, theirs, scene, scale or scales(reference))
+    shared, own, true = _shared(response, reference)
+    pair = _Pair(response, reference, own, true, scene, scale or scales(reference))
     none = np.full(len(shared), np.nan)
     return shared, {
         name: np.asarray(np.fmax.reduce([none, *_MEASURES[name](pair).values()])) for name in quantities
@@ -161,8 +161,8 @@ def error_histories(
 
 def error_columns(response: Response, reference: Response, scene: Scene, quantity: str) -> Columns:
     """Return the errors of every pair, support or beam, shape (n,), at the n load parameters that both responses have."""
-    _, ours, theirs = _shared(response, reference)
-    return _MEASURES[quantity](_Pair(response, reference, ours, theirs, scene, scales(reference)))
+    _, own, true = _shared(response, reference)
+    return _MEASURES[quantity](_Pair(response, reference, own, true, scene, scales(reference)))
 
 
 def _shared(response: Response, reference: Response) -> tuple[Array, Steps, Steps]:
@@ -175,55 +175,56 @@ class _Pair:
 
     response: Response
     reference: Response
-    ours: Steps
-    theirs: Steps
+    own_steps: Steps
+    reference_steps: Steps
     scene: Scene
     scale: Scales
 
 
 def _force(pair: _Pair) -> Columns:
-    ours, theirs = forces(pair.response), forces(pair.reference)
+    own, true = forces(pair.response), forces(pair.reference)
     return {
-        name: _distance(ours[name][pair.ours] - values[pair.theirs]) / pair.scale.force
-        for name, values in theirs.items()
+        name: _distance(own[name][pair.own_steps] - values[pair.reference_steps]) / pair.scale.force
+        for name, values in true.items()
     }
 
 
 def _moment(pair: _Pair) -> Columns:
-    ours, theirs = moments(pair.response), moments(pair.reference)
+    own, true = moments(pair.response), moments(pair.reference)
     return {
-        name: _distance(ours[name][pair.ours] - values[pair.theirs]) / pair.scale.moment
-        for name, values in theirs.items()
-        if values.any() or ours[name].any()
+        name: _distance(own[name][pair.own_steps] - values[pair.reference_steps]) / pair.scale.moment
+        for name, values in true.items()
+        if values.any() or own[name].any()
     }
 
 
 def _arc(pair: _Pair) -> Columns:
     columns = {}
     for contact in pair.scene.contacts:
-        ours = pair.response.contacts[contact.pair].arc_position[pair.ours]
-        theirs = pair.reference.contacts[contact.pair].arc_position[pair.theirs]
-        apart = np.abs(ours - theirs) / pair.scene.beam(contact.beam).length
-        columns[contact.pair] = np.where(np.isfinite(ours) == np.isfinite(theirs), apart, np.inf)
+        own = pair.response.contacts[contact.pair].arc_position[pair.own_steps]
+        true = pair.reference.contacts[contact.pair].arc_position[pair.reference_steps]
+        apart = np.abs(own - true) / pair.scene.beam(contact.beam).length
+        columns[contact.pair] = np.where(np.isfinite(own) == np.isfinite(true), apart, np.inf)
     return columns
 
 
 def _friction(pair: _Pair) -> Columns:
-    ours, theirs = frictions(pair.response, pair.scene), frictions(pair.reference, pair.scene)
+    own, true = frictions(pair.response, pair.scene), frictions(pair.reference, pair.scene)
     columns = {}
-    for beam in ours.keys() | theirs.keys():
-        if beam not in ours or beam not in theirs:
-            columns[beam] = np.full(len(pair.ours), np.inf)
+    for beam in own.keys() | true.keys():
+        if beam not in own or beam not in true:
+            columns[beam] = np.full(len(pair.own_steps), np.inf)
             continue
-        own, exact = ours[beam][pair.ours], theirs[beam][pair.theirs]
-        columns[beam] = np.where(np.isfinite(own) == np.isfinite(exact), np.abs(own - exact), np.inf)
+        found, exact = own[beam][pair.own_steps], true[beam][pair.reference_steps]
+        columns[beam] = np.where(np.isfinite(found) == np.isfinite(exact), np.abs(found - exact), np.inf)
     return columns
 
 
 def _tip(pair: _Pair) -> Columns:
-    ours, theirs = pair.response.tips, pair.reference.tips
+    own, true = pair.response.tips, pair.reference.tips
     return {
-        beam.name: _distance(ours[beam.name][pair.ours] - theirs[beam.name][pair.theirs]) / beam.length
+        beam.name: _distance(own[beam.name][pair.own_steps] - true[beam.name][pair.reference_steps])
+        / beam.length
         for beam in pair.scene.beams
     }
 
@@ -231,18 +232,18 @@ def _tip(pair: _Pair) -> Columns:
 def _shape(pair: _Pair, norm: Callable[..., Array]) -> Columns:
     columns = {}
     for beam in pair.scene.beams:
-        ours = axes_at_stations(pair.response, beam.name, pair.ours)
-        theirs = axes_at_stations(pair.reference, beam.name, pair.theirs)
-        columns[beam.name] = norm(_distance(ours - theirs), axis=1) / beam.length
+        own = axes_at_stations(pair.response, beam.name, pair.own_steps)
+        true = axes_at_stations(pair.reference, beam.name, pair.reference_steps)
+        columns[beam.name] = norm(_distance(own - true), axis=1) / beam.length
     return columns
 
 
 def _stress(pair: _Pair) -> Columns:
-    ours = np.array([_face_stress(pair.response, pair.scene, int(k)) for k in pair.ours])
-    theirs = np.array([_face_stress(pair.reference, pair.scene, int(k)) for k in pair.theirs])
-    both = np.isfinite(ours) & np.isfinite(theirs)
-    apart = np.where(both, np.abs(ours - theirs), 0.0).max(axis=1, initial=0.0)
-    return {pair.scene.beams[0].name: np.asarray(apart / np.abs(theirs[both]).max(initial=1e-300))}
+    own = np.array([_face_stress(pair.response, pair.scene, int(k)) for k in pair.own_steps])
+    true = np.array([_face_stress(pair.reference, pair.scene, int(k)) for k in pair.reference_steps])
+    both = np.isfinite(own) & np.isfinite(true)
+    apart = np.where(both, np.abs(own - true), 0.0).max(axis=1, initial=0.0)
+    return {pair.scene.beams[0].name: np.asarray(apart / np.abs(true[both]).max(initial=1e-300))}
 
 
 def _face_stress(response: Response, scene: Scene, k: int) -> Array:

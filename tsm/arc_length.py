@@ -155,6 +155,8 @@ class _Path:
     def _start(self) -> Equilibrium:
         """Undeformed equilibrium whose contacts with friction slip or stick as the load grows."""
         start = self.newton.solve(initial_state(self.model))
+        if not self.model.rubbed:
+            return start
         state = regripped(self.newton, start.state, self.newton.assembler.velocities(0.0))
         if isinstance(state, Status):
             return replace(start, status=state)

@@ -13,8 +13,8 @@ bifurcation   another branch crosses the path, which goes on unstable
 ============= ==============================================================================
 
 The first three events change the set of closed contacts, slip and stick the state of a contact with friction. Each of them, and line
-contact, has a margin: a number that is positive before the event and negative after it. The event is located at the root of its margin. A pass-through does not change the set of
-closed contacts; its load parameter is interpolated.
+contact, has a margin: a number that is positive before the event and negative after it. The event is located at the root of its margin.
+A pass-through does not change the set of closed contacts; its load parameter is interpolated.
 """
 
 from __future__ import annotations

@@ -41,13 +41,10 @@ class Rates(NamedTuple):
         The configuration.
     unknowns : ndarray, shape (equations + contact unknowns,)
         Derivatives of the unknowns.
-    residual : ndarray, shape (equations + contact unknowns,)
-        Derivatives of the residual with all unknowns held.
     """
 
     system: Linearisation
     unknowns: Array
-    residual: Array
 
 
 def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
@@ -64,9 +61,8 @@ def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
 
 def rates(newton: Newton, state: State, system: Linearisation, velocities: tuple[Point, ...]) -> Rates | None:
     """Derivatives in the load parameter while the pins have given velocities, None where the tangent is singular."""
-    residual = newton.assembler.rate(state, velocities)
-    solved = newton.assembler.solve(system, -residual)
-    return None if solved is None else Rates(system, solved[:, 1], residual)
+    solved = newton.assembler.solve(system, -newton.assembler.rate(state, velocities))
+    return None if solved is None else Rates(system, solved[:, 1])
 
 
 def slip_rate(newton: Newton, state: State, by: Rates, k: int) -> float:
@@ -108,6 +104,7 @@ def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> St
     here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
     choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
     stiff = max(beam.section.EA for beam in newton.model.structure.beams)
+    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where nothing else is admissible
     flat = _FLAT * newton.model.force_scale
     for least in (flat, flat + _STILL * stiff):
         for chosen in islice(product(*choices), _MOST):

@@ -159,8 +159,9 @@ class Stepper:
     def _turn_corner(self) -> Status:
         """Let contacts with friction go on as the pins do, at the start and where a path has a corner."""
         t = self.accepted.state.load_parameter
-        corner = t == 0 or any(abs(t - turn) <= NEAR for turn in self.model.turns)
-        if not (self.model.rubbed and corner) or t == self.turned:
+        if not self.model.rubbed or t == self.turned:
+            return Status.CONVERGED
+        if t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns):
             return Status.CONVERGED
         self.turned = t
         gripped = self._gripped(self.accepted)
@@ -174,11 +175,11 @@ class Stepper:
     def _gripped(self, equilibrium: Equilibrium) -> Equilibrium | Status:
         """Equilibrium whose contacts with friction slip or stick from here; a change is an event."""
         before = dict(grips(equilibrium.state))
-        if not before:
-            return equilibrium
         state = regripped(self.newton, equilibrium.state, self._velocities(equilibrium.state.load_parameter))
-        if isinstance(state, Status) or state.touches == equilibrium.state.touches:
-            return state if isinstance(state, Status) else equilibrium
+        if isinstance(state, Status):
+            return state
+        if state.touches == equilibrium.state.touches:
+            return equilibrium
         gripped = replace(equilibrium, state=state, system=self.newton.assembler.linearise(state))
         for k, grip in grips(state):
             if same(before[k], grip):

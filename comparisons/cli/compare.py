@@ -4,7 +4,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import ModelNames
+from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
 from comparisons.models.progress import Watch
@@ -23,15 +23,7 @@ def add_to(commands: "Commands") -> None:
     """Add the command to the parser."""
     compare = commands.add_parser("compare", help="solve a scene with every model and compare", epilog=EPILOG)
     compare.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    compare.add_argument(
-        "--with",
-        dest="others",
-        action="append",
-        default=[],
-        choices=ModelNames(),
-        metavar="MODEL",
-        help="a program of others as well, any number of them: its name, or a program file NAME.toml",
-    )
+    add_others(compare)
     compare.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE)")
     compare.add_argument("--quiet", action="store_true", help="tell of no progress")
     compare.set_defaults(run=run)

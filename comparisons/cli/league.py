@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli import values
-from comparisons.cli.options import ModelNames
+from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE
 from comparisons.cli.study import workers
 from comparisons.files import writable_folder
@@ -31,15 +31,7 @@ def add_to(commands: "Commands") -> None:
     league.add_argument(
         "scenes", nargs="*", metavar="SCENE", help="built-in scenes or TOML files (all built-in ones)"
     )
-    league.add_argument(
-        "--with",
-        dest="others",
-        action="append",
-        default=[],
-        choices=ModelNames(),
-        metavar="MODEL",
-        help="a program of others: its name, or a program file; may be repeated",
-    )
+    add_others(league)
     league.add_argument(
         "--out",
         type=Path,

@@ -50,6 +50,19 @@ def add_options(parser: argparse.ArgumentParser, *names: str) -> None:
         parser.add_argument(argument(name), help=f"{owners}: {what}", **how)
 
 
+def add_others(parser: argparse.ArgumentParser) -> None:
+    """Add ``--with`` to a command that asks several models."""
+    parser.add_argument(
+        "--with",
+        dest="others",
+        action="append",
+        default=[],
+        choices=ModelNames(),
+        metavar="MODEL",
+        help="a program of others as well, any number of them: its name, or a program file NAME.toml",
+    )
+
+
 def chosen(given: argparse.Namespace) -> Options:
     """Return the options that were given."""
     return Options(**{name: getattr(given, name, None) for name in ARGUMENTS})

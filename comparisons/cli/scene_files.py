@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import ModelNames
+from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE
 from comparisons.files import OutputError, writable_file, write_text
 from comparisons.scene import built_in_scenes, load_scene
@@ -32,15 +32,7 @@ def add_to(commands: "Commands") -> None:
     )
     check.add_argument("scene", metavar="FILE", help="a TOML file or a built-in scene")
     check.add_argument("--out", metavar="FILE", help="the picture, PNG or SVG (SCENE.png)")
-    check.add_argument(
-        "--with",
-        dest="others",
-        action="append",
-        default=[],
-        choices=ModelNames(),
-        metavar="MODEL",
-        help="an adapter or a program file NAME.toml to ask as well, any number of them",
-    )
+    add_others(check)
     check.add_argument("--json", metavar="FILE", help="write the resolved scene, which programs read")
     check.set_defaults(run=run_check)
 

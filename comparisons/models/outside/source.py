@@ -153,7 +153,7 @@ class Functions(Source):
         return self.refusal(json.loads(text))
 
     def ask(self, text: str) -> tuple[bytes, float]:
-        """Call the functions. An exception of theirs has its name in the status of the response; what they print goes to standard error."""
+        """Call the functions. If one raises, the status of the response names the exception. What they print goes to standard error."""
         from comparisons.models.outside.adapters.exchange import answered
 
         began = perf_counter()
