@@ -9,37 +9,38 @@ import numpy as np
 from comparisons.budget import PARTS, STEPS, TIMES, Budget, budget_rows
 from comparisons.output import write_numbers
 from comparisons.show import palette
-from comparisons.show.plot import figure, save
+from comparisons.show.plot import WIDTH, figure, save
 
 COLOURS = (
     palette.ORANGE, palette.YELLOW, palette.SKY, palette.VERMILION, palette.GREEN, palette.PURPLE, palette.GREY,
 )  # fmt: skip
 COLUMNS = 3
 """Panels beside each other."""
-HATCHES = ("", "//", "..", "", "xx", "\\\\", "++")
+HATCHES = ("", "////", "...", "", "xxx", "\\\\\\\\", "+++")
 """Colours and hatches of the parts, in their order; hatches distinguish neighbours in grey print."""
 
 
 def plot_budget(budget: Budget, *paths: Path) -> None:
     """Draw every quantity's parts stacked at the load parameters of the budget, and the total as a mark."""
     rows = ceil(len(budget.total) / COLUMNS)
-    fig = figure(figsize=(11.0, 3.4 * rows + 1.2))
+    fig = figure(figsize=(WIDTH, 2.6 * rows + 1.1))
     panels = fig.subplots(rows, COLUMNS, squeeze=False).ravel()
     for axes in panels[len(budget.total) :]:
         axes.set_axis_off()
     for axes, quantity in zip(panels, budget.total, strict=False):
+        axes.use_sticky_edges = (
+            False  # the limits would lie on the edge of a thin part, and cut the parts beyond it
+        )
         _stack(axes, budget, quantity)
-        axes.set(title=quantity.replace("_", " "), xlabel="load parameter")
+        kind, _, column = quantity.partition(" ")
+        axes.set_title(f"{kind.replace('_', ' ')}\n{column}".strip(), fontsize="medium")
+        axes.set_xlabel("load parameter", fontsize="small")
+        axes.tick_params(labelsize="small")
         axes.margins(y=0.08)
-    fig.axes[0].set_ylabel("(TSM - solid) / exact rod [%]")
+    fig.supylabel("(TSM - solid) / exact rod [%]", fontsize="medium")
     fig.suptitle(f"{budget.scene}: what the difference is made of")
-    fig.legend(
-        *fig.axes[0].get_legend_handles_labels(),
-        loc="outside lower center",
-        ncols=4,
-        fontsize="small",
-        markerscale=0.4,
-    )
+    handles, words = fig.axes[0].get_legend_handles_labels()
+    fig.legend(handles, words, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
     save(fig, *paths)
 
 
@@ -61,12 +62,12 @@ def _stack(axes: Any, budget: Budget, quantity: str) -> None:
             linewidth=0.0,
         )
         above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
-    axes.plot(
-        places, 100.0 * budget.total[quantity], "k_", markersize=34, markeredgewidth=1.6, label="difference"
-    )
+    total = 100.0 * budget.total[quantity]
+    axes.hlines(total, places - 0.4, places + 0.4, colors="black", linewidth=1.8, label="difference")
     axes.axhline(0.0, color="0.3", linewidth=0.6)
     axes.set_xticks(places, [f"{t:g}" for t in TIMES])
     axes.grid(visible=True, axis="y", linewidth=0.3)
+    axes.set_axisbelow(True)
 
 
 def write_budget(budget: Budget, path: Path) -> None:

@@ -25,6 +25,10 @@ CONTINUOUS = {"linewidth": 3.5}
 """Exact elements, which have no nodes to mark: their grid is finer than the axis that is drawn."""
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay; the nearest ones of the scene are drawn."""
+WIDTH = 6.3
+"""Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
+PIXELS = 1400
+"""Least width of a picture in pixels."""
 
 
 def figure(**options: Any) -> Any:
@@ -41,7 +45,7 @@ def save(fig: Any, *paths: Path) -> None:
     """Write the figure to `paths`, in the formats of their suffixes."""
     for path in paths:
         with replacing(path) as temporary:
-            fig.savefig(temporary, dpi=150)
+            fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
 
 
 def nearest_steps(load_parameter: Array, wanted: Sequence[float] = SHOWN) -> list[int]:

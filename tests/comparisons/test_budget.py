@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from comparisons.budget import PARTS, TIMES, Budget, error_budget
 from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
+from comparisons.show import budget_plot
 from comparisons.show.budget_plot import plot_budget, write_budget
 
 
@@ -54,6 +56,29 @@ def test_budget_is_drawn_and_written(budget: Budget, tmp_path: Path) -> None:
     drawn = (tmp_path / "budget.svg").read_text()
     assert (tmp_path / "budget.png").stat().st_size > 1e4
     assert "</svg>" in drawn
+
+
+def test_nothing_of_the_picture_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limits reach around bars whose last part is thin, and the legend has every part."""
+    kept: list[Any] = []
+    monkeypatch.setattr(budget_plot, "save", lambda fig, *_: kept.append(fig))
+    parts = {name: np.full(4, 1e-12 if name == "load steps" else 1e-3) for name in PARTS}
+    names = ("contact_force long-name->beam", "clamp_moment beam.other_end", "arc_position", "support_force")
+    plot_budget(
+        Budget(
+            scene="made-up", total=dict.fromkeys(names, np.full(4, 6e-3)), parts=dict.fromkeys(names, parts)
+        )
+    )
+    (fig,) = kept
+    fig.canvas.draw()
+    for axes in fig.axes[: len(names)]:
+        assert axes.get_ylim()[1] > 0.6
+        assert axes.get_ylim()[0] < 0.0
+    assert {text.get_text() for text in fig.legends[0].get_texts()} == {"difference", *PARTS}
+    for text in (*fig.legends[0].get_texts(), *(axes.title for axes in fig.axes), *fig.texts):
+        box = text.get_window_extent()
+        assert 0.0 <= box.x0 <= box.x1 <= fig.bbox.width, text
+        assert 0.0 <= box.y0 <= box.y1 <= fig.bbox.height, text
 
 
 def test_a_frame_has_one_with_supports_in_place_of_contacts() -> None:

@@ -1,0 +1,136 @@
+"""Symbols of mechanics as line segments of unit size: supports by what they hold, moments as arcs.
+
+Every symbol has its node at the origin. A picture turns, enlarges and moves its segments, so that the same symbols are drawn by
+matplotlib and by pyvista, and stand in a legend.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.response import Array
+from comparisons.scene import Scene, SupportSpec
+
+Segments = NDArray[np.float64]
+"""Line segments, shape (n, 2, 2)."""
+HATCHES = 5
+"""Strokes below a ground."""
+NAMES = {
+    ("x", "y", "rotation"): "clamped",
+    ("x", "y"): "pinned",
+    ("y",): "roller, free in x",
+    ("x",): "roller, free in y",
+    ("y", "rotation"): "guided, free in x",
+    ("x", "rotation"): "guided, free in y",
+    ("rotation",): "rotation held",
+}
+"""Names of supports by the components that they hold."""
+
+
+def support_name(support: SupportSpec) -> str:
+    """Return the name of a support in a legend."""
+    return NAMES[_held(support)]
+
+
+def _held(support: SupportSpec) -> tuple[str, ...]:
+    return tuple(name for name in ("x", "y", "rotation") if name in support.held)
+
+
+def support_symbol(support: SupportSpec, away: Array) -> Segments:
+    """Return the segments of a support's symbol.
+
+    Parameters
+    ----------
+    support : SupportSpec
+        The support.
+    away : ndarray, shape (2,)
+        Unit vector from the support into its beam; the ground is on the other side.
+    """
+    held = _held(support)
+    segments = _SHAPES[len(held), "rotation" in held]()
+    return turned(segments, _up(held, away))
+
+
+def _up(held: tuple[str, ...], away: Array) -> Array:
+    """Return the unit vector from the ground to the node: along the beam at a clamp, else along an axis."""
+    if held == ("x", "y", "rotation"):
+        return away
+    axis = np.array([1.0, 0.0]) if held in (("x",), ("x", "rotation")) else np.array([0.0, 1.0])
+    return -axis if away @ axis < -0.5 else axis
+
+
+def turned(segments: Segments, up: Array) -> Segments:
+    """Return segments turned such that their second axis points along the unit vector `up`."""
+    return np.asarray(segments @ np.array([[up[1], -up[0]], [up[0], up[1]]]))
+
+
+def placed(segments: Segments, at: Array, size: float) -> Segments:
+    """Return segments enlarged to `size` and moved to the node `at`."""
+    return np.asarray(at + size * segments)
+
+
+def support_symbols(scene: Scene, size: float) -> list[Segments]:
+    """Return the symbols of all supports of a scene at their undeformed nodes, in the order of `Scene.all_supports`."""
+    return [
+        placed(support_symbol(one, inward(scene, one)), np.array(scene.place(one.node)), size)
+        for one in scene.all_supports
+    ]
+
+
+def inward(scene: Scene, support: SupportSpec) -> Array:
+    """Return the unit vector from a support into its beam."""
+    return np.array(scene.beam(support.beam).direction) * (1.0 if support.end == "start" else -1.0)
+
+
+def arc(turn: float, points: int = 25) -> Array:
+    """Return three quarters of a unit circle about the node, shape (points, 2), in the sense of `turn`, anticlockwise if positive."""
+    angle = np.linspace(-0.75 * np.pi, 0.75 * np.pi, points)
+    angle = angle if turn > 0.0 else angle[::-1]
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _lines(*ends: Sequence[float]) -> Segments:
+    return np.array(ends, dtype=float).reshape(-1, 2, 2)
+
+
+def _ground(y: float, half: float) -> Segments:
+    """Return a line with hatches below it."""
+    x = np.linspace(-half, half, HATCHES + 1)[1:]
+    hatches = np.stack([np.stack([x, 0 * x + y], 1), np.stack([x - 0.3, 0 * x + y - 0.35], 1)], 1)
+    return np.concatenate([_lines((-half, y, half, y)), hatches])
+
+
+def _triangle() -> Segments:
+    return _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
+
+
+def _clamp() -> Segments:
+    return _ground(0.0, 1.0)
+
+
+def _hinge() -> Segments:
+    return np.concatenate([_triangle(), _ground(-1.0, 0.9)])
+
+
+def _roller() -> Segments:
+    return np.concatenate([_triangle(), _ground(-1.25, 0.9)])
+
+
+def _guide() -> Segments:
+    return np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
+
+
+def _box() -> Segments:
+    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+
+
+_SHAPES = {
+    (3, True): _clamp,
+    (2, False): _hinge,
+    (1, False): _roller,
+    (2, True): _guide,
+    (1, True): _box,
+}
+"""Symbols by the number of components held, and whether the rotation is one of them."""
