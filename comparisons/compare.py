@@ -1,6 +1,5 @@
 """One scene through every model: table, pictures and files."""
 
-import json
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.verify import CHECK_FAILED
-from comparisons.output import plain
+from comparisons.output import json_text
 from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.to_json import as_dict
@@ -256,4 +255,4 @@ def _summary(scene: Scene, rows: list[Row], files: list[Path]) -> str:
         "files": [str(path) for path in files],
         "runs": runs,
     }
-    return json.dumps(plain(summary), allow_nan=False, indent=1) + "\n"
+    return json_text(summary)

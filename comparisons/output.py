@@ -4,7 +4,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -51,13 +51,42 @@ def _cell(value: Any) -> str:
 
 def write_numbers(path: Path, numbers: Mapping[str, Any]) -> Path:
     """Write nested numbers with the versions behind them as JSON; a number that is not finite is null."""
-    write_text(path, json.dumps(plain({**numbers, "versions": versions()}), allow_nan=False, indent=1) + "\n")
+    write_text(path, json_text({**numbers, "versions": versions()}))
     return path
+
+
+def json_text(value: Any) -> str:
+    """Return nested numbers as JSON text: one key a line, and a list or a table of numbers on one line; a number that is not finite is null."""
+    return "".join(_lines(plain(value), "\n")) + "\n"
+
+
+def _lines(value: Any, line: str) -> Iterator[str]:
+    """Yield the parts of the text of JSON's own types; `line` ends a line and indents the next one."""
+    if not value or not isinstance(value, dict | list) or _flat(value):
+        yield json.dumps(value, allow_nan=False)  # without indentation this is several times faster
+        return
+    inner = line + " "
+    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
+    items = value.values() if isinstance(value, dict) else value
+    yield "{" if isinstance(value, dict) else "["
+    for number, (key, item) in enumerate(zip(keys, items, strict=True)):
+        yield f",{inner}{key}" if number else f"{inner}{key}"
+        yield from _lines(item, inner)
+    yield line + ("}" if isinstance(value, dict) else "]")
+
+
+def _flat(value: Any) -> bool:
+    """Whether `value` is a list of values, or of rows of values."""
+    rows = isinstance(value, list) and all(isinstance(item, list) for item in value)
+    items = [item for row in value for item in row] if rows else value
+    return isinstance(value, list) and not any(isinstance(item, dict | list) for item in items)
 
 
 def plain(value: Any) -> Any:
     """Return `value` in JSON's own types: records as tables, arrays and tuples as lists."""
-    if isinstance(value, np.ndarray | np.generic):
+    if isinstance(value, np.ndarray):
+        return _listed(value)
+    if isinstance(value, np.generic):
         return plain(value.tolist())
     if is_dataclass(value):
         return {item.name: plain(getattr(value, item.name)) for item in fields(value)}
@@ -66,3 +95,14 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _listed(array: np.ndarray) -> Any:
+    """Return an array as nested lists; one without infinite values and nan needs no look at every number."""
+    if array.dtype.kind != "f":
+        return plain(array.tolist())
+    finite = np.isfinite(array)
+    if not finite.all():
+        array = array.astype(object)
+        array[~finite] = None
+    return array.tolist()

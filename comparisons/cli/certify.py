@@ -52,9 +52,9 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Read or solve, judge, and print the certificate."""
     file = None if given.json in (None, "-") else writable_file(Path(given.json))
+    from comparisons.output import json_text
     from comparisons.referee import Verdict, certify
     from comparisons.response.from_json import read_response
-    from comparisons.response.to_json import to_text
 
     stored = given.answer.endswith(".json")
     if stored:
@@ -72,7 +72,7 @@ def run(given: "argparse.Namespace") -> int:
         response = solve(scene, given.model or TSM.name, chosen(given))
     every = range(len(response.load_parameter)) if given.all else None
     found = certify(response, scene, at=every, allowance=given.allowance)
-    text = to_text({"scene": scene.name, "model": response.model, **found.as_dict()})
+    text = json_text({"scene": scene.name, "model": response.model, **found.as_dict()})
     if given.json == "-":
         sys.stdout.write(text)
     else:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -57,7 +58,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     def grid(k: int) -> Grid:
         return _beam_grid(scene, result, k)
 
-    response = _response(TSM, scene, result, result.axis_line, grid)
+    response = _response(TSM, scene, result, cache(result.axis_line), grid)
     return replace(
         response,
         tips=_tips(scene, response, lambda beam, k: result.shape(beam, k)[:, :2]),

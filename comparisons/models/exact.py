@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from time import perf_counter
 
 import numpy as np
@@ -132,6 +133,7 @@ def local_response(
     times = np.array(scene.times)
     stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
 
+    @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
         arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
         return (arc, line[::-1]) if local.from_end else (arc, line)

@@ -1,6 +1,5 @@
 """A response as JSON and as a few readable lines."""
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -8,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.output import plain
+from comparisons.output import json_text
 from comparisons.response import (
     ContactEvent,
     ContactHistory,
@@ -25,12 +24,7 @@ CRITICAL = ("limit-point", "bifurcation")
 
 def as_json(response: Response, **more: Any) -> str:
     """Return the response and the tables `more` as JSON text; a value that is not a number is null."""
-    return to_text({**as_dict(response), "versions": versions(), **more})
-
-
-def to_text(data: dict[str, Any]) -> str:
-    """Return tables as JSON text; a value that is not a number is null."""
-    return json.dumps(plain(data), allow_nan=False, indent=1) + "\n"
+    return json_text({**as_dict(response), "versions": versions(), **more})
 
 
 def as_dict(response: Response) -> dict[str, Any]:

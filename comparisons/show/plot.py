@@ -42,7 +42,9 @@ def figure(**options: Any) -> Any:
 
 
 def save(fig: Any, *paths: Path) -> None:
-    """Write the figure to `paths`, in the formats of their suffixes."""
+    """Write the figure to `paths`, in the formats of their suffixes; it is laid out once."""
+    fig.draw_without_rendering()
+    fig.set_layout_engine("none")
     for path in paths:
         with replacing(path) as temporary:
             fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))

@@ -1,6 +1,5 @@
 """Benchmark cards: a problem of the manual as one JSON file, complete in itself."""
 
-import json
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Any
 from comparisons.claims.claim import Quantity
 from comparisons.claims.manual.record import Problem
 from comparisons.files import writable_folder, write_text
-from comparisons.output import Report, plain
+from comparisons.output import Report, json_text
 from comparisons.scene import to_tables
 from comparisons.scene.json_schema import json_schema
 
@@ -149,5 +148,5 @@ def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Pr
 
 
 def _written(path: Path, data: dict[str, Any]) -> Path:
-    write_text(path, json.dumps(plain(data), allow_nan=False, indent=1) + "\n")
+    write_text(path, json_text(data))
     return path
