@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import ModelError, Options
 from comparisons.response.material import UNDEFINED, clamped
-from comparisons.scene import Scene
+from comparisons.scene import Scene, unstated
+from comparisons.scene.keys import ACCURACY
 
 STOCKY = 0.1
 """Height over length from which a beam is solved as a solid."""
@@ -43,6 +44,9 @@ def required(
     ModelError
         If the model cannot state the scene, or the quantity.
     """
+    unknown = unstated(scene, "the choice of a resolution", ACCURACY)
+    if unknown is not None:
+        raise ModelError(unknown)
     loaded, said = without_idle(scene)
     if model is None:
         model, reason = (
@@ -72,10 +76,10 @@ def required(
 def _model(scene: Scene, quantity: str) -> tuple[str, str]:
     if quantity == "stress":
         return SOLID.name, "stresses through the thickness are asked for"
-    stocky = [beam for beam in scene.beams if beam.height is not None and beam.height > STOCKY * beam.length]
+    stocky = [beam for beam in scene.beams if beam.height_at(0.5) > STOCKY * beam.length]
     if stocky:
         beam = stocky[0]
-        what = f'beam "{beam.name}" is stocky, h/L = {(beam.height or 0.0) / beam.length:.3g} > {STOCKY:g}'
+        what = f'beam "{beam.name}" is stocky, h/L = {beam.height_at(0.5) / beam.length:.3g} > {STOCKY:g}'
         refused = SOLID.refusal(scene)
         return (SOLID.name, what) if refused is None else (TSM.name, f"{what}, but {refused}")
     rods = "one slender beam" if len(scene.beams) == 1 else f"{len(scene.beams)} slender beams"

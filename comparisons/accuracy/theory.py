@@ -23,7 +23,7 @@ def beam_theory(response: Response, scene: Scene) -> Theory | None:
     Theory or None
         None if no beam's height is known, or no load parameter was reached.
     """
-    heights = {beam.name: beam.height for beam in scene.beams if beam.height is not None}
+    heights = {beam.name: beam.rectangle_height for beam in scene.beams if beam.height is not None}
     if not heights or not len(response.load_parameter):
         return None
     strain = kink = slender = 0.0

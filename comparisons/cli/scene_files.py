@@ -71,7 +71,8 @@ def run_check(given: "argparse.Namespace") -> int:
     for line in stated(scene, given.others):
         print(line)
     if given.json is not None:
-        write_text(writable_file(Path(given.json)), request(scene, Options(), scene.times))
+        resolved = request(scene, Options(), scene.times)
+        write_text(writable_file(Path(given.json)), resolved)
         print(f"resolved scene: {given.json}")
     draw(scene, picture)
     print(f"drawn: {given.out or picture.name}")

@@ -83,7 +83,7 @@ def _solid_variants(scene: Scene, *, quick: bool) -> Iterator[Case]:
 def _line_stiffness(scene: Scene) -> float:
     """Young's modulus times width of the first beam, to two digits."""
     beam = scene.beams[0]
-    width = beam.width or beam.cross_section[0] / beam.rectangle_height
+    width = beam.cross_section[0] / beam.rectangle_height
     return float(f"{beam.youngs_modulus * width:.2g}")
 
 

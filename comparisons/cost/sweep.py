@@ -14,14 +14,21 @@ from comparisons.cost.cases import meshed, sweep_cases
 from comparisons.cost.orders import orders
 from comparisons.cost.plots import plot_all
 from comparisons.cost.points import COSTS, Point, Trade, front
-from comparisons.cost.references import Measured, best_reference, reference_cases, solid_limit
+from comparisons.cost.references import (
+    Measured,
+    NoReferenceError,
+    best_reference,
+    reference_cases,
+    solid_limit,
+)
 from comparisons.cost.report import write_trade_page
 from comparisons.cost.tables import cheapest_rows, setting_rows
 from comparisons.files import writable_folder
 from comparisons.models import MODELS
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.scene import Scene, to_toml
+from comparisons.scene import Scene, to_toml, unstated
+from comparisons.scene.keys import COST
 
 Runner = Callable[[Sequence[Case]], Measured]
 """Measures cases."""
@@ -86,6 +93,9 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     NoReferenceError
         If there is nothing to measure errors against.
     """
+    unknown = unstated(scene, "accuracy over cost", COST)
+    if unknown is not None:
+        raise NoReferenceError(unknown)
     cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
     measured = run(cases)
     reference = best_reference(scene, measured)

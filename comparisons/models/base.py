@@ -60,6 +60,8 @@ class Model(ABC):
         Whether `crossval solve --accuracy` can choose its resolution.
     rod : bool
         Whether the model has the stretch and the shear of Reissner's rod.
+    keys : frozenset of str
+        The keys of `comparisons.scene.SPECIAL` that the model states; a scene with another one is refused.
     """
 
     name: str
@@ -70,11 +72,18 @@ class Model(ABC):
     refinable: ClassVar[bool] = False
     continuum: ClassVar[bool] = False
     rod: ClassVar[bool] = True
+    keys: ClassVar[frozenset[str]] = frozenset()
 
     @property
     def reference(self) -> Options | None:
         """Options at which the answer has no mesh error and can be a reference; None if there are none."""
         return None
+
+    def unstated(self, scene: Scene) -> str | None:
+        """Return the line that refuses a special key which the model does not state; None if it states all that `scene` uses."""
+        from comparisons.scene import unstated
+
+        return unstated(scene, self.label, self.keys)
 
     @abstractmethod
     def refusal(self, scene: Scene) -> str | None:

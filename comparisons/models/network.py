@@ -6,7 +6,9 @@ from time import perf_counter
 
 import numpy as np
 
+from comparisons.models.options import ModelError
 from comparisons.models.progress import Watch, unwatched
+from comparisons.models.rod import ROD
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
 from comparisons.referee.energy import dissipated
@@ -34,7 +36,15 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
         Name of the model in the response.
     watch : callable
         Receives every accepted step of TSM.
+
+    Raises
+    ------
+    ModelError
+        If the scene uses a key that the referee does not state.
     """
+    unknown = ROD.unstated(scene)
+    if unknown is not None:
+        raise ModelError(unknown)
     began = perf_counter()
     followed = TSM.solve(scene, TSM.reference, watch)
     found = certify(followed, scene, at=range(len(followed.load_parameter)))

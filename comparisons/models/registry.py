@@ -62,6 +62,9 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     for option, value in vars(given).items():
         if value is not None and option not in chosen.options:
             raise ModelError(f"{chosen.name}: {option} = {value}: not an option of this model")
+    unknown = chosen.unstated(scene)
+    if unknown is not None:
+        raise ModelError(unknown)
     try:
         response = chosen.solve(scene, given, watch)
         if not response.continuum:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
+from comparisons.scene.keys import ONE_ROD, RODS
 
 if TYPE_CHECKING:
     from comparisons.models.progress import Watch
@@ -21,6 +22,7 @@ class Rod(Model):
     label = "exact rod"
     libraries = ("comparisons.models.exact",)
     meshed = False
+    keys = RODS
 
     @property
     def reference(self) -> Options | None:
@@ -28,9 +30,8 @@ class Rod(Model):
         return Options()
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return None: the rods state every scene."""
-        del scene
-        return None
+        """Return why the rods cannot state `scene`; None if they can."""
+        return self.unstated(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""
@@ -60,6 +61,7 @@ class Elastica(Rod):
     name = "elastica"
     label = "elastica"
     rod = False
+    keys = ONE_ROD
 
     @property
     def reference(self) -> None:

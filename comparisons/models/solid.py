@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import Options
+from comparisons.scene.keys import STRIPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +31,7 @@ class Solid(Model):
     libraries = ("fem_reference", "skfem")
     refinable = True
     continuum = True
+    keys = STRIPS
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the solid cannot state `scene`; None if it can."""

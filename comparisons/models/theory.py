@@ -130,9 +130,8 @@ def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, flo
     beam = scene.beams[0]
     length = 1 / (options.mesh or beam.mesh)[0]
     turn = min(bent.curvature * length, bent.turn)
-    assert beam.height is not None, "the strip is a rectangle"
-    assert beam.width is not None, "the strip is a rectangle"
-    slender = beam.height / beam.length
+    assert isinstance(beam.width, float), "the strip is a rectangle"
+    slender = beam.height_at(0.5) / beam.length
     strain = slender * bent.curvature / 2
     contraction = abs(beam.poissons_ratio or 0.0) * strain * slender / 4
     penalty = DEFAULT_PENALTY * beam.youngs_modulus * beam.width

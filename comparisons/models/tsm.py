@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
+from comparisons.scene.keys import BEAMS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +27,7 @@ class Tsm(Model):
     options = ("elements", "element", "integration_tolerance", "branch")
     libraries = ("tsm",)
     refinable = True
+    keys = BEAMS
 
     def element(self, options: Options) -> ElementType:
         """Return the type of the elements, `mixed` if none is chosen.
@@ -50,9 +52,8 @@ class Tsm(Model):
         return Options(element=EXACT.name)
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return None: beams state every scene."""
-        del scene
-        return None
+        """Return why beams cannot state `scene`; None if they can."""
+        return self.unstated(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""

@@ -19,6 +19,7 @@ from comparisons.referee.rubbing import rubs_wrongly_on_the_way
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.scene import Scene
+from comparisons.scene.keys import RODS, unstated
 
 ALLOWED = 1e-2
 """Default of the largest difference allowed; smaller differences are not visible in a plot."""
@@ -42,6 +43,12 @@ def certify(
         Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
+    unknown = unstated(scene, "the referee", RODS)
+    if unknown is not None:
+        allowed = ALLOWED if allowance is None else allowance
+        return Certificate(
+            verdict=Verdict.NOT_JUDGED, reason=unknown, allowance=allowed, judged=(), path=(), seconds=0.0
+        )
     response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance
     steps = len(response.load_parameter)

@@ -15,6 +15,7 @@ import numpy as np
 
 from comparisons.response.record import Array, Response
 from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene.keys import MATERIAL, unstated
 
 UNDEFINED = "no touched beam is held by one clamp alone and loaded by contacts alone"
 """Reason why a scene has no material force."""
@@ -25,7 +26,9 @@ def clamped(scene: Scene) -> dict[str, SupportSpec]:
 
     Such a beam is touched, and it is held by one clamp alone. It has no load, no joint, and no end that touches another beam.
     """
-    found = {}
+    found: dict[str, SupportSpec] = {}
+    if unstated(scene, "the material force", MATERIAL) is not None:
+        return found
     for beam in scene.beams:
         supports = scene.supports_of(beam.name)
         touched = any(contact.beam == beam.name for contact in scene.contacts)

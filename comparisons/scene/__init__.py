@@ -1,26 +1,35 @@
 """The scene: one file that states beams, supports, loads, pins and contacts for every model."""
 
-from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
+from comparisons.scene.keys import SPECIAL, unstated
 from comparisons.scene.read import built_in_scenes, load_scene, read_scene
 from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import FieldError
+from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import InputError, SceneError
 from comparisons.scene.toml import to_tables, to_toml
 
 __all__ = [
+    "SPECIAL",
     "BeamSpec",
     "ContactSpec",
     "FieldError",
+    "HingeSpec",
     "InputError",
     "LoadSpec",
+    "PinMove",
     "PinSpec",
     "Scene",
     "SceneError",
+    "SpringSpec",
+    "StageSpec",
+    "SupportMove",
     "SupportSpec",
     "built_in_scenes",
     "load_scene",
     "read_scene",
     "to_tables",
     "to_toml",
+    "unstated",
 ]

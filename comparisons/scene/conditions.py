@@ -1,10 +1,21 @@
-"""Supports and loads of beam ends, as hashable records without arrays that check their values at construction."""
+"""Supports, loads, hinges and springs of beams, as hashable records without arrays that check their values at construction."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from comparisons.scene import rules
-from comparisons.scene.rules import MISSING, FieldError, Name, Number, Vector, apply_rules, exactly_one_of
+from comparisons.scene.amounts import amount
+from comparisons.scene.rules import (
+    MISSING,
+    FieldError,
+    Name,
+    NotNegative,
+    Number,
+    Point,
+    Vector,
+    apply_rules,
+    exactly_one_of,
+)
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
@@ -44,6 +55,8 @@ class SupportSpec:
     fixed: Annotated[tuple[str, ...], rules.subset(*COMPONENTS)] | None = None
     displacement: Vector | None = None
     rotation: Number | None = None
+    onward: ClassVar[tuple[tuple[float, float, float], ...]] = ()
+    """Motions in the stages after the first one, which the scene states."""
 
     def __post_init__(self) -> None:
         apply_rules(self)
@@ -84,26 +97,112 @@ class SupportSpec:
         x_, y_, rotation = (given[name] if name in self.held else None for name in COMPONENTS)
         return x_, y_, rotation
 
+    def motion_at(self, load_parameter: float) -> tuple[float | None, float | None, float | None]:
+        """Return displacement x, y and rotation at `load_parameter`, None where free."""
+        first = tuple(value or 0.0 for value in self.motion)
+        x, y, rotation = (
+            value if name in self.held else None
+            for name, value in zip(COMPONENTS, amount((first, *self.onward), load_parameter), strict=True)
+        )
+        return x, y, rotation
+
     @property
     def moves(self) -> bool:
-        """Whether a prescribed component is not zero."""
-        return any(self.motion)
+        """Whether a prescribed component is not zero in some stage."""
+        return any(map(any, (self.motion, *self.onward)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class LoadSpec:
-    """A dead force and moment on a beam's end, scaled by the load parameter.
+    """A dead load scaled by the load parameter: a force and moment on a beam's end or inside the beam, or a force per length.
 
     Parameters
     ----------
     beam : str
         Name of the beam.
     end : {"start", "end"}
-        Which end.
+        The end on which `force` and `moment` act.
+    at : float
+        The fraction of the undeformed length at which `force` and `moment` act inside the beam, instead of `end`.
     force : (float, float)
         At load parameter 1; it keeps its direction [force].
     moment : float
         At load parameter 1, anticlockwise [force length].
+    force_per_length : (float, float)
+        Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].
+    part : (float, float)
+        The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    beam: Name
+    end: Annotated[str, rules.choice("start", "end")] | None = None
+    at: Annotated[float, rules.fraction] | None = None
+    force: Vector = (0.0, 0.0)
+    moment: Number = 0.0
+    force_per_length: Vector | None = None
+    part: Annotated[tuple[float, float], rules.span] | None = None
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        exactly_one_of(vars(self), (("end",), ("at",), ("force_per_length",)))
+        if self.force_per_length is None:
+            if self.part is not None:
+                raise FieldError("part", self.part, "belongs to force_per_length")
+            if not any((*self.force, self.moment)):
+                raise FieldError("force", self.force, "force or moment must not be zero")
+        else:
+            if not any(self.force_per_length):
+                raise FieldError("force_per_length", self.force_per_length, "must not be zero")
+            for key in ("force", "moment"):
+                if any(self.force) if key == "force" else self.moment:
+                    rule = "must not be given with force_per_length: it belongs to end or at"
+                    raise FieldError(key, getattr(self, key), rule)
+
+    @property
+    def amount(self) -> tuple[float, float, float]:
+        """Force x, y and moment, or the force per length and zero."""
+        if self.force_per_length is not None:
+            return (*self.force_per_length, 0.0)
+        return (*self.force, self.moment)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Fractions of the length between which the force per length acts."""
+        return self.part or (0.0, 1.0)
+
+    @property
+    def key(self) -> str:
+        """The key that says where the load acts."""
+        return "end" if self.end is not None else "at" if self.at is not None else "force_per_length"
+
+    @property
+    def node(self) -> str:
+        """Name of the place: ``upper.end``, ``upper at 0.5`` or ``upper from 0 to 1``."""
+        if self.end is not None:
+            return f"{self.beam}.{self.end}"
+        if self.at is not None:
+            return f"{self.beam} at {self.at!r}"
+        return "{} from {!r} to {!r}".format(self.beam, *self.span)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HingeSpec:
+    """A hinge between a beam's end and its joint: the end turns against the joint without a moment, or against a spring.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end. It is joined to another beam, or a support holds its rotation. Supports, springs and loads that name the end act
+        on the joint, not on the beam behind the hinge.
+    stiffness : float
+        Stiffness of a rotational spring between the joint and the end [force length/rad].
 
     Raises
     ------
@@ -113,15 +212,55 @@ class LoadSpec:
 
     beam: Name
     end: Annotated[str, rules.choice("start", "end")]
-    force: Vector = (0.0, 0.0)
-    moment: Number = 0.0
+    stiffness: NotNegative = 0.0
 
     def __post_init__(self) -> None:
         apply_rules(self)
-        if not any((*self.force, self.moment)):
-            raise FieldError("force", self.force, "force or moment must not be zero")
 
     @property
     def node(self) -> str:
         """Name of the end, as ``upper.end``."""
         return f"{self.beam}.{self.end}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringSpec:
+    """Linear springs between a beam's end and the ground, free of force in the undeformed state.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end; the springs act on the joint of all beams that share it.
+    stiffness : (float, float)
+        Stiffnesses against displacement in x and in y [force/length].
+    rotation : float
+        Stiffness against rotation [force length/rad].
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    beam: Name
+    end: Annotated[str, rules.choice("start", "end")]
+    stiffness: Annotated[Point, rules.stiffnesses] = (0.0, 0.0)
+    rotation: NotNegative = 0.0
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        if not any((*self.stiffness, self.rotation)):
+            raise FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
+
+    @property
+    def node(self) -> str:
+        """Name of the end, as ``upper.end``."""
+        return f"{self.beam}.{self.end}"
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """The components of motion that the springs resist."""
+        stiffness = zip(COMPONENTS, (*self.stiffness, self.rotation), strict=True)
+        return tuple(name for name, value in stiffness if value)

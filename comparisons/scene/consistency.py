@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from comparisons.scene.contact import ContactSpec
+from comparisons.scene.hinges import check_hinges
 from comparisons.scene.joints import check_joints
 from comparisons.scene.rules import MISSING, FieldError, Point, shown
+from comparisons.scene.stage_rules import check_stages
 
 if TYPE_CHECKING:
     from comparisons.scene.records import BeamSpec, Scene
@@ -28,12 +31,19 @@ def check_scene(scene: Scene) -> None:
     _distinct([(f"contact[{i}].node", contact.pair) for i, contact in enumerate(scene.contacts)])
     named = [(f"support[{i}].beam", support.beam) for i, support in enumerate(scene.supports)]
     named += [(f"load[{i}].beam", load.beam) for i, load in enumerate(scene.loads)]
+    named += [(f"hinge[{i}].beam", hinge.beam) for i, hinge in enumerate(scene.hinges)]
+    named += [(f"spring[{i}].beam", spring.beam) for i, spring in enumerate(scene.springs)]
     known = {beam.name for beam in scene.beams}
     for key, name in named:
         if name not in known:
             raise FieldError(key, name, f"must name a beam: {_known(beam.name for beam in scene.beams)}")
-    _distinct([(f"load[{i}].end", load.node) for i, load in enumerate(scene.loads)])
+    _distinct([(f"load[{i}].{load.key}", load.node) for i, load in enumerate(scene.loads)])
+    _distinct([(f"hinge[{i}].end", hinge.node) for i, hinge in enumerate(scene.hinges)])
+    _distinct([(f"spring[{i}].end", spring.node) for i, spring in enumerate(scene.springs)])
+    check_stages(scene)
+    check_hinges(scene)
     check_joints(scene)
+    _check_weight(scene)
     _check_cause(scene)
 
 
@@ -42,8 +52,28 @@ def _check_cause(scene: Scene) -> None:
     for i, pin in enumerate(scene.pins):
         if pin.name not in touching:
             raise FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
-    if not (scene.pins or scene.loads or any(support.moves for support in scene.all_supports)):
+        if len(set(pin.points)) == 1:
+            raise FieldError(
+                f"pin[{i}].displacement", pin.displacement, "must not be zero: the pin never moves"
+            )
+    acting = (scene.pins, scene.load_histories, scene.gravity)
+    if not (any(acting) or any(support.moves for support in scene.all_supports)):
         raise FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
+
+
+def _check_weight(scene: Scene) -> None:
+    heavy = [i for i, beam in enumerate(scene.beams) if beam.density is not None]
+    if heavy and scene.gravity is None:
+        density = scene.beams[heavy[0]].density
+        raise FieldError(f"beam[{heavy[0]}].density", density, "needs gravity in [scene]")
+    if scene.gravity is not None and not heavy:
+        raise FieldError("scene.gravity", scene.gravity, "needs the density of a beam")
+    pulls = [scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages)]
+    if scene.gravity is not None and not any(map(any, pulls)):
+        raise FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
+    for i, stage in enumerate(scene.stages):
+        if any(stage.gravity) and scene.gravity is None:
+            raise FieldError(f"stage[{i}].gravity", stage.gravity, "needs gravity in [scene]")
 
 
 def _distinct(named: list[tuple[str, str]]) -> None:
@@ -83,10 +113,21 @@ def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[
 
     ``g = s n.(x_c - x_start) - offset`` with n the left normal and s = -1 for a node from the right.
     """
-    (tx, ty), (x0, y0) = beam.direction, beam.start
+    (tx, ty), (x0, y0) = beam.tangent(0.0), beam.start
     dx, dy = point[0] - x0, point[1] - y0
     sign = 1.0 if side == "left" else -1.0
+    if beam.turn:
+        left, fraction = _from_arc(beam, (tx * dx + ty * dy, tx * dy - ty * dx))
+        return sign * left - offset, fraction
     return sign * (tx * dy - ty * dx) - offset, (tx * dx + ty * dy) / beam.length
+
+
+def _from_arc(beam: BeamSpec, point: Point) -> Point:
+    """Return the distance of a point to the left of an arc and the fraction of its length there; the start is the origin along x."""
+    (x, y), k = point, beam.curvature
+    far = math.hypot(k * x, k * y - 1.0)
+    turned = math.remainder(math.atan2(k * x, 1.0 - k * y) - beam.turn / 2.0, 2.0 * math.pi)
+    return (2.0 * y - k * (x * x + y * y)) / (1.0 + far), turned / beam.turn + 0.5
 
 
 def _check_side(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> None:
@@ -97,7 +138,8 @@ def _check_side(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> Non
     else:
         pin = scene.pin(name)
         key, position = f"{keys[name]}.{'start' if pin.path is None else 'path'}", pin.points[0]
-    gap, fraction = signed_gap(beam, contact.side, scene.offset(contact), position)
+    _, fraction = signed_gap(beam, contact.side, 0.0, position)
+    gap, fraction = signed_gap(beam, contact.side, scene.offset(contact, fraction), position)
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'
         raise FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from comparisons.scene import rules
+from comparisons.scene.amounts import stage_of
 from comparisons.scene.rules import (
-    FieldError,
     Friction,
     Name,
     Point,
@@ -19,6 +19,43 @@ from comparisons.scene.rules import (
     apply_rules,
     exactly_one_of,
 )
+from comparisons.scene.stages import PinMove
+
+
+@dataclass(frozen=True, kw_only=True)
+class Path:
+    """A polyline from load parameter 0 to 1 at constant speed.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        At least two points; all equal where nothing moves [length].
+    """
+
+    points: tuple[Point, ...]
+
+    @cached_property
+    def _reached(self) -> tuple[float, ...]:
+        """Distance along the path at every point, each rounded once."""
+        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
+        if not math.isfinite(sum(lengths)):
+            return tuple(accumulate(lengths, initial=0.0))
+        return tuple(float(reached) for reached in accumulate(map(Fraction, lengths), initial=Fraction(0)))
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """The load parameters of the inner points."""
+        return tuple(reached / self._reached[-1] for reached in self._reached[1:-1])
+
+    def position(self, load_parameter: float) -> Point:
+        """Return the point at the fraction `load_parameter` of the length."""
+        ahead = load_parameter * self._reached[-1]
+        k = min(max(bisect_left(self._reached, ahead), 1), len(self.points) - 1)
+        start, end = self.points[k - 1 : k + 1]
+        if start == end:
+            return start
+        u = (ahead - self._reached[k - 1]) / math.dist(start, end)
+        return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,41 +84,45 @@ class PinSpec:
     displacement: Vector | None = None
     path: Annotated[tuple[Point, ...], rules.polyline] | None = None
     radius: Positive | None = None
+    moves: ClassVar[tuple[PinMove | None, ...]] = ()
+    """Motions in the stages after the first one, which the scene states; None where the pin rests."""
 
     def __post_init__(self) -> None:
         apply_rules(self)
         exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
-        if self.displacement is not None and self.points[0] == self.points[1]:
-            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """The path's points."""
-        if self.start is None or self.displacement is None:
-            return self.path or ()
-        (x, y), (dx, dy) = self.start, self.displacement
-        return (x, y), (x + dx, y + dy)
 
     @cached_property
-    def _reached(self) -> tuple[float, ...]:
-        """Distance along the path at every point, each rounded once."""
-        lengths = [math.dist(a, b) for a, b in pairwise(self.points)]
-        if not math.isfinite(sum(lengths)):
-            return tuple(accumulate(lengths, initial=0.0))
-        return tuple(float(reached) for reached in accumulate(map(Fraction, lengths), initial=Fraction(0)))
+    def _paths(self) -> tuple[Path, ...]:
+        """The path of every stage."""
+        if self.start is None or self.displacement is None:
+            paths = [Path(points=self.path or ())]
+        else:
+            (x, y), (dx, dy) = self.start, self.displacement
+            paths = [Path(points=((x, y), (x + dx, y + dy)))]
+        for move in self.moves:
+            x, y = paths[-1].points[-1]
+            dx, dy = (0.0, 0.0) if move is None else move.displacement or (0.0, 0.0)
+            onward = (move and move.path) or ((x + dx, y + dy),)
+            paths.append(Path(points=((x, y), *onward)))
+        return tuple(paths)
 
-    @property
+    @cached_property
+    def points(self) -> tuple[Point, ...]:
+        """The points of the path through all stages."""
+        ways = (pair for path in self._paths for pair in pairwise(path.points))
+        return (self._paths[0].points[0], *(b for a, b in ways if a != b))
+
+    @cached_property
     def corners(self) -> tuple[float, ...]:
-        """The load parameters of the path's inner points."""
-        return tuple(reached / self._reached[-1] for reached in self._reached[1:-1])
+        """The load parameters of the path's inner points, and the ones at which a stage ends and another follows."""
+        first, *others = self._paths
+        onward = (t for k, path in enumerate(others, 1) for t in (float(k), *(k + t for t in path.corners)))
+        return (*first.corners, *onward)
 
     def position(self, load_parameter: float) -> Point:
-        """Return the point at the fraction `load_parameter` of the path's length."""
-        ahead = load_parameter * self._reached[-1]
-        k = min(max(bisect_left(self._reached, ahead), 1), len(self.points) - 1)
-        start, end = self.points[k - 1 : k + 1]
-        u = (ahead - self._reached[k - 1]) / math.dist(start, end)
-        return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
+        """Return the point at the fraction of the length of its stage's path that `load_parameter` states."""
+        stage = stage_of(load_parameter, len(self._paths))
+        return self._paths[stage].position(load_parameter - stage if stage else load_parameter)
 
 
 @dataclass(frozen=True, kw_only=True)

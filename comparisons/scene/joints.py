@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
+from comparisons.scene.hinges import check_mechanism
 from comparisons.scene.rules import FieldError, Point
 
 if TYPE_CHECKING:
@@ -105,10 +106,11 @@ def _check_pair(a: BeamSpec, b: BeamSpec, number: int) -> None:
 
 
 def _check_apart(scene: Scene) -> None:
-    """Raise for two beams between the same ends."""
-    there: dict[frozenset[Point], int] = {}
+    """Raise for two beams between the same ends, unless they are different arcs."""
+    there: dict[tuple[frozenset[Point], float], int] = {}
     for j, beam in enumerate(scene.beams):
-        i = there.setdefault(frozenset((beam.start, beam.end)), j)
+        turn = beam.turn if beam.start < beam.end else -beam.turn
+        i = there.setdefault((frozenset((beam.start, beam.end)), turn), j)
         if i != j:
             rule = f'must not lie on beam[{i}], "{scene.beams[i].name}", end to end'
             raise FieldError(f"beam[{j}].end", beam.end, rule)
@@ -127,19 +129,20 @@ def _check_one_support(scene: Scene) -> None:
 
 def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str], key: str) -> None:
     beam, names = structure[0], [member.name for member in structure]
-    if not any(map(scene.supports_of, names)):
-        rule = (
-            f'beam "{beam.name}" is free: clamp it, give it a [[support]] or join it to a beam that has one'
-        )
+    if not any(map(scene.supports_of, names)) and not any(spring.beam in names for spring in scene.springs):
+        rule = f'beam "{beam.name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
         raise FieldError(key, beam.clamped, rule)
     if touched.isdisjoint(names) and not _rigid(scene, structure):
         rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
         raise FieldError(key, beam.clamped, rule)
+    if touched.isdisjoint(names):
+        check_mechanism(scene, structure)
 
 
 def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:
-    """Whether the supports leave no rigid motion ``(a - c y, b + c x, c)``."""
-    own = [support for beam in structure for support in scene.supports_of(beam.name)]
+    """Whether the supports and springs leave no rigid motion ``(a - c y, b + c x, c)``."""
+    names = {beam.name for beam in structure}
+    own = [item for item in scene.holding if item.beam in names]
     levels = {scene.place(support.node)[1] for support in own if "x" in support.held}
     columns = {scene.place(support.node)[0] for support in own if "y" in support.held}
     turning = any("rotation" in support.held for support in own) or len(levels) > 1 or len(columns) > 1

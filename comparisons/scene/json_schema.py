@@ -9,9 +9,10 @@ from typing import Any
 
 from comparisons.files import write_text
 from comparisons.scene import rules
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import LISTS, STAGE_LISTS
 from comparisons.scene.records import Scene
 from comparisons.scene.rules import Choice, Rule, Subset, field_rules
+from comparisons.scene.stages import StageSpec
 
 Schema = dict[str, Any]
 NUMBER: Schema = {"type": "number"}
@@ -21,6 +22,37 @@ END: Schema = {"enum": ["start", "end"]}
 OF_RULES: dict[Rule, Schema] = {
     rules.number: NUMBER,
     rules.positive: {"type": "number", "exclusiveMinimum": 0},
+    rules.not_negative: {"type": "number", "minimum": 0},
+    rules.dimension: {
+        "anyOf": [
+            {"type": "number", "exclusiveMinimum": 0},
+            {
+                "type": "array",
+                "items": {"type": "number", "exclusiveMinimum": 0},
+                "minItems": 2,
+                "maxItems": 2,
+            },
+        ]
+    },
+    rules.turn: {
+        "type": "number",
+        "exclusiveMinimum": -6.2831853071795865,
+        "exclusiveMaximum": 6.2831853071795865,
+    },
+    rules.fraction: {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+    rules.span: {
+        "type": "array",
+        "items": {"type": "number", "minimum": 0, "maximum": 1},
+        "minItems": 2,
+        "maxItems": 2,
+    },
+    rules.stiffnesses: {
+        "type": "array",
+        "items": {"type": "number", "minimum": 0},
+        "minItems": 2,
+        "maxItems": 2,
+    },
+    rules.further_points: {"type": "array", "items": POINT, "minItems": 1},
     rules.friction: {"type": "number", "minimum": 0, "maximum": rules.MOST_FRICTION},
     rules.poissons_ratio: {"type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5},
     rules.whole_number: COUNT,
@@ -48,9 +80,7 @@ def json_schema() -> Schema:
     >>> json_schema()["properties"]["beam"]["items"]["properties"]["height"]["exclusiveMinimum"]
     0
     """
-    tables = {
-        kind: {"type": "array", "minItems": 1, "items": _record(record)} for kind, record in LISTS.items()
-    }
+    tables = {kind: _list(record) for kind, record in LISTS.items()}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Scene of tsm-crossval",
@@ -64,6 +94,10 @@ def json_schema() -> Schema:
     }
 
 
+def _list(kind: type) -> Schema:
+    return {"type": "array", "minItems": 1, "items": _record(kind)}
+
+
 def json_schema_text() -> str:
     """Return the schema as the text of ``scene.schema.json``, which is shipped."""
     return json.dumps(json_schema(), indent=1) + "\n"
@@ -73,7 +107,11 @@ def _record(kind: type, leave: tuple[str, ...] = ()) -> Schema:
     known = [item for item in fields(kind) if item.name not in leave]
     of_fields, texts = field_rules(kind), _descriptions(kind)
     properties = {}
+    inner = STAGE_LISTS if kind is StageSpec else {}
     for item in known:
+        if item.name in inner:
+            properties[item.name] = {**_list(inner[item.name]), "description": texts[item.name]}
+            continue
         default = {} if item.default in (MISSING, None) else {"default": item.default}
         properties[item.name] = {"description": texts[item.name], **_of_rule(of_fields[item.name]), **default}
     return {

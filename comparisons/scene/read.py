@@ -5,20 +5,27 @@ from dataclasses import fields
 from importlib import resources
 from typing import Any, TypeVar
 
-from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.records import BeamSpec, Scene
 from comparisons.scene.rules import FieldError
+from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import SceneError, check_keys, read_tables, read_text
 
 Record = TypeVar("Record")
-LISTS: dict[str, type[BeamSpec | SupportSpec | LoadSpec | PinSpec | ContactSpec]] = {
+LISTS: dict[str, type] = {
     "beam": BeamSpec,
     "support": SupportSpec,
     "load": LoadSpec,
     "pin": PinSpec,
     "contact": ContactSpec,
+    "hinge": HingeSpec,
+    "spring": SpringSpec,
+    "stage": StageSpec,
 }
+"""The tables of a file, each a list."""
+STAGE_LISTS: dict[str, type] = {"pin": PinMove, "support": SupportMove, "load": LoadSpec}
+"""The lists of tables in a ``[[stage]]``."""
 
 
 def built_in_scenes() -> dict[str, str]:
@@ -71,7 +78,9 @@ def _scene(tables: dict[str, Any]) -> Scene:
     check_keys(tables, {"scene", *LISTS}, required=("scene", "beam"))
     if not isinstance(tables["scene"], dict):
         raise FieldError("scene", tables["scene"], "must be a table, [scene]")
-    lists: dict[str, Any] = {f"{kind}s": _records(kind, tables[kind]) for kind in LISTS if kind in tables}
+    lists: dict[str, Any] = {
+        f"{kind}s": _records(LISTS[kind], tables[kind], kind) for kind in LISTS if kind in tables
+    }
     own = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
     try:
         check_keys(tables["scene"], own, required=("name", "load_parameters"))
@@ -83,10 +92,10 @@ def _scene(tables: dict[str, Any]) -> Scene:
         raise (error.within("scene.") if error.key in own else error) from None
 
 
-def _records(kind: str, tables: object) -> tuple[object, ...]:
+def _records(kind: type, tables: object, key: str) -> tuple[object, ...]:
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
-        raise FieldError(kind, tables, f"must be a list of tables, [[{kind}]]")
-    return tuple(_record(LISTS[kind], table, f"{kind}[{i}].") for i, table in enumerate(tables))
+        raise FieldError(key, tables, f"must be a list of tables, [[{key}]]")
+    return tuple(_record(kind, table, f"{key}[{i}].") for i, table in enumerate(tables))
 
 
 def _record(kind: type[Record], table: dict[str, Any], prefix: str) -> Record:
@@ -94,6 +103,8 @@ def _record(kind: type[Record], table: dict[str, Any], prefix: str) -> Record:
     try:
         required = tuple(item.name for item in known if item.default is NO_DEFAULT)
         check_keys(table, {item.name for item in known}, required)
-        return kind(**table)
+        inner = STAGE_LISTS if kind is StageSpec else {}
+        lists = {name: _records(inner[name], value, name) for name, value in table.items() if name in inner}
+        return kind(**{**table, **lists})
     except FieldError as error:
         raise error.within(prefix) from None

@@ -1,15 +1,17 @@
 """A beam and the whole scene, as hashable records without arrays that check their values at construction."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated
 
 from comparisons.scene import rules
-from comparisons.scene.conditions import LoadSpec, SupportSpec
+from comparisons.scene.amounts import amount
+from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.rules import (
     Count,
+    Dimension,
     FieldError,
     Name,
     Point,
@@ -18,11 +20,12 @@ from comparisons.scene.rules import (
     apply_rules,
     exactly_one_of,
 )
+from comparisons.scene.stages import LoadHistory, StageSpec, load_histories
 
 
 @dataclass(frozen=True, kw_only=True)
 class BeamSpec:
-    """A straight, uniform beam.
+    """A beam, straight and uniform unless it turns or tapers.
 
     The section is a rectangle `width` x `height` (effective shear area 5/6 of the area), or `area` and `second_moment`
     (effective shear area equal to the area); `shear_area` overrides the effective shear area. The material is isotropic:
@@ -34,22 +37,26 @@ class BeamSpec:
         Letters, digits, ``-`` and ``_``.
     start, end : (float, float)
         The ends of the undeformed axis [length].
+    turn : float
+        Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].
     youngs_modulus : float
         Young's modulus [force/length^2].
     poissons_ratio : float
         Poisson's ratio.
     shear_modulus : float
         Shear modulus, instead of `poissons_ratio` [force/length^2].
-    width : float
-        Width of the section, out of plane [length].
-    height : float
-        Height of the section, in plane [length].
+    width : float or (float, float)
+        Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].
+    height : float or (float, float)
+        Height of the section, in plane; a number or two like `width` [length].
     area : float
         Area of the section, with `second_moment` instead of `width` and `height` [length^2].
     second_moment : float
         Second moment of area, with `area` [length^4].
     shear_area : float
         Effective shear area [length^2].
+    density : float
+        Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; a mass times a `gravity` is a force.
     clamped : tuple of {"start", "end"}
         Clamped ends, none by default: the short form of a `SupportSpec`.
     elements : int
@@ -80,11 +87,13 @@ class BeamSpec:
     youngs_modulus: Positive
     poissons_ratio: Annotated[float, rules.poissons_ratio] | None = None
     shear_modulus: Positive | None = None
-    width: Positive | None = None
-    height: Positive | None = None
+    turn: Annotated[float, rules.turn] = 0.0
+    width: Dimension | None = None
+    height: Dimension | None = None
     area: Positive | None = None
     second_moment: Positive | None = None
     shear_area: Positive | None = None
+    density: Positive | None = None
     clamped: Annotated[tuple[str, ...], rules.ends] = ()
     elements: Count = 20
     nodes: Annotated[tuple[float, ...], rules.parts] = ()
@@ -105,53 +114,112 @@ class BeamSpec:
             rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
             raise FieldError("end", self.end, rule)
         least, most = rules.RANGE
-        for name in ("EA", "GA", "EI"):
-            stiffness = getattr(self, name)
+        if self.tapers and self.shear_area is not None:
+            raise FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
+        stiffnesses = zip(("EA", "GA", "EI") * 2, (*self.stiffness(0.0), *self.stiffness(1.0)), strict=True)
+        for name, stiffness in stiffnesses:
             if not least <= stiffness <= most:
                 rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
                 raise FieldError("youngs_modulus", self.youngs_modulus, rule)
 
     @property
     def length(self) -> float:
-        """Length of the undeformed axis."""
-        return math.dist(self.start, self.end)
+        """Length of the undeformed axis; of an arc, ``(turn/2)/sin(turn/2)`` of the distance of its ends."""
+        chord, half = math.dist(self.start, self.end), self.turn / 2.0
+        return chord * (half / math.sin(half)) if half else chord
+
+    @property
+    def curvature(self) -> float:
+        """Natural curvature, positive to the left [1/length]."""
+        return self.turn / self.length
 
     @property
     def direction(self) -> Point:
         """Unit vector from start to end."""
         (x0, y0), (x1, y1) = self.start, self.end
-        return (x1 - x0) / self.length, (y1 - y0) / self.length
+        chord = math.dist(self.start, self.end)
+        return (x1 - x0) / chord, (y1 - y0) / chord
+
+    def tangent(self, fraction: float) -> Point:
+        """Return the unit tangent of the undeformed axis at a fraction of the length."""
+        return _turned(self.direction, self.turn * (fraction - 0.5)) if self.turn else self.direction
+
+    def place(self, fraction: float) -> Point:
+        """Return the point of the undeformed axis at a fraction of the length."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        if not self.turn or fraction in (0.0, 1.0):
+            return (1.0 - fraction) * x0 + fraction * x1, (1.0 - fraction) * y0 + fraction * y1
+        half = self.turn * fraction / 2.0
+        tx, ty = _turned(self.direction, half - self.turn / 2.0)
+        chord = fraction * self.length * (math.sin(half) / half if half else 1.0)
+        return x0 + chord * tx, y0 + chord * ty
+
+    @property
+    def tapers(self) -> bool:
+        """Whether the section changes along the beam."""
+        return isinstance(self.width, tuple) or isinstance(self.height, tuple)
 
     @property
     def EA(self) -> float:
-        """Stretching stiffness [force]."""
-        return self.youngs_modulus * self.cross_section[0]
+        """Stretching stiffness [force]; the middle section's where the beam tapers."""
+        return self.stiffness()[0]
 
     @property
     def GA(self) -> float:
-        """Shear stiffness G A_e [force]."""
-        G = self.shear_modulus or self.youngs_modulus / (2.0 * (1.0 + (self.poissons_ratio or 0.0)))
-        return G * self.cross_section[2]
+        """Shear stiffness G A_e [force]; the middle section's where the beam tapers."""
+        return self.stiffness()[1]
 
     @property
     def EI(self) -> float:
-        """Bending stiffness [force length^2]."""
-        return self.youngs_modulus * self.cross_section[1]
+        """Bending stiffness [force length^2]; the middle section's where the beam tapers."""
+        return self.stiffness()[2]
+
+    def stiffness(self, fraction: float = 0.5) -> tuple[float, float, float]:
+        """Return EA, GA and EI at a fraction of the length."""
+        G = self.shear_modulus or self.youngs_modulus / (2.0 * (1.0 + (self.poissons_ratio or 0.0)))
+        area, inertia, sheared = self.section(fraction)
+        return self.youngs_modulus * area, G * sheared, self.youngs_modulus * inertia
 
     @property
     def cross_section(self) -> tuple[float, float, float]:
-        """Area, second moment of area and effective shear area."""
-        if self.width and self.height:
-            A, inertia, kappa = self.width * self.height, self.width * _cube(self.height) / 12.0, 5.0 / 6.0
+        """Area, second moment of area and effective shear area; the middle section's where the beam tapers."""
+        return self.section(0.5)
+
+    def section(self, fraction: float) -> tuple[float, float, float]:
+        """Return area, second moment of area and effective shear area at a fraction of the length."""
+        width, height = _between(self.width, fraction), _between(self.height, fraction)
+        if width and height:
+            A, inertia, kappa = width * height, width * _cube(height) / 12.0, 5.0 / 6.0
         else:
             A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
         return A, inertia, self.shear_area or kappa * A
 
+    def height_at(self, fraction: float) -> float:
+        """Return the height of the section at a fraction of the length, zero where the section has none."""
+        return _between(self.height, fraction) or 0.0
+
     @property
     def rectangle_height(self) -> float:
-        """Height of the section, or ``sqrt(12 I/A)`` of the rectangle with its area and second moment."""
+        """Largest height of the section, or ``sqrt(12 I/A)`` of the rectangle with its area and second moment."""
         area, inertia, _ = self.cross_section
-        return self.height or math.sqrt(12.0 * inertia / area)
+        return max(self.height_at(0.0), self.height_at(1.0)) or math.sqrt(12.0 * inertia / area)
+
+    def mass_per_length(self, fraction: float) -> float:
+        """Return the mass per undeformed length at a fraction of the length, zero without `density`."""
+        return (self.density or 0.0) * self.section(fraction)[0]
+
+
+def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
+    """Return a dimension at a fraction of the length."""
+    if not isinstance(dimension, tuple):
+        return dimension
+    a, b = dimension
+    return a + fraction * (b - a) if fraction < 0.5 else b - (1.0 - fraction) * (b - a)
+
+
+def _turned(vector: Point, angle: float) -> Point:
+    (x, y), c, s = vector, math.cos(angle), math.sin(angle)
+    return c * x - s * y, s * x + c * y
 
 
 def _cube(number: float) -> float:
@@ -166,7 +234,8 @@ def _cube(number: float) -> float:
 class Scene:
     """Beams with supports and loads, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
 
-    Beams whose ends have the same coordinates are rigidly joined there.
+    Beams whose ends have the same coordinates are rigidly joined there, unless a hinge is between them. The load parameter goes from
+    0 to 1, and on by 1 in each of `stages`.
 
     Parameters
     ----------
@@ -176,10 +245,15 @@ class Scene:
         Units of force and length, as ``"N, m"``.
     load_parameters : int
         Number n of load parameters.
+    gravity : (float, float)
+        Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of
+        time is free, the product with the density is a force per volume.
     beams : tuple of BeamSpec
         At least one.
-    supports, loads, pins, contacts : tuple of SupportSpec, LoadSpec, PinSpec, ContactSpec
-        Every pin is in a contact. At least one pin, load or moving support is needed, and no beam may be free.
+    supports, loads, pins, contacts, hinges, springs : tuple of SupportSpec, LoadSpec, PinSpec, ContactSpec, HingeSpec, SpringSpec
+        Every pin is in a contact. At least one pin, load, weight or moving support is needed, and no beam may be free.
+    stages : tuple of StageSpec
+        Stages after the first one.
 
     Raises
     ------
@@ -190,17 +264,31 @@ class Scene:
     name: Name
     units: Annotated[str, rules.units] = "N, m"
     load_parameters: Count
+    gravity: Vector | None = None
     beams: Annotated[tuple[BeamSpec, ...], rules.records(BeamSpec, at_least=1)]
     supports: Annotated[tuple[SupportSpec, ...], rules.records(SupportSpec)] = ()
     loads: Annotated[tuple[LoadSpec, ...], rules.records(LoadSpec)] = ()
     pins: Annotated[tuple[PinSpec, ...], rules.records(PinSpec)] = ()
     contacts: Annotated[tuple[ContactSpec, ...], rules.records(ContactSpec)] = ()
+    hinges: Annotated[tuple[HingeSpec, ...], rules.records(HingeSpec)] = ()
+    springs: Annotated[tuple[SpringSpec, ...], rules.records(SpringSpec)] = ()
+    stages: Annotated[tuple[StageSpec, ...], rules.records(StageSpec)] = ()
 
     def __post_init__(self) -> None:
         from comparisons.scene.consistency import check_scene
 
         apply_rules(self)
+        object.__setattr__(self, "pins", tuple(map(self._with_moves, self.pins)))
         check_scene(self)
+
+    def _with_moves(self, pin: PinSpec) -> PinSpec:
+        """Return a copy of `pin` that knows its motions in the stages."""
+        if not (self.stages or pin.moves):
+            return pin
+        pin = replace(pin)
+        moves = ({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
+        object.__setattr__(pin, "moves", tuple(moves))
+        return pin
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:
@@ -218,10 +306,9 @@ class Scene:
         """Return the pin called `name`."""
         return self._pins[name]
 
-    def offset(self, contact: ContactSpec) -> float:
-        """Distance of the contact's node, or of its pin's centre, from the axis where they touch."""
-        height = self.beam(contact.beam).height
-        surface = 0.0 if contact.surface == "axis" or height is None else height / 2.0
+    def offset(self, contact: ContactSpec, fraction: float = 0.5) -> float:
+        """Distance of the contact's node, or of its pin's centre, from the axis where they touch, at a fraction of a beam that tapers."""
+        surface = 0.0 if contact.surface == "axis" else self.beam(contact.beam).height_at(fraction) / 2.0
         return surface + self.radius(contact)
 
     def radius(self, contact: ContactSpec) -> float:
@@ -237,7 +324,34 @@ class Scene:
             for beam in self.beams
             for end in beam.clamped
         )
-        return (*clamps, *self.supports)
+        return tuple(map(self._with_motions, (*clamps, *self.supports)))
+
+    @property
+    def holding(self) -> tuple[SupportSpec | SpringSpec, ...]:
+        """The supports and the springs."""
+        return (*self.all_supports, *self.springs)
+
+    def _with_motions(self, support: SupportSpec) -> SupportSpec:
+        """Return a copy of `support` that knows its motions in the stages."""
+        if not self.stages:
+            return support
+        support, place = replace(support), self.place(support.node)
+        motions = (
+            next((move.motion for move in stage.support if self.place(move.node) == place), (0.0, 0.0, 0.0))
+            for stage in self.stages
+        )
+        object.__setattr__(support, "onward", tuple(motions))
+        return support
+
+    @cached_property
+    def load_histories(self) -> tuple[LoadHistory, ...]:
+        """The dead loads through all stages."""
+        return load_histories((self.loads, *(stage.load for stage in self.stages)))
+
+    def gravity_at(self, load_parameter: float) -> Point:
+        """Return the acceleration of gravity at `load_parameter`."""
+        x, y = amount((self.gravity or (0.0, 0.0), *(stage.gravity for stage in self.stages)), load_parameter)
+        return x, y
 
     @cached_property
     def _supports_of(self) -> dict[str, tuple[SupportSpec, ...]]:
@@ -267,6 +381,8 @@ class Scene:
 
     @property
     def times(self) -> tuple[float, ...]:
-        """The load parameters k/n, k = 1..n."""
-        n = self.load_parameters
-        return tuple(k / n for k in range(1, n + 1))
+        """The load parameters of all stages: k/n, k = 1..n, of the first one, and from the number of stages before on of every other."""
+        counts = (self.load_parameters, *(stage.load_parameters for stage in self.stages))
+        return tuple(
+            before + k / n if before else k / n for before, n in enumerate(counts) for k in range(1, n + 1)
+        )

@@ -69,7 +69,8 @@ def shown(value: object) -> str:
 @cache
 def field_rules(kind: type) -> dict[str, Rule]:
     """Return the rule of every field, the first annotation of its type."""
-    hints = get_type_hints(kind, include_extras=True).items()
+    own = {item.name for item in fields(kind)}
+    hints = ((name, hint) for name, hint in get_type_hints(kind, include_extras=True).items() if name in own)
     return {
         name: next(part for part in (hint, *get_args(hint)) if hasattr(part, "__metadata__")).__metadata__[0]
         for name, hint in hints
@@ -118,6 +119,46 @@ def positive(value: object) -> float:
     if not RANGE[0] <= result <= RANGE[1]:
         raise RuleError(f"must lie between {RANGE[0]:g} and {RANGE[1]:g}")
     return result
+
+
+def not_negative(value: object) -> float:
+    """Accept zero, or a positive number."""
+    result = number(value, math.inf)
+    if result < 0.0:
+        raise RuleError("must not be negative")
+    return positive(result) if result else 0.0
+
+
+def dimension(value: object) -> float | tuple[float, float]:
+    """Accept a positive number, or two that state a dimension at the start and at the end of a beam."""
+    if not isinstance(value, list | tuple):
+        return positive(value)
+    if len(value) != 2:
+        raise RuleError("must be a number, or two numbers [at the start, at the end]")
+    start, end = positive(value[0]), positive(value[1])
+    return start if start == end else (start, end)
+
+
+def turn(value: object) -> float:
+    """Accept the angle by which an arc turns, less than a whole turn."""
+    result = number(value)
+    if not abs(result) < 2.0 * math.pi:
+        raise RuleError("must be less than 2 pi in size, which closes the strip on itself")
+    return result
+
+
+def span(value: object) -> tuple[float, float]:
+    """Accept two fractions of a beam that rise."""
+    a, b = point(value)
+    if not 0.0 <= a < b <= 1.0:
+        raise RuleError("must be two fractions of the length that rise from 0 to 1")
+    return a, b
+
+
+def stiffnesses(value: object) -> Point:
+    """Accept two numbers [x, y], neither negative."""
+    x, y = point(value)
+    return not_negative(x), not_negative(y)
 
 
 def friction(value: object) -> float:
@@ -193,13 +234,21 @@ def point(value: object) -> Point:
     return x, y
 
 
-def polyline(value: object) -> tuple[Point, ...]:
-    """Accept at least two points, no two consecutive ones equal."""
+def further_points(value: object) -> tuple[Point, ...]:
+    """Accept at least one point, no two consecutive ones equal."""
     points = tuple(point(item) for item in sequence(value))
-    if len(points) < 2:
-        raise RuleError("must have at least two points")
+    if not points:
+        raise RuleError("must have at least one point")
     if any(a == b for a, b in pairwise(points)):
         raise RuleError("must move: two consecutive points are equal")
+    return points
+
+
+def polyline(value: object) -> tuple[Point, ...]:
+    """Accept at least two points, no two consecutive ones equal."""
+    points = further_points(value)
+    if len(points) < 2:
+        raise RuleError("must have at least two points")
     return points
 
 
@@ -312,5 +361,7 @@ Number = Annotated[float, number]
 Positive = Annotated[float, positive]
 Friction = Annotated[float, friction]
 Count = Annotated[int, whole_number]
+NotNegative = Annotated[float, not_negative]
+Dimension = Annotated[float | tuple[float, float], dimension]
 Vector = Annotated[Point, point]
 Name = Annotated[str, name]

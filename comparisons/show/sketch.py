@@ -120,7 +120,7 @@ class _Sketch:
     def beam(self, beam: BeamSpec) -> None:
         """Draw a beam as its outline, at least a line, with its name and direction."""
         start, end, left = np.array(beam.start), np.array(beam.end), _left(beam)
-        half = (beam.height or 0.0) / 2 * left
+        half = beam.height_at(0.5) / 2 * left
         corners = np.array([start - half, end - half, end + half, start + half])
         (outline,) = self.axes.fill(*corners.T, facecolor=BEAM, edgecolor=BEAM, alpha=0.35, linewidth=1.5)
         (axis,) = self.axes.plot(*np.array([start, end]).T, color=BEAM, linewidth=1.0)
@@ -170,6 +170,8 @@ class _Sketch:
         """Draw the forces and moments at load parameter 1 with their values."""
         force, length = self.units
         for load in self.scene.loads:
+            if load.end is None:
+                continue
             at, vector = np.array(self.scene.place(load.node)), np.array(load.force)
             if vector.any():
                 tail = at - ARROW * self.size * vector / np.hypot(*vector)

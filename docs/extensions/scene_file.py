@@ -6,7 +6,7 @@ from typing import Any
 
 from numpydoc.docscrape import NumpyDocString
 
-from comparisons.scene.read import LISTS
+from comparisons.scene.read import LISTS, STAGE_LISTS
 from comparisons.scene.records import Scene
 from comparisons.scene.rules import Choice, Subset, field_rules
 from comparisons.scene.values import toml_value
@@ -17,6 +17,8 @@ def page() -> str:
     """Return one section for every table of a scene file, with a row for every key."""
     sections = [_section("[scene]", Scene, leave={f"{kind}s" for kind in LISTS})]
     sections += [_section(f"[[{kind}]]", record) for kind, record in LISTS.items()]
+    moves = ((name, record) for name, record in STAGE_LISTS.items() if record not in LISTS.values())
+    sections += [_section(f"{name} of [[stage]]", record) for name, record in moves]
     return "\n\n".join(sections) + "\n"
 
 

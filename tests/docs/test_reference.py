@@ -13,8 +13,8 @@ from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.models.outside.request import request
 from comparisons.models.outside.status import ProgramStatus
-from comparisons.scene import built_in_scenes, load_scene, to_toml
-from comparisons.scene.read import LISTS
+from comparisons.scene import LoadSpec, built_in_scenes, load_scene, to_toml
+from comparisons.scene.read import LISTS, STAGE_LISTS
 from docs.extensions import response, scene_file, statuses
 from docs.extensions.generated import PAGES, write_pages
 
@@ -23,9 +23,13 @@ FINDINGS = Path(__file__).parents[1] / "comparisons" / "findings"
 
 def test_every_key_of_a_scene_is_listed() -> None:
     sections = dict(part.partition("\n")[::2] for part in scene_file.page().split("## ")[1:])
-    assert set(sections) == {"`[scene]`", *(f"`[[{kind}]]`" for kind in LISTS)}
-    for kind, record in LISTS.items():
-        rows = [line for line in sections[f"`[[{kind}]]`"].splitlines() if line.startswith("| `")]
+    moves = {
+        f"`{name} of [[stage]]`": record for name, record in STAGE_LISTS.items() if record is not LoadSpec
+    }
+    records = {**{f"`[[{kind}]]`": record for kind, record in LISTS.items()}, **moves}
+    assert set(sections) == {"`[scene]`", *records}
+    for header, record in records.items():
+        rows = [line for line in sections[header].splitlines() if line.startswith("| `")]
         assert [row.split("`")[1] for row in rows] == [item.name for item in fields(record)]
         assert all(row.rstrip(" |").rpartition("|")[2].strip() for row in rows), "a key without a meaning"
 

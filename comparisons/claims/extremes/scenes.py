@@ -66,7 +66,7 @@ def half_circle(
     beam: BeamSpec, *, steps: int = 10, surface: str = "axis", penalty: float | None = None
 ) -> Scene:
     """Return the path of Konyukhov and Schweizerhof: from the tip to the end of a half circle with the beam's length."""
-    below = 0.0 if surface == "axis" or beam.height is None else -beam.height / 2
+    below = 0.0 if surface == "axis" else -beam.height_at(0.5) / 2
     L = beam.length
     return pushed(
         beam, (L, below), (0.0, below + 2 * L / math.pi), steps=steps, surface=surface, penalty=penalty

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.base import Model, Style
 from comparisons.models.options import ModelError, Options
+from comparisons.scene.keys import PROGRAMS
 
 if TYPE_CHECKING:
     from comparisons.models.outside.source import Source
@@ -25,6 +26,8 @@ class Program(Model):
         How it is asked: a `Command`, which runs in a child process, or `Functions`, which run in this one.
     """
 
+    keys = PROGRAMS
+
     def __init__(self, source: Source) -> None:
         self.source = source
         self.name, self.label = source.name, source.label or source.name
@@ -41,7 +44,7 @@ class Program(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why the program cannot state `scene`, or what is missing to run it."""
-        return _refusal(self.source, scene) or self.missing()
+        return self.unstated(scene) or _refusal(self.source, scene) or self.missing()
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked. Its status names what failed if there is none."""

@@ -4,8 +4,9 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from comparisons.models.options import Options
+from comparisons.models.options import ModelError, Options
 from comparisons.scene import BeamSpec, Scene
+from comparisons.scene.keys import PROGRAMS, unstated
 
 
 def request(scene: Scene, options: Options, load_parameters: Sequence[float]) -> str:
@@ -19,7 +20,15 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
         Number of elements, in place of the scene's.
     load_parameters : sequence of float
         Load parameters to solve for; none asks only whether the program can state the scene.
+
+    Raises
+    ------
+    ModelError
+        If the scene uses a key that the resolved scene does not state.
     """
+    unknown = unstated(scene, "the resolved scene", PROGRAMS)
+    if unknown is not None:
+        raise ModelError(unknown)
     data: dict[str, Any] = {
         "name": scene.name,
         "units": scene.units,

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.models.options import ModelError
 from comparisons.models.translate.one_beam import one_beam_under_a_pin, one_beam_with_tied_tip
 from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene.keys import ONE_ROD, unstated
 
 Array = NDArray[np.float64]
 
@@ -83,6 +85,9 @@ def to_rod(scene: Scene) -> RodScene:
     ModelError
         Unless the scene is one beam, clamped at one end, under one pin or with a pinned support that moves its other end.
     """
+    unknown = unstated(scene, "the exact rod", ONE_ROD)
+    if unknown is not None:
+        raise ModelError(unknown)
     if not (scene.pins or scene.contacts):
         return _tied(scene)
     clamp = one_beam_under_a_pin(scene, "the exact models have")

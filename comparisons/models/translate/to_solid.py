@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from comparisons.models.options import ModelError
 from comparisons.scene import BeamSpec, Scene, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.keys import STRIPS, unstated
 from comparisons.scene.rules import Point
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     """
     from fem_reference import Contact, EndLoad, Joint, Pin, SolidProblem, Support
 
+    unknown = unstated(scene, "the solid", STRIPS)
+    if unknown is not None:
+        raise ModelError(unknown)
     joints = tuple(Joint(ends=ends) for ends in _joints(scene))
     clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec)}
     return SolidProblem(
@@ -49,6 +53,7 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
         loads=tuple(
             EndLoad(strip=load.beam, end=load.end, force=load.force, moment=load.moment)
             for load in scene.loads
+            if load.end is not None
         ),
         pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
@@ -109,7 +114,7 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     ModelError
         If the rectangle is not slender in the plane.
     """
-    if beam.width is not None and beam.height is not None:
+    if isinstance(beam.width, float) and isinstance(beam.height, float):
         return beam.width, beam.height
     height = beam.rectangle_height
     if height > SLENDER * beam.length:

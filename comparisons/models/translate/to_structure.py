@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
 from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
     from tsm import Beam, Structure, Support
@@ -25,11 +26,14 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     Raises
     ------
     ModelError
-        If there is no such element.
+        If there is no such element, or the scene uses a key that the beams do not state.
     """
     from tsm import ContactPair, Load, Pin, Structure
     from tsm.elements import ELEMENTS, MIXED
 
+    unknown = unstated(scene, "the tangent stiffness method", BEAMS)
+    if unknown is not None:
+        raise ModelError(unknown)
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
     kind = MIXED if element is None else ELEMENTS[element]

@@ -125,7 +125,7 @@ BAD = {
     "support twice": (FEET, FEET + support("girder.end", CLAMPED), 'support[2].end = "girder.end": must not be supported twice, "girder.end" is there'),
     "joint supported by both": (FEET, FEET + support("column.end", CLAMPED) + support("girder.start", CLAMPED), 'support[3].end = "girder.start": must not be supported twice, "column.end" is there'),
     "clamp and support": (FEET, FEET.replace("girder.end", "girder.end") + support("column.start", CLAMPED), 'support[2].end = "column.start": must not be supported twice'),
-    "nothing held": (FEET, "", 'beam[0].clamped = []: beam "column" is free: clamp it, give it a [[support]] or join it to a beam that has one'),
+    "nothing held": (FEET, "", 'beam[0].clamped = []: beam "column" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'),
     "one hinge": (support("girder.end", PINNED), "", 'beam[0].clamped = []: beam "column" can move without strain'),
     "only x held": (FEET, support("column.start", 'kind = "roller"', 'free = "y"'), 'beam "column" can move without strain'),
     "two rollers and no x": (PINNED, 'kind = "roller"\nfree = "x"', 'beam "column" can move without strain'),

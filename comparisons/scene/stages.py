@@ -1,0 +1,166 @@
+"""Stages that follow the first one of a scene: what they move on from where the stage before ended."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from comparisons.scene import rules
+from comparisons.scene.amounts import amount
+from comparisons.scene.conditions import LoadSpec
+from comparisons.scene.rules import (
+    MISSING,
+    Count,
+    FieldError,
+    Name,
+    Number,
+    Point,
+    Vector,
+    apply_rules,
+    exactly_one_of,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinMove:
+    """A pin's motion during a stage, at constant speed by the load parameter.
+
+    Parameters
+    ----------
+    name : str
+        Name of the pin.
+    displacement : (float, float)
+        A straight motion from where the pin is [length].
+    path : tuple of (float, float)
+        The points that the pin moves to, one after another, instead of `displacement` [length].
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    displacement: Vector | None = None
+    path: Annotated[tuple[Point, ...], rules.further_points] | None = None
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        exactly_one_of(vars(self), (("displacement",), ("path",)))
+        if self.displacement is not None and not any(self.displacement):
+            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SupportMove:
+    """A support's motion during a stage, in proportion to the load parameter.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end; it has a support.
+    displacement : (float, float)
+        Displacement during the stage [length]; zero in a free direction.
+    rotation : float
+        Rotation during the stage, anticlockwise [rad].
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    beam: Name
+    end: Annotated[str, rules.choice("start", "end")]
+    displacement: Vector = (0.0, 0.0)
+    rotation: Number = 0.0
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        if not any(self.motion):
+            raise FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
+
+    @property
+    def node(self) -> str:
+        """Name of the end, as ``upper.end``."""
+        return f"{self.beam}.{self.end}"
+
+    @property
+    def motion(self) -> tuple[float, float, float]:
+        """Displacement x, y and rotation during the stage."""
+        return (*self.displacement, self.rotation)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageSpec:
+    """A stage after the first one: pins, supports and loads change on from where the stage before ended; all others rest.
+
+    The first stage is the scene without its stages, at load parameters from 0 to 1. The stages follow in the order of the file, the
+    second one at load parameters from 1 to 2.
+
+    Parameters
+    ----------
+    name : str, optional
+        Letters, digits, ``-`` and ``_``.
+    load_parameters : int
+        Number of load parameters of the stage, equally spaced.
+    pin : tuple of PinMove
+        Motions of pins, as ``[{ name = "pin", displacement = [0.0, -0.1] }]``; `path` is possible instead of `displacement`.
+    support : tuple of SupportMove
+        Motions of supports, as ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1], rotation = 0.0 }]``.
+    load : tuple of LoadSpec
+        Changes of loads, as ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, with the keys of ``[[load]]``.
+    gravity : (float, float)
+        Change of the acceleration of gravity [length/time^2].
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name | None = None
+    load_parameters: Count
+    pin: Annotated[tuple[PinMove, ...], rules.records(PinMove)] = ()
+    support: Annotated[tuple[SupportMove, ...], rules.records(SupportMove)] = ()
+    load: Annotated[tuple[LoadSpec, ...], rules.records(LoadSpec)] = ()
+    gravity: Vector = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        apply_rules(self)
+        if not (self.pin or self.support or self.load or any(self.gravity)):
+            raise FieldError(
+                "pin", MISSING, "give pin, support, load or gravity: nothing happens in the stage"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadHistory:
+    """A load through all stages.
+
+    Parameters
+    ----------
+    load : LoadSpec
+        Where the load acts, with the amounts of the first stage that states it.
+    increments : tuple of (float, float, float)
+        Change of force x, y and moment in every stage; for a load per length, change of the force per length and zero.
+    """
+
+    load: LoadSpec
+    increments: tuple[tuple[float, float, float], ...]
+
+    def at(self, load_parameter: float) -> tuple[float, ...]:
+        """Return force x, y and moment, or the force per length and zero, at `load_parameter`."""
+        return amount(self.increments, load_parameter)
+
+
+def load_histories(stages: tuple[tuple[LoadSpec, ...], ...]) -> tuple[LoadHistory, ...]:
+    """Return the loads of all stages, place by place in the order of the file."""
+    first: dict[str, LoadSpec] = {}
+    for load in (load for loads in stages for load in loads):
+        first.setdefault(load.node, load)
+    amounts = [{load.node: load.amount for load in loads} for loads in stages]
+    return tuple(
+        LoadHistory(load=load, increments=tuple(given.get(node, (0.0, 0.0, 0.0)) for given in amounts))
+        for node, load in first.items()
+    )
