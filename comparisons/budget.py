@@ -133,19 +133,14 @@ def _values(scene: Scene, model: str, options: Options | None = None) -> Values:
 
 
 def _kinds(response: Response, scene: Scene) -> dict[str, Values]:
-    """Return the histories of all quantities by kind, and by pair or supported beam."""
+    """Return the histories of all quantities by kind, and by pair or supported end."""
     acting = {name: size(values) for name, values in forces(response).items()}
-    turning = {name: values for name, values in moments(response).items() if _held(scene, name)}
+    held = {item.node for item in scene.all_supports if "rotation" in item.held}
+    turning = {node: values for node, values in moments(response).items() if node in held}
     if not response.contacts:
         return {"support_force": acting, "clamp_moment": turning}
     arcs = {pair: contact.arc_position for pair, contact in response.contacts.items()}
     return {"contact_force": acting, "arc_position": arcs, "clamp_moment": turning}
-
-
-def _held(scene: Scene, name: str) -> bool:
-    """Whether the support of a column of `comparisons.errors.moments` holds the rotation."""
-    beam, _, other = name.partition(".")
-    return "rotation" in scene.supports_of(beam)[bool(other)].held
 
 
 def _refined(scene: Scene) -> Scene:

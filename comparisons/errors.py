@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.quantities import KEPT, QUANTITIES, SCOPES
-from comparisons.response import Array, Response, SupportHistory
+from comparisons.response import Array, Response
 from comparisons.response.axis import STATIONS, axes_at_stations
 from comparisons.response.material import frictions
 from comparisons.scene import Scene
@@ -52,20 +52,15 @@ def _largest_size(columns: Iterable[Array]) -> float:
 
 
 def forces(response: Response) -> dict[str, Array]:
-    """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by beam and end."""
+    """Return the contact forces, shape (s,) by pair. Without contact, return the support forces, shape (s, 2) by supported end."""
     if response.contacts:
         return {pair: contact.force for pair, contact in response.contacts.items()}
-    return {name: support.force for name, support in _all_supports(response).items()}
+    return {node: support.force for node, support in response.supports.items()}
 
 
 def moments(response: Response) -> dict[str, Array]:
-    """Return the support moments, shape (s,) by beam and end."""
-    return {name: support.moment for name, support in _all_supports(response).items()}
-
-
-def _all_supports(response: Response) -> dict[str, SupportHistory]:
-    ends = {f"{beam}.other_end": support.other_end for beam, support in response.supports.items()}
-    return dict(response.supports) | {name: end for name, end in ends.items() if end is not None}
+    """Return the support moments, shape (s,) by supported end."""
+    return {node: support.moment for node, support in response.supports.items()}
 
 
 def size(values: Array) -> Array:

@@ -134,12 +134,15 @@ class Model:
         return sizes_of(lengths, joined_extents(self.element_nodes, starts, coordinates, lengths), EI)
 
     def _prescribe(self, structure: Structure) -> None:
-        self.support_node: dict[str, int] = {}
+        self.supports: dict[str, tuple[int, Array]] = {}
         self.prescribed: dict[int, float] = {}
         for support in structure.supports:
             node = self.end_node(f"{support.beam}.{support.end}")
-            self.support_node[f"{support.beam}.{support.end}"] = node
-            for k, value in enumerate((support.ux, support.uy, support.rotation)):
+            motion = (support.ux, support.uy, support.rotation)
+            held = np.array([value is not None for value in motion])
+            held &= [3 * node + k not in self.prescribed for k in range(3)]
+            self.supports[f"{support.beam}.{support.end}"] = node, held
+            for k, value in enumerate(motion):
                 if value is not None:
                     if self.prescribed.get(3 * node + k, value) != value:
                         raise ValueError(

@@ -29,8 +29,8 @@ def summary(result: Result) -> str:
             arc = contact.arc_position[-1]
             where = "open" if np.isnan(arc) else f"force {contact.force[-1]:.9g} at arc position {arc:.9g}"
             lines.append(f"  {pair}: {where}")
-        for beam, support in result.supports.items():
-            lines.append(f"  {beam}: support moment {support.moment[-1]:.9g}")
+        for node, support in result.supports.items():
+            lines.append(f"  {node}: support moment {support.moment[-1]:.9g}")
         for beam, tip in result.tips.items():
             lines.append(f"  {beam}: end at ({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g})")
     counts: dict[str, int] = {}
@@ -45,7 +45,7 @@ def arrays(result: Result) -> dict[str, Array]:
     """Return the histories by name, each with the s load parameters first: what ``numpy.savez`` and data frames take.
 
     ``load_parameter``, ``newton_iterations``, ``{node->beam}.force``, ``.arc_position``, ``.gap``, ``{beam}.tip`` (s, 2),
-    ``{beam}.support_force`` (s, 2), ``{beam}.support_moment``.
+    ``{beam}.start.support_force`` (s, 2) and ``{beam}.start.support_moment`` for each supported end.
     """
     named = {"load_parameter": result.load_parameter, "newton_iterations": result.newton_iterations}
     for pair, contact in result.contacts.items():
@@ -57,9 +57,9 @@ def arrays(result: Result) -> dict[str, Array]:
                 named[f"{pair}.{name}"] = getattr(contact.friction, name)
     for beam, tip in result.tips.items():
         named[f"{beam}.tip"] = tip
-    for beam, support in result.supports.items():
-        named[f"{beam}.support_force"] = support.force
-        named[f"{beam}.support_moment"] = support.moment
+    for node, support in result.supports.items():
+        named[f"{node}.support_force"] = support.force
+        named[f"{node}.support_moment"] = support.moment
     return named
 
 

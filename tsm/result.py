@@ -68,14 +68,14 @@ class FrictionHistory:
 
 @dataclass(frozen=True, kw_only=True)
 class SupportHistory:
-    """What the supports of a beam exert on it.
+    """What a support exerts on the end of its beam.
 
     Attributes
     ----------
     force : ndarray, shape (s, 2)
-        Force (x, y).
+        Force (x, y), zero in a free direction.
     moment : ndarray, shape (s,)
-        Moment about the supported node, anticlockwise; of both ends, the first that is supported.
+        Moment about the supported end, anticlockwise; zero where the rotation is free.
     """
 
     force: Array
@@ -97,7 +97,7 @@ class Result:
     contacts : dict of ContactHistory
         By pair name, ``node->beam``.
     supports : dict of SupportHistory
-        By beam.
+        By supported end, ``beam.start``.
     tips : dict of ndarray, shape (s, 2)
         Position of the beam's end, by beam.
     newton_iterations : ndarray of int, shape (s,)
@@ -305,18 +305,12 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
 
 
 def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
-    """Reactions on the supported nodes of every beam."""
-    held = np.zeros(model.dof_count, dtype=bool)
-    held[model.fixed] = True
-    reactions = [np.where(held, e.system.nodal, 0.0).reshape(-1, 3) for e in equilibria]
-    nodes: dict[str, list[int]] = {}
-    for name, node in model.support_node.items():
-        nodes.setdefault(name.rpartition(".")[0], []).append(node)
+    """Reactions of the supports on the components that they hold; a component held twice at a joint is counted once."""
     tables = {
-        beam: np.array([forces[held_nodes] for forces in reactions]).reshape(-1, len(held_nodes), 3)
-        for beam, held_nodes in nodes.items()
+        name: np.array([np.where(held, e.system.nodal[3 * node : 3 * node + 3], 0.0) for e in equilibria])
+        for name, (node, held) in model.supports.items()
     }
     return {
-        beam: SupportHistory(force=table[:, :, :2].sum(axis=1), moment=table[:, 0, 2])
-        for beam, table in tables.items()
+        name: SupportHistory(force=table.reshape(-1, 3)[:, :2], moment=table.reshape(-1, 3)[:, 2])
+        for name, table in tables.items()
     }

@@ -152,7 +152,7 @@ def _answers(response: Response) -> dict[str, float]:
     tables: dict[str, dict[str, Array]] = {
         "force": {pair: contact.force for pair, contact in response.contacts.items()},
         "arc_position": {pair: contact.arc_position for pair, contact in response.contacts.items()},
-        "moment": {beam: support.moment for beam, support in response.supports.items()},
+        "moment": {node: support.moment for node, support in response.supports.items()},
         "tip_x": {beam: tip[:, 0] for beam, tip in response.tips.items()},
         "tip_y": {beam: tip[:, 1] for beam, tip in response.tips.items()},
     }

@@ -10,7 +10,7 @@ from comparisons.files import OutputError, writable_file
 
 APPLICATION = 0x54534D58
 """The application id in the header of the SQLite file ("TSMX"), which marks it as a results file."""
-VERSION = 2
+VERSION = 3
 """Version of the tables and of their contents."""
 PATIENCE = 60.0
 """Seconds to wait for other writers."""

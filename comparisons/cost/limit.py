@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.errors import forces, size
-from comparisons.response import Array, Response, SupportHistory
+from comparisons.response import Array, Response
 from comparisons.response.axis import SampledAxes, sampled_axes
 
 Tables = dict[str, Array]
@@ -28,7 +28,7 @@ def extrapolated(responses: Sequence[Response]) -> Response:
         return {name: values + factor * last[name] for name, values in fine.items()}
 
     best = responses[-1]
-    force, moment = limit(forces), limit(lambda one: {beam: s.moment for beam, s in one.supports.items()})
+    force, moment = limit(forces), limit(lambda one: {node: s.moment for node, s in one.supports.items()})
     arc = limit(lambda one: {pair: contact.arc_position for pair, contact in one.contacts.items()})
     return replace(
         best,
@@ -37,8 +37,9 @@ def extrapolated(responses: Sequence[Response]) -> Response:
             for pair, contact in best.contacts.items()
         },
         supports={
-            beam: _supported(replace(support, moment=moment[beam]), beam, force)
-            for beam, support in best.supports.items()
+            # with contacts only their forces are extrapolated
+            node: replace(support, force=force.get(node, support.force), moment=moment[node])
+            for node, support in best.supports.items()
         },
         material_force=limit(lambda one: one.material_force),
         tips=limit(lambda one: one.tips),
@@ -55,14 +56,6 @@ def _remainder(before: Sequence[Array], last: Sequence[Array]) -> float:
         for parts in (before, last)
     )
     return d2 / (d1 - d2) if 0.0 < 1.1 * d2 < d1 else 0.0
-
-
-def _supported(support: SupportHistory, beam: str, force: Tables) -> SupportHistory:
-    """Return the support with the extrapolated force, if the scene has no contact; with contacts only their forces are extrapolated."""
-    other = support.other_end
-    if other is not None:
-        other = replace(other, force=force.get(f"{beam}.other_end", other.force))
-    return replace(support, force=force.get(beam, support.force), other_end=other)
 
 
 def end_state(reference: Response) -> float:

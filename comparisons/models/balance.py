@@ -85,13 +85,10 @@ def _place(response: Response, scene: Scene, node: str) -> Array:
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
-    actions: list[Action] = []
-    for beam, first in response.supports.items():
-        stated = [first] if first.other_end is None else [first, first.other_end]
-        for spec, history in zip(scene.supports_of(beam), stated, strict=True):
-            place = _place(response, scene, spec.node)
-            actions.append(_action(scene, history.force, place, history.moment))
-    return actions
+    return [
+        _action(scene, history.force, _place(response, scene, node), history.moment)
+        for node, history in response.supports.items()
+    ]
 
 
 def _loads(response: Response, scene: Scene) -> list[Action]:

@@ -25,7 +25,7 @@ from comparisons.response import (
     Response,
     SupportHistory,
 )
-from comparisons.scene import Scene, SupportSpec
+from comparisons.scene import Scene
 
 if TYPE_CHECKING:
     from tsm.elements import ElementType
@@ -62,7 +62,6 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     return replace(
         response,
         tips=_tips(scene, response, lambda beam, k: result.shape(beam, k)[:, :2]),
-        supports=_by_beam(scene, lambda support: _reaction(support, result)),
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
@@ -131,26 +130,6 @@ def _solid_friction(history: Any) -> FrictionHistory:
     )
 
 
-def _by_beam(scene: Scene, reaction: Callable[[SupportSpec], SupportHistory]) -> dict[str, SupportHistory]:
-    """Return the reactions of the supports by beam."""
-    supports: dict[str, SupportHistory] = {}
-    for beam in scene.beams:
-        own = [reaction(support) for support in scene.supports_of(beam.name)]
-        if own:
-            supports[beam.name] = replace(own[0], other_end=own[1]) if len(own) > 1 else own[0]
-    return supports
-
-
-def _reaction(support: SupportSpec, result: Any) -> SupportHistory:
-    """Forces on the held components of a supported node."""
-    node = 3 * result.model.end_node(support.node)
-    held = [value is not None for value in support.motion]
-    table = _rows(
-        [np.where(held, state.system.nodal[node : node + 3], 0.0) for state in result.equilibria], 3
-    )
-    return SupportHistory(force=table[:, :2], moment=table[:, 2])
-
-
 def _rows(rows: list[Any], width: int) -> Array:
     return np.array(rows, dtype=np.float64).reshape(-1, width)
 
@@ -197,9 +176,6 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         )
         for contact in problem.contacts
     }
-    supports = {
-        node: SupportHistory(force=one.force, moment=one.moment) for node, one in result.supports.items()
-    }
     turn = 2 * np.max([_half_turns(response, beam.name) for beam in scene.beams], axis=0)
     deformation = Deformation(
         load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
@@ -208,7 +184,6 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         response,
         contacts=contacts,
         tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
-        supports=_by_beam(scene, lambda support: supports[support.node]),
         material_force=j_integrals(scene, result),
         deformation=deformation,
     )
@@ -228,7 +203,7 @@ def _response(
     axis_line: Callable[[str, int], tuple[Array, Array]],
     grid: Callable[[int], Grid],
 ) -> Response:
-    """Return the response with the fields that the results of both solvers share; it has no supports and tips."""
+    """Return the response with the fields that the results of both solvers share; it has no tips."""
     contacts = {
         pair: ContactHistory(
             force=history.force,
@@ -246,7 +221,10 @@ def _response(
         completed=result.status.name == "COMPLETED",
         load_parameter=result.load_parameter,
         contacts=contacts,
-        supports={},
+        supports={
+            node: SupportHistory(force=one.force, moment=one.moment)
+            for node, one in ((item.node, result.supports[item.node]) for item in scene.all_supports)
+        },
         tips={},
         newton_iterations=result.newton_iterations,
         cutbacks=result.cutbacks,

@@ -1,7 +1,7 @@
 """Responses of the two exact models: Reissner's rod and the elastica."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from time import perf_counter
 
@@ -149,9 +149,10 @@ def local_response(
     support = SupportHistory(
         force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
     )
+    clamp, tip = (f"{name}.{end}" for end in (("end", "start") if local.from_end else ("start", "end")))
+    supports = {clamp: support}
     if local.contact is None:
-        at_tip = SupportHistory(force=-support.force, moment=np.zeros(reached))
-        support = replace(support, other_end=at_tip)
+        supports[tip] = SupportHistory(force=-support.force, moment=np.zeros(reached))
     return Response(
         model=model,
         scene=scene.name,
@@ -164,7 +165,7 @@ def local_response(
         completed=stop is None,
         load_parameter=times[:reached],
         contacts=_contacts(scene, local, states, reached),
-        supports={name: support},
+        supports=supports,
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
         cutbacks=0,

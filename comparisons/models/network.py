@@ -130,18 +130,11 @@ def _work(friction: dict[str, FrictionHistory], states: States) -> Array | None:
 
 
 def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:
-    """Reactions by beam, in the order of `Scene.supports_of`."""
-    supports: dict[str, SupportHistory] = {}
-    for beam in scene.beams:
-        tables = [
-            _rows([state.reactions[support.node] for state in states], 3)
-            for support in scene.supports_of(beam.name)
-        ]
-        for table in reversed(tables):
-            supports[beam.name] = SupportHistory(
-                force=table[:, :2], moment=table[:, 2], other_end=supports.get(beam.name)
-            )
-    return supports
+    """Reactions by supported end."""
+    tables = {
+        item.node: _rows([state.reactions[item.node] for state in states], 3) for item in scene.all_supports
+    }
+    return {node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in tables.items()}
 
 
 def _axis(scene: Scene, beam: str, state: Equilibrium) -> tuple[Array, Array]:

@@ -113,12 +113,9 @@ def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
         yield f"force of {pair}", contact.force
         yield f"arc position of {pair}", contact.arc_position[closed]
         yield f"gap of {pair}", contact.gap[closed]
-    for beam, support in response.supports.items():
-        yield f"support force of {beam}", support.force
-        yield f"support moment of {beam}", support.moment
-        if support.other_end is not None:
-            yield f"second support force of {beam}", support.other_end.force
-            yield f"second support moment of {beam}", support.other_end.moment
+    for node, support in response.supports.items():
+        yield f"support force of {node}", support.force
+        yield f"support moment of {node}", support.moment
     for beam, tip in response.tips.items():
         yield f"tip of {beam}", tip
 

@@ -123,8 +123,8 @@ def impossible(response: Response, scene: Scene, k: int) -> Iterator[str]:
         yield f"the load parameter {response.load_parameter[k]:.6g} is none of the scene's"
     elif response.contacts.keys() != {spec.pair for spec in scene.contacts}:
         yield "the contact pairs are not the scene's"
-    elif response.supports.keys() != {support.beam for support in scene.all_supports}:
-        yield "the supported beams are not the scene's"
+    elif response.supports.keys() != {support.node for support in scene.all_supports}:
+        yield "the supported ends are not the scene's"
     else:
         for spec in scene.contacts:
             yield from _impossible_contact(response.contacts[spec.pair], scene, spec, k)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.friction import Grip
 from comparisons.referee.layout import NONE, Layout, Part, Position
-from comparisons.response import Response, SupportHistory
+from comparisons.response import Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -54,11 +54,6 @@ class AnswerState:
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     """Return the state of `response` at its load parameter number k."""
     closed = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
-    reactions: dict[str, tuple[float, float, float]] = {}
-    for beam, first in response.supports.items():
-        stated: list[SupportHistory] = [first] if first.other_end is None else [first, first.other_end]
-        for spec, item in zip(scene.supports_of(beam), stated, strict=False):
-            reactions[spec.node] = (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
         arcs={pair: float(item.arc_position[k]) for pair, item in closed.items()},
@@ -69,7 +64,10 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
             for pair, item in closed.items()
         },
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
-        reactions=reactions,
+        reactions={
+            node: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
+            for node, item in response.supports.items()
+        },
         tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
         drags={
             pair: float(item.friction.tangential[k])

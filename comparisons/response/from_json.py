@@ -62,9 +62,7 @@ def restated(data: Any) -> Response:
     contacts = {
         pair: _contact(item, f"contacts.{pair}.", steps) for pair, item in _tables(data, "contacts").items()
     }
-    supports = {
-        beam: _support(item, f"supports.{beam}.", steps) for beam, item in _tables(data, "supports").items()
-    }
+    supports = {node: _support(node, item, steps) for node, item in _tables(data, "supports").items()}
     tips = _table(data, "tips")
     material = _table({"material_force": {}, **data}, "material_force")
     iterations = _given(data, "newton_iterations", (steps,))
@@ -218,14 +216,15 @@ def _friction(data: Any, prefix: str, steps: int) -> FrictionHistory:
     )
 
 
-def _support(data: dict[str, Any], prefix: str, steps: int) -> SupportHistory:
-    other = (
-        _support(_table(data, "other_end", prefix), f"{prefix}other_end.", steps)
-        if "other_end" in data
-        else None
-    )
+def _support(node: str, data: dict[str, Any], steps: int) -> SupportHistory:
+    if "." not in node:
+        rule = (
+            f"must be by the supported end, as {node}.start; versions up to 0.5 wrote the beam: solve again"
+        )
+        raise FieldError(f"supports.{node}", MISSING, rule)
+    prefix = f"supports.{node}."
     force, moment = _numbers(data, "force", (steps, 2), prefix), _numbers(data, "moment", (steps,), prefix)
-    return SupportHistory(force=force, moment=moment, other_end=other)
+    return SupportHistory(force=force, moment=moment)
 
 
 def _events(data: dict[str, Any]) -> tuple[ContactEvent, ...] | None:

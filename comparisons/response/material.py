@@ -58,7 +58,7 @@ def material_forces(response: Response, scene: Scene, *, strains: bool = True) -
     """
     found = {}
     for name, clamp in clamped(scene).items():
-        beam, support = scene.beam(name), response.supports.get(name)
+        beam, support = scene.beam(name), response.supports.get(clamp.node)
         if support is None:
             continue
         EA, GA = (beam.EA, beam.GA) if strains else (math.inf, math.inf)

@@ -77,23 +77,18 @@ class FrictionHistory:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportHistory:
-    """Force and moment of a support on its beam. Where a beam has two supports, the record has the one with more held components.
-
-    If both supports hold equally many components, the record has the support at the start.
+    """Force and moment of a support on the end of its beam.
 
     Attributes
     ----------
     force : ndarray, shape (s, 2)
-        Force of the support.
+        Force of the support, zero in a free direction.
     moment : ndarray, shape (s,)
-        Moment about the supported point, zero where the rotation is free.
-    other_end : SupportHistory or None
-        Record of a second support at the other end of the beam.
+        Moment about the supported end, zero where the rotation is free.
     """
 
     force: Array
     moment: Array
-    other_end: "SupportHistory | None" = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +208,7 @@ class Response:
     events : tuple of ContactEvent or None
         Contact events in their order; None for a model that does not locate events.
     supports : dict of SupportHistory
-        By beam; beams without a support are left out.
+        By supported end, ``beam.start``, in the order of `Scene.all_supports`.
     tips : dict of ndarray, shape (s, 2)
         Position of the tip of each beam, the end with fewer held components. At equality the tip is the beam's ``end``.
     newton_iterations : ndarray of int, shape (s,)

@@ -13,7 +13,6 @@ from comparisons.response import (
     ContactHistory,
     FrictionHistory,
     Response,
-    SupportHistory,
 )
 from comparisons.response.axis import sampled_axes
 from comparisons.version import versions
@@ -30,8 +29,7 @@ def as_json(response: Response, **more: Any) -> str:
 def as_dict(response: Response) -> dict[str, Any]:
     """Return what a response states, by the names of the JSON file.
 
-    ``supports.{beam}`` holds moment and force of a support, and ``other_end`` in it the moment and force of a second support. For a
-    clamped beam with a moved tip, the first support is the clamp and the second the support of the tip. ``events`` is null for a
+    ``supports.{node}`` holds moment and force of the support of a beam's end, ``supports.column.start``. ``events`` is null for a
     model that does not locate events. ``axes.{beam}`` holds the arc lengths of points of the axis and their positions at every
     load parameter. `comparisons.response.from_json.restated` reads all tables except the certificate.
     """
@@ -56,7 +54,10 @@ def as_dict(response: Response) -> dict[str, Any]:
             }
             for pair, contact in response.contacts.items()
         },
-        "supports": {beam: _support(support) for beam, support in response.supports.items()},
+        "supports": {
+            node: {"moment": support.moment, "force": support.force}
+            for node, support in response.supports.items()
+        },
         "material_force": response.material_force,
         "tips": response.tips,
         "axes": {
@@ -78,11 +79,6 @@ def as_dict(response: Response) -> dict[str, Any]:
     }
 
 
-def _support(support: SupportHistory) -> dict[str, Any]:
-    own = {"moment": support.moment, "force": support.force}
-    return own if support.other_end is None else {**own, "other_end": _support(support.other_end)}
-
-
 def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()) -> str:
     """Return a few lines for a reader: the status, the last state reached, and the lines `more`."""
     force, length = (unit.strip() for unit in units.split(","))
@@ -95,11 +91,10 @@ def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()
                 rows.append((f"{pair} arc position", f"{contact.arc_position[-1]:.9g} {length}"))
             if contact.friction is not None:
                 rows += _friction_rows(pair, contact, contact.friction, (force, length))
-        for beam, support in response.supports.items():
-            rows.append((f"{beam} support moment", f"{support.moment[-1]:.9g} {force} {length}"))
-            if support.other_end is not None:
-                x, y = support.other_end.force[-1]
-                rows.append((f"{beam} other end's force", f"({x:.9g}, {y:.9g}) {force}"))
+        for node, support in response.supports.items():
+            x, y = support.force[-1]
+            rows.append((f"{node} support force", f"({x:.9g}, {y:.9g}) {force}"))
+            rows.append((f"{node} support moment", f"{support.moment[-1]:.9g} {force} {length}"))
         rows += [
             (f"{beam} tip", f"({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g}) {length}")
             for beam, tip in response.tips.items()

@@ -53,7 +53,8 @@ def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
     force = np.zeros_like(start)
     for i, (contact, _) in enumerate(pins):
         history = response.contacts[contact.pair]
-        force[i] = -response.supports[contact.beam].force[k] if history.vector is None else history.vector[k]
+        held = sum(support.force[k] for support in response.supports.values())
+        force[i] = -held if history.vector is None else history.vector[k]
     data = {
         "displacement": deformed - start,
         "deformed": deformed,

@@ -63,7 +63,7 @@ def test_nothing_of_the_picture_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> N
     kept: list[Any] = []
     monkeypatch.setattr(budget_plot, "save", lambda fig, *_: kept.append(fig))
     parts = {name: np.full(4, 1e-12 if name == "load steps" else 1e-3) for name in PARTS}
-    names = ("contact_force long-name->beam", "clamp_moment beam.other_end", "arc_position", "support_force")
+    names = ("contact_force long-name->beam", "clamp_moment beam.end", "arc_position", "support_force")
     plot_budget(
         Budget(
             scene="made-up", total=dict.fromkeys(names, np.full(4, 6e-3)), parts=dict.fromkeys(names, parts)

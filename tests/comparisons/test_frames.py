@@ -31,7 +31,7 @@ def test_roll_up_by_an_end_moment() -> None:
     expected = np.array([tip_under_moment(2.0 * np.pi * t) for t in response.load_parameter])
     np.testing.assert_allclose(response.tips["beam"], expected, atol=2e-5)
     np.testing.assert_allclose(
-        response.supports["beam"].moment, -2.0 * np.pi * response.load_parameter, rtol=1e-9
+        response.supports["beam.start"].moment, -2.0 * np.pi * response.load_parameter, rtol=1e-9
     )
     assert (response.contacts, response.events) == ({}, ())
 
@@ -42,27 +42,26 @@ def test_dead_load_at_the_tip() -> None:
     expected = np.array([tip_under_dead_load(10.0 * t) for t in response.load_parameter])
     np.testing.assert_allclose(response.tips["beam"], expected, atol=1e-4)
     np.testing.assert_allclose(
-        response.supports["beam"].force, np.outer(response.load_parameter, [0.0, -10.0]), atol=1e-9
+        response.supports["beam.start"].force, np.outer(response.load_parameter, [0.0, -10.0]), atol=1e-9
     )
 
 
 def test_settlement_of_a_beam_clamped_at_both_ends() -> None:
-    """``Q = 12 EI d/L^3``, ``M = 6 EI d/L^2``; the start is stated first, the other end beside it."""
+    """``Q = 12 EI d/L^3``, ``M = 6 EI d/L^2``; each support is stated by the name of its end."""
     beam = BeamSpec(name="beam", start=(0, 0), end=(1, 0), clamped=("start",), **STIFF)  # type: ignore[arg-type]
     moved = SupportSpec(beam="beam", end="end", kind="clamped", displacement=(0.0, 1e-6))
     response = solve(Scene(name="s", load_parameters=2, beams=(beam,), supports=(moved,)), "tsm")
     assert response.completed, response.message
-    first, other = response.supports["beam"], response.supports["beam"].other_end
-    assert other is not None
+    first, other = response.supports["beam.start"], response.supports["beam.end"]
     shear = 1.0 / (1.0 + 12.0 / 1e6)
     assert [first.force[-1, 1], other.force[-1, 1]] == pytest.approx(
         [-12e-6 * shear, 12e-6 * shear], rel=1e-6
     )
     assert first.force[-1, 0] == pytest.approx(-other.force[-1, 0])  # the stretch, of second order
     assert [first.moment[-1], other.moment[-1]] == pytest.approx([-6e-6, -6e-6], rel=1e-4)
-    stated = json.loads(as_json(response))["supports"]["beam"]
-    assert list(stated) == ["moment", "force", "other_end"]
-    assert stated["other_end"] == {"moment": list(other.moment), "force": other.force.tolist()}
+    stated = json.loads(as_json(response))["supports"]
+    assert list(stated) == ["beam.start", "beam.end"]
+    assert stated["beam.end"] == {"moment": list(other.moment), "force": other.force.tolist()}
 
 
 def portal() -> Scene:
@@ -90,8 +89,8 @@ def frame() -> Response:
 
 
 def test_a_portal_frame_is_in_balance_and_its_roller_is_free(frame: Response) -> None:
-    assert list(frame.supports) == ["left", "right"]
-    roller, clamp = frame.supports["right"], frame.supports["left"]
+    assert list(frame.supports) == ["left.start", "right.start"]
+    roller, clamp = frame.supports["right.start"], frame.supports["left.start"]
     assert np.all(roller.force[:, 0] == 0.0)
     assert np.all(roller.moment == 0.0)
     np.testing.assert_allclose(clamp.force[-1] + roller.force[-1], [-0.1, 0.5], atol=1e-9)
@@ -100,24 +99,30 @@ def test_a_portal_frame_is_in_balance_and_its_roller_is_free(frame: Response) ->
     assert abs(foot[0] - 5.0) > 1e-3
     corner = [frame.axis_line(beam, 4)[1][end] for beam, end in (("left", -1), ("girder", 0))]
     np.testing.assert_allclose(corner[0], corner[1], atol=1e-14)
-    assert "left support moment" in summary(frame, "N, m")
+    assert "left.start support moment" in summary(frame, "N, m")
 
 
-def changed(beam: str, **changes: Callable[[np.ndarray], np.ndarray]) -> Callable[[Response], Response]:
+def changed(node: str, **changes: Callable[[np.ndarray], np.ndarray]) -> Callable[[Response], Response]:
     def change(response: Response) -> Response:
-        old = response.supports[beam]
+        old = response.supports[node]
         new: SupportHistory = replace(old, **{key: edit(getattr(old, key)) for key, edit in changes.items()})
-        return replace(response, supports={**response.supports, beam: new})
+        return replace(response, supports={**response.supports, node: new})
 
     return change
 
 
 BREAKS: dict[str, tuple[Callable[[Response], Response], str]] = {
-    "force of one support": (changed("right", force=lambda force: force * (1 + 1e-4)), "support reactions"),
-    "moment of the clamp": (changed("left", moment=lambda moment: moment * (1 + 1e-4)), "support moments"),
-    "moment of a roller": (changed("right", moment=lambda moment: moment + 1e-3), "support moments"),
+    "force of one support": (
+        changed("right.start", force=lambda force: force * (1 + 1e-4)),
+        "support reactions",
+    ),
+    "moment of the clamp": (
+        changed("left.start", moment=lambda moment: moment * (1 + 1e-4)),
+        "support moments",
+    ),
+    "moment of a roller": (changed("right.start", moment=lambda moment: moment + 1e-3), "support moments"),
     "support left out": (
-        lambda response: replace(response, supports={"left": response.supports["left"]}),
+        lambda response: replace(response, supports={"left.start": response.supports["left.start"]}),
         "support reactions",
     ),
     "place of a load": (

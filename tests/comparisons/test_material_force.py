@@ -26,7 +26,7 @@ from tests.comparisons.drawn_cantilevers import BEAM, drawn_cantilevers
 from tests.comparisons.shooting import Array, Shot, rod_with_direction, shoot, tangent
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
-CANTILEVER, PAIR = "cantilever", "pin->cantilever"
+CANTILEVER, CLAMP, PAIR = "cantilever", "cantilever.start", "pin->cantilever"
 ELEMENTS = 10
 
 
@@ -153,7 +153,7 @@ FAULTS = {
 def true_shot() -> Shot:
     """The rod's answer at the last load parameter, as a first guess."""
     rod = solve(KS, "rod")
-    support = rod.supports[CANTILEVER]
+    support = rod.supports[CLAMP]
     return shoot(
         KS.beams[0],
         -support.force[-1],
@@ -165,12 +165,12 @@ def true_shot() -> Shot:
 def answered(shot: Shot) -> Response:
     """The rod's response with the reactions and the contact of another equilibrium at the last load parameter."""
     rod = solve(KS, "rod")
-    support, contact = rod.supports[CANTILEVER], rod.contacts[PAIR]
+    support, contact = rod.supports[CLAMP], rod.contacts[PAIR]
     size = np.append(contact.force[:-1], np.hypot(*shot.force))
     changed = replace(
         rod,
         supports={
-            CANTILEVER: SupportHistory(
+            CLAMP: SupportHistory(
                 force=np.vstack([support.force[:-1], -shot.force]),
                 moment=np.append(support.moment[:-1], -shot.moment),
             )

@@ -57,7 +57,7 @@ def test_response_moves_with_the_scene(model: str, mirrored: bool, from_end: boo
     scale = ours.force.max()
     assert theirs.force == pytest.approx(ours.force, abs=1e-7 * scale)
     assert arc == pytest.approx(ours.arc_position, abs=1e-7)
-    mine, other = here.supports["cantilever"], there.supports["cantilever"]
+    mine, other = here.supports["cantilever.start"], there.supports["cantilever.start"]
     assert other.moment == pytest.approx(sign * mine.moment, abs=1e-7 * scale)
     assert other.force == pytest.approx(mine.force @ turn.T, abs=1e-7 * scale)
     tips = here.tips["cantilever"] @ turn.T + np.array([3.0, -2.0])
@@ -90,15 +90,15 @@ def test_rod_and_elastica_give_the_values_of_theory() -> None:
     rod, elastica = solve(scene, "rod"), solve(scene, "elastica")
     force = [2.971723827275e-04, 1.304991984260e-03, 2.717905910938e-03, 2.288274307175e-03]
     assert rod.contacts[PAIR].force == pytest.approx(force, rel=1e-11)
-    assert rod.supports["cantilever"].moment[-1] < 0.0
+    assert rod.supports["cantilever.start"].moment[-1] < 0.0
     assert elastica.contacts[PAIR].force[-1] == pytest.approx(8.18212814018414 * 2.8e-4, rel=1e-12)
-    assert elastica.supports["cantilever"].moment[-1] == pytest.approx(-np.pi * 2.8e-4, rel=1e-12)
+    assert elastica.supports["cantilever.start"].moment[-1] == pytest.approx(-np.pi * 2.8e-4, rel=1e-12)
 
 
 @pytest.mark.parametrize("options", [Options(elements=10), EXACT])
 def test_tsm_section_forces_balance_the_clamp(options: Options) -> None:
     response = solve(SHORT, "tsm", options)
-    data, support = response.grid(7).point_data, response.supports["cantilever"]
+    data, support = response.grid(7).point_data, response.supports["cantilever.start"]
     assert data["M"][0] == pytest.approx(-support.moment[7], rel=1e-6)
     assert np.hypot(data["N"][0], data["V"][0]) == pytest.approx(np.hypot(*support.force[7]), rel=1e-6)
     assert np.abs(data["M"][-2:]) == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -94,10 +94,9 @@ def actions(response: Response) -> tuple[np.ndarray, np.ndarray]:
     """Contact forces and reaction forces (s, n), and reaction moments (s, m), at every load parameter."""
     forces = [contact.force[:, None] for contact in response.contacts.values()]
     moments = []
-    for first in response.supports.values():
-        for history in filter(None, (first, first.other_end)):
-            forces.append(history.force)
-            moments.append(history.moment[:, None])
+    for history in response.supports.values():
+        forces.append(history.force)
+        moments.append(history.moment[:, None])
     return np.hstack(forces), np.hstack(moments)
 
 

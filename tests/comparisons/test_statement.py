@@ -14,8 +14,10 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT
 from comparisons.response import Response
+from comparisons.response.from_json import restated
 from comparisons.response.to_json import as_json, summary
 from comparisons.scene import PinSpec, Scene, load_scene
+from comparisons.scene.rules import FieldError
 from comparisons.show.pages import tracks
 from comparisons.show.table import Row, table_csv, table_text
 
@@ -41,11 +43,11 @@ def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
         "events", "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
     assert list(data["contacts"][PAIR]) == ["force", "vector", "arc_position", "gap", "slip_off"]
-    assert list(data["supports"][BEAM]) == ["moment", "force"]
+    assert list(data["supports"][f"{BEAM}.start"]) == ["moment", "force"]
     assert list(data["versions"]) == ["python", "numpy", "scipy", "scikit-fem", "tsm-crossval"]
     assert (data["status"], data["model"], data["scene"]) == ("COMPLETED", "tsm", "ks-cantilever")
     assert data["contacts"][PAIR]["force"] == list(beams.contacts[PAIR].force)
-    assert np.shape(data["supports"][BEAM]["force"]) == (5, 2)
+    assert np.shape(data["supports"][f"{BEAM}.start"]["force"]) == (5, 2)
     assert np.shape(data["tips"][BEAM]) == (5, 2)
     assert all(isinstance(count, int) for count in data["newton_iterations"])
 
@@ -95,6 +97,13 @@ def test_events_are_listed_where_the_model_locates_them(rod: Response) -> None:
     assert sum(line.split()[0] in ("touch", "slip-off", "pass-through") for line in lines) == 2
     assert any(line.endswith(" N m released") for line in lines)
     assert json.loads(as_json(rod))["events"] is None
+
+
+def test_a_file_that_names_the_beam_of_a_reaction_is_refused(beams: Response) -> None:
+    data = json.loads(as_json(beams))
+    data["supports"] = {BEAM: data["supports"][f"{BEAM}.start"]}
+    with pytest.raises(FieldError, match=r"supports.cantilever.*as cantilever.start; .* solve again$"):
+        restated(data)
 
 
 def test_errors_are_relative_to_the_largest_reference(rod: Response) -> None:

@@ -15,7 +15,7 @@ from comparisons.response import Response
 from comparisons.scene import LoadSpec, Scene, SupportSpec, load_scene
 
 TIED = load_scene("ks-tied-tip")
-BEAM = "cantilever"
+BEAM, CLAMPED = "cantilever", "cantilever.start"
 TURN = np.array([[0.6, -0.8], [0.8, 0.6]])
 
 
@@ -37,11 +37,10 @@ def rod() -> Response:
     return solve(TIED, "rod")
 
 
-def at_tip(response: Response) -> np.ndarray:
-    other = response.supports[BEAM].other_end
-    assert other is not None
-    assert np.all(other.moment == 0.0)
-    return other.force
+def at_tip(response: Response, scene: Scene = TIED) -> np.ndarray:
+    (tip,) = (response.supports[item.node] for item in scene.supports)
+    assert np.all(tip.moment == 0.0)
+    return tip.force
 
 
 def test_the_rod_states_clamp_and_tip(rod: Response) -> None:
@@ -56,8 +55,8 @@ def test_the_rod_states_clamp_and_tip(rod: Response) -> None:
     assert rod.completed, rod.message
     assert rod.contacts == {}
     np.testing.assert_allclose(at_tip(rod), path.force[1:], rtol=1e-12)
-    np.testing.assert_allclose(rod.supports[BEAM].force, -path.force[1:], rtol=1e-12)
-    np.testing.assert_allclose(rod.supports[BEAM].moment, path.clamp_moment[1:], rtol=1e-12)
+    np.testing.assert_allclose(rod.supports[CLAMPED].force, -path.force[1:], rtol=1e-12)
+    np.testing.assert_allclose(rod.supports[CLAMPED].moment, path.clamp_moment[1:], rtol=1e-12)
     np.testing.assert_allclose(rod.tips[BEAM][-1], [0.0, 2.0 / np.pi], atol=1e-15)
     np.testing.assert_allclose(rod.axis_line(BEAM, 24)[1][-1], rod.tips[BEAM][24], atol=1e-13)
 
@@ -65,13 +64,16 @@ def test_the_rod_states_clamp_and_tip(rod: Response) -> None:
 @pytest.mark.parametrize("from_end", [False, True])
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_rod_moves_with_the_scene(rod: Response, mirrored: bool, from_end: bool) -> None:
-    there = solve(moved(mirrored=mirrored, from_end=from_end), "rod")
+    scene = moved(mirrored=mirrored, from_end=from_end)
+    there = solve(scene, "rod")
     sign = -1.0 if mirrored else 1.0
     turn = TURN @ np.diag([1.0, sign])
     assert there.completed, there.message
-    np.testing.assert_allclose(at_tip(there), at_tip(rod) @ turn.T, atol=1e-9 * 2.8e-4)
+    np.testing.assert_allclose(at_tip(there, scene), at_tip(rod) @ turn.T, atol=1e-9 * 2.8e-4)
     np.testing.assert_allclose(
-        there.supports[BEAM].moment, sign * rod.supports[BEAM].moment, atol=1e-9 * 2.8e-4
+        there.supports[scene.all_supports[0].node].moment,
+        sign * rod.supports[CLAMPED].moment,
+        atol=1e-9 * 2.8e-4,
     )
     np.testing.assert_allclose(there.tips[BEAM], rod.tips[BEAM] @ turn.T + [3.0, -2.0], atol=1e-14)
 
@@ -81,18 +83,17 @@ def test_beams_follow_the_rod(rod: Response) -> None:
     assert beams.completed, beams.message
     scale = np.abs(at_tip(rod)).max()
     assert np.abs(at_tip(beams) - at_tip(rod)).max() < 5e-6 * scale
-    assert np.abs(beams.supports[BEAM].moment - rod.supports[BEAM].moment).max() < 5e-6 * scale
+    assert np.abs(beams.supports[CLAMPED].moment - rod.supports[CLAMPED].moment).max() < 5e-6 * scale
     np.testing.assert_array_equal(beams.tips[BEAM], rod.tips[BEAM])
 
 
-def test_json_names_the_clamp_and_the_other_end(capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_names_the_clamp_and_the_tip(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["solve", "ks-tied-tip", "--model", "rod", "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["contacts"] == {}
     assert data["events"] is None
-    support = data["supports"][BEAM]
-    assert list(support) == ["moment", "force", "other_end"]
-    assert np.array(support["other_end"]["force"])[-1] / 2.8e-4 == pytest.approx(
+    assert list(data["supports"]) == [CLAMPED, f"{BEAM}.end"]
+    assert np.array(data["supports"][f"{BEAM}.end"]["force"])[-1] / 2.8e-4 == pytest.approx(
         [-2.78166798, -8.54820614], rel=1e-8
     )
 

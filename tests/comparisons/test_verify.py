@@ -14,7 +14,7 @@ from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import ContactSpec, PinSpec, load_scene
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
-PAIR, BEAM = "pin->cantilever", "cantilever"
+PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
 Change = Callable[[Response], Response]
 
 
@@ -29,8 +29,8 @@ def with_contact(response: Response, **changes: object) -> Response:
 
 
 def with_support(response: Response, **changes: object) -> Response:
-    support: SupportHistory = replace(response.supports[BEAM], **changes)  # type: ignore[arg-type]
-    return replace(response, supports={BEAM: support})
+    support: SupportHistory = replace(response.supports[CLAMP], **changes)  # type: ignore[arg-type]
+    return replace(response, supports={CLAMP: support})
 
 
 def at(values: np.ndarray, k: int, value: float) -> np.ndarray:
@@ -61,10 +61,10 @@ BREAKS: dict[str, tuple[Change, str]] = {
         lambda r: with_contact(r, compliance=10.0, gap=-10.0 * r.contacts[PAIR].force),
         "penetration of .* exceeds 1% of the length at load parameter",
     ),
-    "reaction": (lambda r: with_support(r, force=r.supports[BEAM].force * (1 + 1e-5)), "support reactions do not balance"),
-    "moment": (lambda r: with_support(r, moment=r.supports[BEAM].moment * (1 + 1e-5)), "support moments do not balance"),
-    "sign of the moment": (lambda r: with_support(r, moment=-r.supports[BEAM].moment), "support moments do not balance"),
-    "sign of the reaction": (lambda r: with_support(r, force=-r.supports[BEAM].force), "support moments do not balance"),
+    "reaction": (lambda r: with_support(r, force=r.supports[CLAMP].force * (1 + 1e-5)), "support reactions do not balance"),
+    "moment": (lambda r: with_support(r, moment=r.supports[CLAMP].moment * (1 + 1e-5)), "support moments do not balance"),
+    "sign of the moment": (lambda r: with_support(r, moment=-r.supports[CLAMP].moment), "support moments do not balance"),
+    "sign of the reaction": (lambda r: with_support(r, force=-r.supports[CLAMP].force), "support moments do not balance"),
     "lost contact": (without_force, "open and its node goes through the beam up to load parameter 0.2"),
 }  # fmt: skip
 

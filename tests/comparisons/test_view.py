@@ -66,7 +66,7 @@ def test_the_ribbon_has_the_height_and_the_bending_stress(
     beams = panel(series[0].body(2), series[0].pins(2), "")
     right, left = beams.points[0], beams.points[4]
     assert np.hypot(*(left - right)) == pytest.approx(0.02)
-    moment = -responses[0].supports["cantilever"].moment[2]
+    moment = -responses[0].supports["cantilever.start"].moment[2]
     assert beams.stress[0] - beams.stress[4] == pytest.approx(2 * moment * 0.01 / (0.02**4 / 12), rel=1e-9)
 
 

@@ -234,7 +234,7 @@ def apart(scene: Scene, one: Row, other: Row) -> float:
         abs(float(a.contacts[pair].force[-1] - b.contacts[pair].force[-1])) / size for pair in a.contacts
     ]
     found += [
-        float(np.hypot(*(a.supports[beam].force[-1] - b.supports[beam].force[-1]))) / size
-        for beam in a.supports
+        float(np.hypot(*(a.supports[node].force[-1] - b.supports[node].force[-1]))) / size
+        for node in a.supports
     ]
     return max(found, key=lambda value: math.inf if math.isnan(value) else value)

@@ -44,7 +44,7 @@ def computed() -> Numbers:
         response = solve(replace(load_scene(name), load_parameters=LOAD_PARAMETERS), model, options)
         assert response.completed, f"{label}: {response.message}"
         histories = {f"tip of {beam}": tip.ravel() for beam, tip in response.tips.items()}
-        histories |= {f"moment of {beam}": support.moment for beam, support in response.supports.items()}
+        histories |= {f"moment of {node}": support.moment for node, support in response.supports.items()}
         for pair, contact in response.contacts.items():
             histories |= {f"force of {pair}": contact.force, f"arc position of {pair}": contact.arc_position}
         found[label] = {

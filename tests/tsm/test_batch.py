@@ -253,7 +253,7 @@ def test_loads_are_solved_one_by_one() -> None:
         )
 
     batch = tsm.solve_batch([bent(0.5), bent(1.0)], STEPS[:4])
-    assert batch.supports["beam"].force[:, -1, 1] == pytest.approx([-0.08, -0.16])
+    assert batch.supports["beam.start"].force[:, -1, 1] == pytest.approx([-0.08, -0.16])
 
 
 @pytest.mark.parametrize(

@@ -226,7 +226,7 @@ def test_two_pins_on_one_beam():
     assert result.status is tsm.Status.COMPLETED
     assert (result.contacts["p->b"].force > 0).all()
     assert result.contacts["q->b"].force[-1] > 0
-    total = -result.supports["b"].force[-1]
+    total = -result.supports["b.start"].force[-1]
     assert np.hypot(*total) < result.contacts["p->b"].force[-1]
 
 

@@ -87,7 +87,7 @@ def test_work_of_the_pin_is_the_strain_energy_up_to_each_jump(result):
     ends = [b - 1e-9 for b in corners[1:]]
     t = np.concatenate([np.append(inner, end) for inner, end in zip(nodes, ends, strict=True)])
     fine = tsm.solve(double_beam(), t)
-    power = sum(fine.supports[name].force[:, 1] for name in ("upper", "lower")) * 0.76
+    power = sum(fine.supports[f"{name}.start"].force[:, 1] for name in ("upper", "lower")) * 0.76
     work = [
         (b - a) / 2 * weight @ power[25 * k : 25 * k + 24]
         for k, (a, b) in enumerate(itertools.pairwise(corners))

@@ -35,7 +35,7 @@ def test_one_exact_element_is_the_elastica_with_friction(friction: float) -> Non
     assert result.status is tsm.Status.COMPLETED
     assert contact.force == pytest.approx(exact.magnitude[1:], rel=1e-9)
     assert contact.arc_position == pytest.approx(exact.arc_position[1:], rel=1e-9)
-    assert result.supports["beam"].moment == pytest.approx(exact.clamp_moment[1:], rel=1e-9)
+    assert result.supports["beam.start"].moment == pytest.approx(exact.clamp_moment[1:], rel=1e-9)
     assert contact.friction.dissipated == pytest.approx(exact.dissipated[1:], abs=1e-9)
     turns = [event for event in result.events if event.kind in TURNS]
     assert [event.kind for event in turns] == [EventKind.STICK, EventKind.SLIP]
@@ -215,7 +215,7 @@ def test_limit_loads_of_three_point_bending(friction: float) -> None:
         way = -1 if back else 1
         here = begin + way * (point.displacement - (top if back else 0.0)) / pin.length
         result = tsm.solve(structure, np.array([here - 1e-3, here, here + 1e-3]))
-        load = -result.supports["beam"].force[:, 1]
+        load = -result.supports["beam.start"].force[:, 1]
         assert load[1] == pytest.approx(point.load, rel=1e-9)
         assert load[0] < load[1] > load[2]
 

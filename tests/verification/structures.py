@@ -64,7 +64,11 @@ def dimensionless(result):
     """Force, arc position and clamp moment, tip, over the beam's own units; shape (steps, 5)."""
     beam = result.model.structure.beams[0]
     (contact,), EI, L = result.contacts.values(), beam.section.EI, beam.length
-    found = [contact.force * L**2 / EI, contact.arc_position / L, result.supports[beam.name].moment * L / EI]
+    found = [
+        contact.force * L**2 / EI,
+        contact.arc_position / L,
+        next(iter(result.supports.values())).moment * L / EI,
+    ]
     return np.stack([*found, *result.tips[beam.name].T / L], axis=1)
 
 

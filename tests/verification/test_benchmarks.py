@@ -86,7 +86,7 @@ def test_williams_toggle(stated):
 def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
     """Pushing the apex down and reading the reaction gives the same two limits."""
     result = tsm.solve(divided(load_scene("williams-toggle"), 16), np.arange(1, 601) / 600)
-    force = 2 * result.supports["right"].force[:, 1]
+    force = 2 * result.supports["right.end"].force[:, 1]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(force)))) + 1
     assert force[turns] == pytest.approx(limit_points(divided(toggle_scene(), 16), 0.01, 60), rel=1e-4)
 
@@ -96,7 +96,7 @@ def test_three_point_bending_has_its_limit():
     half = cantilever(raised(1.0, 0.7), section=STIFF, length=3.0, elements=30, element="mixed")
     t = np.arange(1, 701) / 700
     result = tsm.solve(half, t)
-    upward = -result.supports["b"].force[:, 1]
+    upward = -result.supports["b.start"].force[:, 1]
     k = int(np.argmax(upward))
     fit = np.polyfit(t[k - 2 : k + 3] * 0.7 - t[k] * 0.7, upward[k - 2 : k + 3], 2)
     top = t[k] * 0.7 - fit[1] / (2 * fit[0])

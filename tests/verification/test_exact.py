@@ -48,7 +48,7 @@ def test_ks_at_every_load_parameter(ks_scene, stated):
     differences = (
         contact.force / expected.force - 1,
         contact.arc_position - expected.arc_position,
-        result.supports["cantilever"].moment / rod.supports["cantilever"].moment - 1,
+        result.supports["cantilever.start"].moment / rod.supports["cantilever.start"].moment - 1,
         result.tips["cantilever"] - rod.tips["cantilever"],
     )
     error = max(np.abs(part).max() for part in differences)
@@ -148,7 +148,9 @@ def test_double_beam_stages(double, stated):
     error = np.abs(differences).max()
     assert error <= 1e-8
     stated("exact.double-beam", error, bound=True)
-    moments = np.stack([double.supports[name].moment[stage] for name in ("upper", "lower")], axis=1)
+    moments = np.stack(
+        [double.supports[f"{name}.start"].moment[stage] for name in ("upper", "lower")], axis=1
+    )
     assert np.abs(moments + exact.clamp_moments).max() <= 1e-8 * np.abs(moments).max()
     first, second = (0.76 * e.load_parameter for e in double.events[:2])
     error = max(abs(first - exact.touch_depth), abs(second - exact.end_depth))
@@ -207,7 +209,7 @@ def test_elastica_ks(stated):
     differences = (
         contact.force / STIFF.EI / forces - 1,
         contact.arc_position / arcs - 1,
-        result.supports["b"].moment[-1] / STIFF.EI / -np.pi - 1,
+        result.supports["b.start"].moment[-1] / STIFF.EI / -np.pi - 1,
     )
     error = max(np.abs(part).max() for part in differences)
     assert error <= 1e-9
@@ -254,7 +256,7 @@ def test_elastica_limit_points(stated):
     ):
         depth = limit.displacement + 0.06 * np.cos(np.pi * (np.arange(13) + 0.5) / 13)[::-1]
         result = tsm.solve(cantilever(raised(1.0, 1.0), section=STIFF, length=3.0), depth)
-        force = -2 * result.supports["b"].force[:, 1] if support else result.contacts["p0->b"].force
+        force = -2 * result.supports["b.start"].force[:, 1] if support else result.contacts["p0->b"].force
         load, displacement = top(depth, force / STIFF.EI)
         assert load == pytest.approx(limit.load, rel=1e-9)
         stated("exact.elastica", abs(load / limit.load - 1), bound=True)

@@ -96,7 +96,7 @@ class BatchResult(Sequence[Result]):
     force, arc_position : dict of ndarray, shape (N, s)
         Contact force, 0 where the pair is open, and arc position, nan there, by pair name.
     supports : dict of SupportHistory
-        What the supports of a beam exert on it, by beam: force (N, s, 2) and moment (N, s).
+        What the supports exert, by supported end ``beam.start``: force (N, s, 2) and moment (N, s).
     tips : dict of ndarray, shape (N, s, 2)
         Position of the beam's end, by beam.
     newton_iterations : ndarray of int, shape (N, s)
@@ -142,11 +142,13 @@ def from_record(
     held = np.full((*reached.shape, model.dof_count), 0.0)
     held[..., model.fixed] = record.reaction
     held = np.where(reached[..., None], held, np.nan).reshape(*reached.shape, -1, 3)
-    supports = {}
-    for beam in dict.fromkeys(name.rpartition(".")[0] for name in model.support_node):
-        nodes = [node for name, node in model.support_node.items() if name.rpartition(".")[0] == beam]
-        reactions = held[:, :, nodes]
-        supports[beam] = SupportHistory(force=reactions[..., :2].sum(axis=2), moment=reactions[:, :, 0, 2])
+    reactions = {
+        name: np.where(own | ~reached[..., None], held[:, :, node], 0.0)
+        for name, (node, own) in model.supports.items()
+    }
+    supports = {
+        name: SupportHistory(force=table[..., :2], moment=table[..., 2]) for name, table in reactions.items()
+    }
     tips = {}
     for n, (name, place) in enumerate(model.beams.items()):
         dof = 3 * place.nodes[-1]

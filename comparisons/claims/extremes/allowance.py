@@ -17,8 +17,8 @@ def bending(beam: BeamSpec, exact: Response) -> Bending:
     """Return the bending of `beam`, clamped along +x, in the answer `exact`."""
     if not len(exact.load_parameter):
         return Bending()
-    force = -exact.supports[beam.name].force
-    moment = np.abs(exact.supports[beam.name].moment)
+    clamp = exact.supports[f"{beam.name}.start"]
+    force, moment = -clamp.force, np.abs(clamp.moment)
     loaded = np.hypot(*force.T) > 0.0
     # beyond a right angle the moment is largest where the axis points along the force, and there m^2 = 2 F EI
     turn = np.abs(np.arctan2(-force[loaded, 0], force[loaded, 1]))

@@ -97,7 +97,7 @@ class Energy:
     def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest violation over ``2 EI sin b``."""
         beam, pin = case.scene.beams[0], case.scene.pins[0]
-        force = -own.supports[beam.name].force
+        force = -own.supports[f"{beam.name}.start"].force
         closed = np.hypot(*force.T) > 0.0
         place = np.array([pin.position(float(t)) for t in own.load_parameter]).reshape(-1, 2)
         error = _violation(beam, force[closed], place[closed], rigid=self.rigid)

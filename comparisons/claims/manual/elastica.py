@@ -56,7 +56,11 @@ def ks_elastica() -> Problem:
 
     def read(response: Response) -> list[float]:
         at, contact = [step(response, t) for t in TIMES], response.contacts[PAIR]
-        return [*contact.force[at], *contact.arc_position[at], response.supports["cantilever"].moment[-1]]
+        return [
+            *contact.force[at],
+            *contact.arc_position[at],
+            response.supports["cantilever.start"].moment[-1],
+        ]
 
     return Problem(
         name="ks-elastica",
@@ -180,7 +184,7 @@ def three_point_bending() -> Problem:
     def read(scene: Scene, response: Response) -> Array:
         (a, _), EI = scene.pins[1].points[0], scene.beams[0].EI
         rise = (scene.pins[1].displacement or (0.0, 0.0))[1]
-        load = -response.supports["left"].force[:, 1]
+        load = -response.supports["left.end"].force[:, 1]
         return np.stack([rise / a * response.load_parameter, load * a**2 / EI], axis=1)
 
     return Problem(

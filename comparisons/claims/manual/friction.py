@@ -137,7 +137,7 @@ def ks_friction() -> Problem:
         return [
             contact.force[-1],
             contact.arc_position[-1],
-            response.supports[beam.name].moment[-1],
+            response.supports[f"{beam.name}.start"].moment[-1],
             contact.friction.dissipated[-1],
         ]
 
@@ -174,7 +174,7 @@ def three_point_friction() -> Problem:
     def read(response: Response) -> list[float]:
         t = response.load_parameter
         rise = np.array([pin.position(one)[1] for one in t]) / a
-        load = -response.supports["left"].force[:, 1] * a**2 / EI / 2.0
+        load = -response.supports["left.end"].force[:, 1] * a**2 / EI / 2.0
         back = (t > turn)[::-1]
         return [*summit(rise[t <= turn], load[t <= turn]), *summit(rise[::-1][back], load[::-1][back])]
 
@@ -287,7 +287,7 @@ def sleeve() -> Problem:
         )
 
     def force(response: Response) -> float:
-        clamp = response.supports[beam.name]
+        clamp = response.supports[f"{beam.name}.start"]
         N, Q = -clamp.force[-1]
         H = clamp.moment[-1] ** 2 / (2.0 * beam.EI) + N + N**2 / (2.0 * beam.EA) + Q**2 / (2.0 * beam.GA)
         return float(H * beam.EI / scene.loads[0].moment ** 2)

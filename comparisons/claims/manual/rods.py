@@ -57,7 +57,7 @@ def _at_times(scene: Scene) -> tuple[tuple[Quantity, ...], Response]:
 def _read(scene: Scene, response: Response) -> list[float]:
     at = [step(response, t) for t in TIMES]
     contact = response.contacts[scene.contacts[0].pair]
-    moment = response.supports[scene.beams[0].name].moment
+    moment = response.supports[scene.all_supports[0].node].moment
     return [
         float(value) for history in (contact.force, contact.arc_position, moment) for value in history[at]
     ]
@@ -161,11 +161,10 @@ def ks_tied() -> Problem:
     beam = scene.beams[0]
 
     def read(response: Response) -> list[float]:
-        at_tip = response.supports[beam.name].other_end
-        assert at_tip is not None, "the tip is held"
+        clamp, tip = (response.supports[f"{beam.name}.{end}"] for end in ("start", "end"))
         return [
-            *(float(force) for force in np.hypot(*at_tip.force[[24, 49]].T) * beam.length**2 / beam.EI),
-            float(response.supports[beam.name].moment[-1] * beam.length / beam.EI),
+            *(float(force) for force in np.hypot(*tip.force[[24, 49]].T) * beam.length**2 / beam.EI),
+            float(clamp.moment[-1] * beam.length / beam.EI),
         ]
 
     names = ("F L^2/EI at t = .5", "F L^2/EI at t = 1", "M L/EI of the clamp at t = 1")
@@ -196,7 +195,9 @@ def short_cantilever() -> Problem:
     exact = depth / (bending + shear)
 
     def read(response: Response) -> Sequence[float]:
-        return float(response.contacts[PAIR].force[-1]), float(response.supports["cantilever"].moment[-1])
+        return float(response.contacts[PAIR].force[-1]), float(
+            response.supports["cantilever.start"].moment[-1]
+        )
 
     linear = "of the order of the deflection's square, 1e-10; Newton's tolerance is 1e-10 EI/L^2, 4e-6 of the force"
     return Problem(

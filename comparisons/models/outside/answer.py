@@ -99,11 +99,6 @@ def silent(
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
-
-    def support(beam: str) -> SupportHistory:
-        first = SupportHistory(force=pairs, moment=none)
-        return replace(first, other_end=first) if len(scene.supports_of(beam)) > 1 else first
-
     return Response(
         model=model,
         scene=scene.name,
@@ -116,7 +111,7 @@ def silent(
         contacts={
             spec.pair: ContactHistory(force=none, arc_position=none, gap=none) for spec in scene.contacts
         },
-        supports={spec.beam: support(spec.beam) for spec in scene.all_supports},
+        supports={spec.node: SupportHistory(force=pairs, moment=none) for spec in scene.all_supports},
         tips={beam.name: pairs for beam in scene.beams},
         newton_iterations=np.empty(0, dtype=np.int64),
         cutbacks=0,
@@ -205,7 +200,7 @@ def _contradictions(response: Response, scene: Scene) -> Iterator[str]:
     driven = response.material_force.keys()
     for what, own, wanted in (
         ("contacts", response.contacts.keys(), {spec.pair for spec in scene.contacts}),
-        ("supports", response.supports.keys(), {spec.beam for spec in scene.all_supports}),
+        ("supports", response.supports.keys(), {spec.node for spec in scene.all_supports}),
         ("tips", response.tips.keys(), beams),
         ("material_force", driven, driven & clamped(scene).keys()),
         ("axes", axes.arc_length.keys(), beams),
@@ -213,9 +208,6 @@ def _contradictions(response: Response, scene: Scene) -> Iterator[str]:
         if own != wanted:
             names = ", ".join(sorted(wanted)) or "none"
             yield f"{what}: must have {names}, has {', '.join(sorted(own)) or 'none'}"
-    for name, support in response.supports.items():
-        if (support.other_end is not None) != (len(scene.supports_of(name)) > 1):
-            yield f"supports.{name}.other_end: must be there if the beam has two supports, and only then"
     for name, arc in axes.arc_length.items():
         length = scene.beam(name).length
         if len(arc) and not (
@@ -236,10 +228,9 @@ def _not_finite(response: Response) -> Iterator[str]:
         items += [(f"the gap of {pair}", contact.gap[closed])]
         if contact.vector is not None:
             items += [(f"the force vector of {pair}", contact.vector[closed])]
-    for beam, first in response.supports.items():
-        for support in filter(None, (first, first.other_end)):
-            items += [(f"a support force of {beam}", support.force)]
-            items += [(f"a support moment of {beam}", support.moment)]
+    for node, support in response.supports.items():
+        items += [(f"the support force of {node}", support.force)]
+        items += [(f"the support moment of {node}", support.moment)]
     items += [(f"the tip of {beam}", tip) for beam, tip in response.tips.items()]
     items += [(f"the axis of {beam}", line) for beam, line in axes.position.items()]
     yield from (name for name, numbers in items if not np.all(np.isfinite(numbers)))

@@ -93,7 +93,7 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
         ]
         found += [
             Track(
-                title=f"{title} {_node(name, scene)}" if len(names) > 1 else title,
+                title=f"{title} {name}" if len(names) > 1 else title,
                 unit=unit,
                 values={label: _numbers(one.get(name), shown[label]) for label, one in values.items()},
                 errors={label: one[name] for label, one in errors.items() if name in one},
@@ -113,14 +113,6 @@ def _numbers(values: Array | None, response: Response) -> Array:
 
 def _arcs(response: Response) -> dict[str, Array]:
     return {pair: contact.arc_position for pair, contact in response.contacts.items()}
-
-
-def _node(name: str, scene: Scene) -> str:
-    """Return the supported end by the name of its column, which is the beam's or ``BEAM.other_end``; a pair keeps its name."""
-    beam, _, other = name.partition(".")
-    if name in {contact.pair for contact in scene.contacts}:
-        return name
-    return scene.supports_of(beam)[bool(other)].node
 
 
 def motion_section(

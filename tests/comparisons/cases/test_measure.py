@@ -117,13 +117,13 @@ def test_a_stopped_case_keeps_what_it_reached() -> None:
 
 def test_an_empty_history_keeps_its_shape() -> None:
     found = measure(case(elements=4), repeats=1)
-    response, beam = found.response, "cantilever"
-    support = response.supports[beam]
+    response, beam, clamp = found.response, "cantilever", "cantilever.start"
+    support = response.supports[clamp]
     empty = replace(
         response,
         load_parameter=np.empty(0),
         contacts={},
-        supports={beam: replace(support, force=support.force[:0], moment=support.moment[:0])},
+        supports={clamp: replace(support, force=support.force[:0], moment=support.moment[:0])},
         material_force={},
         tips={beam: response.tips[beam][:0]},
         axis_line=SampledAxes(arc_length={}, position={}),
@@ -131,7 +131,7 @@ def test_an_empty_history_keeps_its_shape() -> None:
         index=None,
     )
     again = Measurement.from_json(replace(found, response=empty).to_json()).response
-    assert again.tips[beam].shape == again.supports[beam].force.shape == (0, 2)
+    assert again.tips[beam].shape == again.supports[clamp].force.shape == (0, 2)
 
 
 def test_peak_memory_is_of_the_action_alone() -> None:

@@ -157,11 +157,11 @@ def of_schema(path: Path, number: int) -> None:
         (other_database, "is no results file of crossval, but another SQLite database"),
         (
             lambda path: of_schema(path, 99),
-            "has schema 99, this version of crossval reads 2: choose another file",
+            "has schema 99, this version of crossval reads 3: choose another file",
         ),
         (
             lambda path: of_schema(path, 1),
-            "has schema 1, this version of crossval reads 2: choose another file",
+            "has schema 1, this version of crossval reads 3: choose another file",
         ),
         (Path.mkdir, "is not a regular file|there is no such file"),
     ],

@@ -14,6 +14,7 @@ from comparisons.scene import load_scene
 
 KS = load_scene("ks-cantilever")
 PAIR, BEAM = "pin->cantilever", "cantilever"
+CLAMP, TIP = "cantilever.start", "cantilever.end"
 TIMES = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 
 
@@ -27,7 +28,7 @@ def response_of(h: float, order: float = 2.0) -> Response:
         unanswered("COMPLETED", ""),
         load_parameter=TIMES,
         contacts={PAIR: ContactHistory(force=s * (1.0 + off), arc_position=arc, gap=0.0 * s)},
-        supports={BEAM: SupportHistory(force=np.zeros((5, 2)), moment=-2.0 * (s + off))},
+        supports={CLAMP: SupportHistory(force=np.zeros((5, 2)), moment=-2.0 * (s + off))},
         material_force={BEAM: off * s},
         tips={BEAM: np.stack([s, 1.0 - off * s], axis=-1)},
         axis_line=SampledAxes(arc_length={BEAM: STATIONS}, position={BEAM: axis}),
@@ -40,7 +41,7 @@ def test_limit_of_a_series_of_any_order(order: float) -> None:
     contact, limit = found.contacts[PAIR], exact.contacts[PAIR]
     assert contact.force == pytest.approx(limit.force, abs=1e-12)
     assert contact.arc_position == pytest.approx(limit.arc_position, abs=1e-12, nan_ok=True)
-    assert found.supports[BEAM].moment == pytest.approx(exact.supports[BEAM].moment, abs=1e-12)
+    assert found.supports[CLAMP].moment == pytest.approx(exact.supports[CLAMP].moment, abs=1e-12)
     assert found.material_force[BEAM] == pytest.approx(exact.material_force[BEAM], abs=1e-12)
     assert found.tips[BEAM] == pytest.approx(exact.tips[BEAM], abs=1e-12)
     for k in range(5):
@@ -51,14 +52,12 @@ def test_forces_of_supports_have_a_limit_where_there_is_no_contact() -> None:
     def held(h: float) -> Response:
         force = np.arange(10.0).reshape(5, 2) + h**2
         other = SupportHistory(force=-force, moment=np.zeros(5))
-        support = SupportHistory(force=force, moment=force[:, 0], other_end=other)
-        return replace(response_of(h), contacts={}, supports={BEAM: support})
+        support = SupportHistory(force=force, moment=force[:, 0])
+        return replace(response_of(h), contacts={}, supports={CLAMP: support, TIP: other})
 
-    found, exact = extrapolated([held(h) for h in (0.2, 0.1, 0.05)]), held(0.0).supports[BEAM]
-    support = found.supports[BEAM]
-    assert support.force == pytest.approx(exact.force, abs=1e-12)
-    assert support.other_end is not None
-    assert support.other_end.force == pytest.approx(-exact.force, abs=1e-12)
+    found, exact = extrapolated([held(h) for h in (0.2, 0.1, 0.05)]), held(0.0).supports[CLAMP]
+    assert found.supports[CLAMP].force == pytest.approx(exact.force, abs=1e-12)
+    assert found.supports[TIP].force == pytest.approx(-exact.force, abs=1e-12)
     assert errors(held(0.1), held(0.0), load_scene("ks-tied-tip"))["path"]["force"] == pytest.approx(
         0.01 * np.sqrt(2) / np.hypot(8, 9)
     )

@@ -1,7 +1,5 @@
 """Answers that are wrong in a known way, and exact ones stated as a model would state them."""
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -56,15 +54,10 @@ def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Respons
             gap=np.zeros(steps),
             vector=vector,
         )
-    supports: dict[str, SupportHistory] = {}
-    for beam in scene.beams:
-        held = [
-            np.array([exact.reactions[item.node] for exact in path]) for item in scene.supports_of(beam.name)
-        ]
-        histories = [SupportHistory(force=table[:, :2], moment=table[:, 2]) for table in held]
-        if histories:
-            other = histories[1] if len(histories) > 1 else None
-            supports[beam.name] = replace(histories[0], other_end=other)
+    supports = {}
+    for item in scene.all_supports:
+        table = np.array([exact.reactions[item.node] for exact in path])
+        supports[item.node] = SupportHistory(force=table[:, :2], moment=table[:, 2])
 
     def axis_line(beam: str, k: int) -> tuple[np.ndarray, np.ndarray]:
         arc = np.linspace(0.0, scene.beam(beam).length, POINTS)

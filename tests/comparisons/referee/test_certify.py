@@ -18,7 +18,7 @@ from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 from tests.comparisons.referee.forged import bent, integrated, stated
 
-PAIR, BEAM = "pin->cantilever", "cantilever"
+PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
 KS = replace(load_scene("ks-cantilever"), load_parameters=40)
 FACE = replace(load_scene("ks-face"), load_parameters=40)
 
@@ -33,9 +33,9 @@ def contact(response: Response, pair: str = PAIR, **changes: object) -> Response
     return replace(response, contacts={**response.contacts, pair: history})
 
 
-def support(response: Response, beam: str = BEAM, **changes: object) -> Response:
-    history: SupportHistory = replace(response.supports[beam], **changes)  # type: ignore[arg-type]
-    return replace(response, supports={**response.supports, beam: history})
+def support(response: Response, node: str = CLAMP, **changes: object) -> Response:
+    history: SupportHistory = replace(response.supports[node], **changes)  # type: ignore[arg-type]
+    return replace(response, supports={**response.supports, node: history})
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def tripled(r: Response) -> Response:
     vector, force = r.contacts[PAIR].vector, r.contacts[PAIR].force
     assert vector is not None
     r = contact(r, force=3.0 * force, vector=3.0 * vector)
-    return support(r, force=3.0 * r.supports[BEAM].force, moment=3.0 * r.supports[BEAM].moment)
+    return support(r, force=3.0 * r.supports[CLAMP].force, moment=3.0 * r.supports[CLAMP].moment)
 
 
 def turned(r: Response) -> Response:
@@ -125,7 +125,7 @@ def lost(r: Response) -> Response:
 def stale(r: Response) -> Response:
     """Every state that of the load parameter before."""
     late = np.maximum(np.arange(len(r.load_parameter)) - 1, 0)
-    one, held = r.contacts[PAIR], r.supports[BEAM]
+    one, held = r.contacts[PAIR], r.supports[CLAMP]
     assert one.vector is not None
     r = contact(r, force=one.force[late], arc_position=one.arc_position[late], vector=one.vector[late])
     r = support(r, force=held.force[late], moment=held.moment[late])
@@ -137,7 +137,7 @@ def without_lever(r: Response) -> Response:
     """The moment of the support as if the contact force acted on the axis of the undeformed beam, half a height away."""
     vector = r.contacts[PAIR].vector
     assert vector is not None
-    return support(r, moment=r.supports[BEAM].moment + 0.01 * vector[:, 0])
+    return support(r, moment=r.supports[CLAMP].moment + 0.01 * vector[:, 0])
 
 
 def pulling(r: Response) -> Response:
@@ -156,7 +156,7 @@ FORGED: dict[str, tuple[Scene, Callable[[Response], Response], Verdict]] = {
     "pulling force": (KS, pulling, Verdict.NOT_AN_EQUILIBRIUM),
     "stale result": (KS, stale, Verdict.NOT_AN_EQUILIBRIUM),
     "missing moment of an offset": (FACE, without_lever, Verdict.NOT_AN_EQUILIBRIUM),
-    "reaction off by 1e-5": (KS, lambda r: support(r, force=r.supports[BEAM].force * (1.0 + 1e-5)), Verdict.NOT_AN_EQUILIBRIUM),
+    "reaction off by 1e-5": (KS, lambda r: support(r, force=r.supports[CLAMP].force * (1.0 + 1e-5)), Verdict.NOT_AN_EQUILIBRIUM),
     "closed without an event": (KS, lambda r: contact(r, force=np.where(r.load_parameter == 0.5, 0.0, r.contacts[PAIR].force)), Verdict.INADMISSIBLE),
     "not a number": (KS, lambda r: replace(r, tips={BEAM: r.tips[BEAM] * np.nan}), Verdict.NOT_AN_EQUILIBRIUM),
     "other load parameters": (KS, lambda r: replace(r, load_parameter=r.load_parameter * 0.999), Verdict.NOT_AN_EQUILIBRIUM),
@@ -217,8 +217,8 @@ def test_a_wrong_support_is_refused() -> None:
 
 def test_swapped_reactions_are_refused() -> None:
     response = answer(PORTAL)
-    left, right = response.supports["left"], response.supports["right"]
-    swapped = replace(response, supports={"left": right, "right": left})
+    left, right = response.supports["left.start"], response.supports["right.end"]
+    swapped = replace(response, supports={"left.start": right, "right.end": left})
     assert certify(swapped, PORTAL).verdict is Verdict.NOT_AN_EQUILIBRIUM
 
 
@@ -305,9 +305,7 @@ def test_a_stable_branch_that_is_not_the_path_is_seen_when_it_is_followed() -> N
     scene, response = mirrored()
     last = certify(response, scene)
     assert last.certified
-    assert (
-        float(response.supports["b"].other_end.force[-1, 1]) > 0.0
-    )  # 2.5e-6 N, where the path leads to -2.8e-6 N
+    assert float(response.supports["b.end"].force[-1, 1]) > 0.0  # 2.5e-6 N, where the path leads to -2.8e-6 N
     found = certify(response, scene, at=range(10))
     assert found.verdict is Verdict.UNSTABLE
     assert "ends elsewhere at 0.1" in found.reason

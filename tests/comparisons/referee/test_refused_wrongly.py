@@ -117,9 +117,9 @@ UNLOADED = Scene(
 def test_round_off_of_an_unloaded_beam_is_no_error(element: str) -> None:
     response, found = judged(UNLOADED, element, 1e-6)
     assert found.certified, found.line()
-    forged = response.supports["b"]
+    forged = response.supports["b.start"]
     forged = replace(forged, force=forged.force + np.array([0.0, 0.01]))
-    refused = certify(replace(response, supports={"b": forged}), UNLOADED)
+    refused = certify(replace(response, supports={"b.start": forged}), UNLOADED)
     assert refused.verdict is Verdict.NOT_AN_EQUILIBRIUM
 
 

@@ -69,22 +69,14 @@ class Histories:
             self.contacts[pair][key].append(value)
 
     def tables(self) -> Table:
-        """Return the histories by the names of the response; of two supports of a beam the first holds more components."""
-        supports: Table = {}
-        for item in sorted(
-            self.scene["supports"], key=lambda one: (one["motion"].count(None), one["end"] == "end")
-        ):
-            forces, moments = self.held[item["node"]]
-            record = {"force": forces, "moment": moments}
-            if item["beam"] in supports:
-                supports[item["beam"]]["other_end"] = record
-            else:
-                supports[item["beam"]] = record
+        """Return the histories by the names of the response."""
         return {
             "load_parameter": self.reached,
             "axes": self.axes,
             "contacts": self.contacts,
-            "supports": supports,
+            "supports": {
+                node: {"force": forces, "moment": moments} for node, (forces, moments) in self.held.items()
+            },
         }
 
 

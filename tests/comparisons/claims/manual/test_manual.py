@@ -237,7 +237,7 @@ def test_a_scene_that_is_moved_is_the_scene():
     assert image.pins[0].points[1] == (0.0, 0.01 - 0.6366197723675814)
     assert image.contacts[0].side == reversed_(scene).contacts[0].side == "left"
     assert reversed_(scene).beams[0].clamped == ("end",)
-    moments = [solve(one, "rod").supports["cantilever"].moment for one in (scene, turned, image)]
+    moments = [solve(one, "rod").supports["cantilever.start"].moment for one in (scene, turned, image)]
     assert moments[1] == pytest.approx(moments[0], rel=1e-9)
     assert moments[2] == pytest.approx(-moments[0], rel=1e-12)
 

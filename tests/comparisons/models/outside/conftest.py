@@ -20,7 +20,7 @@ import json, math, os, sys, time
 from pathlib import Path
 scene = json.load(sys.stdin)
 answer = json.loads(Path("truth.json").read_text())
-contact, support = answer["contacts"]["pin->cantilever"], answer["supports"]["cantilever"]
+contact, support = answer["contacts"]["pin->cantilever"], answer["supports"]["cantilever.start"]
 axis = answer["axes"]["cantilever"]
 {lines}
 print(json.dumps(answer))

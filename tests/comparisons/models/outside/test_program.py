@@ -48,9 +48,9 @@ FAILURES = {
         "axes: must have cantilever, has b, cant",
     ),
     "a second support": (
-        "support['other_end'] = dict(support)",
+        "answer['supports']['cantilever.end'] = dict(support)",
         "INVALID_RESPONSE",
-        "supports.cantilever.other_end:",
+        "supports: must have cantilever.start, has cantilever.end, cantilever.start",
     ),
     "another material force": (
         "answer['material_force'] = {'other': contact['force']}",
@@ -128,7 +128,7 @@ answer["load_parameter"], answer["newton_iterations"] = answer["load_parameter"]
     "null in a support": (
         "support['moment'][0] = None",
         "NOT_FINITE",
-        "a support moment of cantilever is not",
+        "the support moment of cantilever.start is not",
     ),
     "its own failure": ("answer = {'status': 'DIVERGED', 'message': 'at .3'}", "DIVERGED", "at .3"),
 }

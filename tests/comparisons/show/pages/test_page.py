@@ -30,7 +30,7 @@ def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Pat
         assert data["load_parameter"] == run["load_parameter"]
         assert force["values"][label] == run["contacts"]["pin->cantilever"]["force"]
         assert arc["values"][label] == run["contacts"]["pin->cantilever"]["arc_position"]
-        assert moment["values"][label] == run["supports"]["cantilever"]["moment"]
+        assert moment["values"][label] == run["supports"]["cantilever.start"]["moment"]
         size = np.array(run["contacts"]["pin->cantilever"]["force"])
         assert friction["values"][label] == pytest.approx(run["material_force"]["cantilever"] / size)
         if run["errors"]:
