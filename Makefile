@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
-.PHONY: run test test-all results coverage mutation docs bench fuzz platforms others lint format setup clean
+.PHONY: run test test-all results coverage mutation docs bench fuzz platforms peers lint format setup clean
 
 run: setup
 	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
@@ -48,11 +48,11 @@ platforms: setup
 	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox
 
 # the programs of others that have wheels; a wheel that is missing leaves the rest as it was
-others: setup
+peers: setup
 	@if command -v uv >/dev/null 2>&1; then \
-	  uv pip install --quiet --python $(BIN)/python --constraint .constraints.txt --editable '.[others]'; \
+	  uv pip install --quiet --python $(BIN)/python --constraint .constraints.txt --editable '.[peers]'; \
 	else \
-	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .constraints.txt --editable '.[others]'; \
+	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .constraints.txt --editable '.[peers]'; \
 	fi
 
 lint: setup

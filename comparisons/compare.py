@@ -9,6 +9,7 @@ import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
 from comparisons.errors import Errors, error_histories, errors, largest
+from comparisons.extras import install
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -138,8 +139,7 @@ def compare(
         If `folder` cannot be written; nothing is computed.
     """
     folder = writable_folder(folder)
-    for run in (MIXED, SOLID):
-        check_series(folder / run.model, run.model, scene)
+    exported = _exported(scene, folder, report)
     runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
     responses = _solve_all(scene, [*runs, *RUNS], report, watching)
     reference = responses[ROD.label]
@@ -155,7 +155,18 @@ def compare(
     budget = _budget(scene, rows, report)
     report("writing files")
     with alone_in(folder):
-        return Comparison(rows=rows, files=_write_all(scene, rows, budget, folder, report))
+        return Comparison(rows=rows, files=_write_all(scene, rows, budget, exported, folder, report))
+
+
+def _exported(scene: Scene, folder: Path, report: Report) -> tuple[Run, ...]:
+    """Return the runs that are written as VTU files; none without the library that writes them."""
+    try:
+        for run in (MIXED, SOLID):
+            check_series(folder / run.model, run.model, scene)
+    except ImportError:
+        report(f"VTU files: left out, meshio cannot be imported, {install('meshio')}")
+        return ()
+    return MIXED, SOLID
 
 
 def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
@@ -200,7 +211,12 @@ def _budget(scene: Scene, rows: list[Row], report: Report) -> Budget | None:
 
 
 def _write_all(
-    scene: Scene, rows: list[Row], budget: Budget | None, folder: Path, report: Report
+    scene: Scene,
+    rows: list[Row],
+    budget: Budget | None,
+    exported: Sequence[Run],
+    folder: Path,
+    report: Report,
 ) -> list[Path]:
     responses = {row.label: row.response for row in rows}
     names = [run.label for run in DRAWN]
@@ -212,7 +228,7 @@ def _write_all(
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
     series = {}
-    for run in (MIXED, SOLID):
+    for run in exported:
         if run.label in responses:
             write_series(writable_folder(folder / run.model), responses[run.label], scene)
             series[run.label] = folder / run.model / f"{run.model}.pvd"

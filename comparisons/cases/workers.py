@@ -11,6 +11,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING
 
+from comparisons.extras import install
 from comparisons.scene.tables import InputError
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ def cluster(address: str) -> Workers:
     try:
         from distributed import KilledWorker
     except ImportError:
-        raise WorkersError(f"cluster {address}", "needs distributed: install tsm-crossval[cluster]") from None
+        raise WorkersError(f"cluster {address}", f"needs distributed: {install('distributed')}") from None
     with _client(address) as client:
         cores = sum(client.ncores().values())
     return Workers(width=2 * max(cores, 4), start=lambda: _cluster(address), lost=(KilledWorker,))

@@ -26,6 +26,7 @@ from comparisons.cli import (
     view,
 )
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, report
+from comparisons.extras import install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
 from comparisons.models.outside.ccx import CalculixError
@@ -92,7 +93,7 @@ def _run(arguments: list[str] | None) -> int:
         missing = error.name or str(error).strip().partition("\n")[0]
         if missing.startswith(OWN):
             raise
-        status = _told(f"{missing}: cannot be imported, install tsm-crossval again", BAD_INPUT)
+        status = _told(f"{missing}: cannot be imported, {install(missing)}", BAD_INPUT)
     except KeyboardInterrupt:
         status = _told("interrupted", INTERRUPTED)
     return status

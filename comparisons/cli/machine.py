@@ -6,13 +6,9 @@ from collections.abc import Iterator
 from importlib import metadata
 from typing import NamedTuple
 
-NEEDED = ("numpy", "scipy", "scikit-fem", "meshio", "pyvista", "matplotlib", "filelock", "psutil")
-EXTRAS = {
-    "distributed": "extra cluster: studies on a Dask cluster (--cluster)",
-    "openseespy": "extra others: --model opensees",
-    "exudyn": "extra others: --model exudyn",
-    "felupe": "extra others: --model felupe",
-}
+from comparisons.extras import EXTRAS
+
+NEEDED = ("numpy", "scipy", "scikit-fem", "matplotlib", "filelock", "psutil")
 PROGRAMS = {"ccx": "Debian's calculix-ccx: --model calculix, crossval study peers"}
 
 
@@ -39,9 +35,9 @@ def examined() -> Iterator[Finding]:
     for name in NEEDED:
         found = _version(name)
         yield Finding(name, found or "missing", found is not None)
-    for name, use in EXTRAS.items():
+    for name, extra in EXTRAS.items():
         found = _version(name)
-        yield Finding(name, found or f"missing, {use}", True if found else None)
+        yield Finding(name, found or f"missing, extra {extra.name}: {extra.use}", True if found else None)
     for name, use in PROGRAMS.items():
         path = shutil.which(name)
         yield Finding(name, path or f"missing, {use}", True if path else None)

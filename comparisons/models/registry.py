@@ -6,6 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal
 
+from comparisons.extras import EXTRAS, install
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 
@@ -53,7 +54,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     Raises
     ------
     ModelError
-        If the model cannot state the scene or an option does not belong to it.
+        If the model cannot state the scene, an option does not belong to it, or the library of an extra is missing.
     """
     from comparisons.models.verify import verified
     from comparisons.response.material import material_forces
@@ -74,6 +75,10 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         return replace(verified(response, scene), reported_success=reported)
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
+    except ImportError as error:
+        if error.name not in EXTRAS:
+            raise
+        raise ModelError(f"{chosen.name}: {error.name} is needed: {install(error.name)}") from error
 
 
 def certified(

@@ -75,7 +75,11 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
     ------
     OutputError
         One line, with the first file in the way.
+    ImportError
+        If meshio is not installed.
     """
+    import meshio  # noqa: F401 - before anything is computed for files that cannot be written
+
     names = [f"{part}-{k:04d}.vtu" for part in _parts(model) for k in range(1, scene.load_parameters + 1)]
     check_free(folder, names, _lists(folder, model))
 

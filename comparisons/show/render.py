@@ -9,12 +9,14 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.extras import install
 from comparisons.files import replacing
 from comparisons.show.plot import plot_panels
 from comparisons.show.stress import Panel, Scale
@@ -23,7 +25,8 @@ TIMEOUT = 60.0
 """Seconds for a picture; each further frame of a film has a second more."""
 ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"})
 """Tried in turn: VTK's own choice, then drawing in memory by libOSMesa alone."""
-INSTEAD = "off-screen rendering is not available here (no OpenGL or no pyvista), matplotlib drew the picture instead"
+INSTEAD = "off-screen rendering is not available here (no OpenGL, or a broken pyvista), matplotlib drew the picture instead"
+NOT_INSTALLED = f"pyvista is not installed ({install('pyvista')}), matplotlib drew the picture instead"
 
 BAR = {
     "color": "black",
@@ -65,11 +68,12 @@ def render_frames(frames: Sequence[list[Panel]], scale: Scale, folder: Path) -> 
     data, pictures = folder / "frames.npz", [folder / f"frame-{k:04d}.png" for k in range(len(frames))]
     _write(data, frames, scale)
     command, seconds = ["-m", "comparisons.show.render", str(data), str(folder)], TIMEOUT + len(frames)
-    if any(_run(command, extra, seconds) and pictures[-1].is_file() for extra in ENVIRONMENTS):
+    installed = find_spec("pyvista") is not None
+    if installed and any(_run(command, extra, seconds) and pictures[-1].is_file() for extra in ENVIRONMENTS):
         return pictures, None
     for panels, picture in zip(frames, pictures, strict=True):
         plot_panels(panels, scale, picture)
-    return pictures, INSTEAD
+    return pictures, INSTEAD if installed else NOT_INSTALLED
 
 
 def show_frames(frames: Sequence[list[Panel]], scale: Scale) -> bool:

@@ -14,6 +14,7 @@ from pathlib import Path
 import meshio
 import pytest
 
+from comparisons.extras import install
 from comparisons.scene import built_in_scenes
 from comparisons.show.render import INSTEAD
 
@@ -261,7 +262,7 @@ def test_a_missing_library(library: str, arguments: list[str], tmp_path: Path) -
         setup=f"import sys; sys.modules['{library}'] = None",
     )
     assert status == 2
-    assert re.fullmatch(rf"crossval: {library}\S*: cannot be imported, install tsm-crossval again\n", err)
+    assert re.fullmatch(rf"crossval: {library}\S*: cannot be imported, {re.escape(install(library))}\n", err)
     assert not out.exists() or not list(out.iterdir())
 
 

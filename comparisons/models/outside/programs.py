@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from comparisons.extras import install
 from comparisons.models.base import Model
 from comparisons.models.options import ModelError
 from comparisons.models.outside.program import Program
@@ -37,7 +38,6 @@ def _adapter(name: str, label: str, colour: str, requires: str, needs: str) -> P
     )  # fmt: skip
 
 
-EXTRA = "is needed: install tsm-crossval[others]"
 ADAPTERS: dict[str, Program] = {
     program.name: program
     for program in (
@@ -48,10 +48,14 @@ ADAPTERS: dict[str, Program] = {
             "ccx",
             "Debian's calculix-ccx is needed: there is no program ccx",
         ),
-        _adapter("exudyn", "Exudyn", "#999933", "exudyn", f"exudyn {EXTRA}"),
-        _adapter("felupe", "FElupe", "#DDCC77", "felupe", f"felupe {EXTRA}"),
+        _adapter("exudyn", "Exudyn", "#999933", "exudyn", f"exudyn is needed: {install('exudyn')}"),
+        _adapter("felupe", "FElupe", "#DDCC77", "felupe", f"felupe is needed: {install('felupe')}"),
         _adapter(
-            "opensees", "OpenSees", "#882255", "openseespy", f"openseespy {EXTRA}, and Debian's libblas3"
+            "opensees",
+            "OpenSees",
+            "#882255",
+            "openseespy",
+            f"openseespy is needed: {install('openseespy')}, and Debian's libblas3",
         ),
     )
 }

@@ -1,0 +1,35 @@
+"""The libraries that the package can do without, and the extra that installs each."""
+
+from typing import NamedTuple
+
+
+class Extra(NamedTuple):
+    """An extra of the package.
+
+    Attributes
+    ----------
+    name : str
+        Its name, as in ``pip install 'tsm-crossval[NAME]'``.
+    use : str
+        What needs the library.
+    """
+
+    name: str
+    use: str
+
+
+EXTRAS = {
+    "pyvista": Extra("view", "pictures and windows by VTK; matplotlib draws instead"),
+    "meshio": Extra("io", "VTU files and mesh files"),
+    "distributed": Extra("cluster", "studies on a Dask cluster (--cluster)"),
+    "openseespy": Extra("peers", "--model opensees"),
+    "exudyn": Extra("peers", "--model exudyn"),
+    "felupe": Extra("peers", "--model felupe"),
+}
+"""By library. A plain installation has those of `view` and `io`."""
+
+
+def install(library: str) -> str:
+    """Return how a library that cannot be imported is installed; a part of a library, as ``pyvista.core``, belongs to it."""
+    extra = EXTRAS.get(library.partition(".")[0])
+    return "install tsm-crossval again" if extra is None else f"install tsm-crossval[{extra.name}]"
