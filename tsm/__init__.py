@@ -8,7 +8,7 @@ from tsm.result import ContactHistory, FrictionHistory, Result, SupportHistory
 from tsm.settings import Settings
 from tsm.solve import SolveError, march, solve
 from tsm.status import Status
-from tsm.structure import Beam, ContactPair, Load, Pin, Section, Structure, Support
+from tsm.structure import Beam, ContactPair, LineLoad, Load, Pin, Section, Structure, Support
 
 __all__ = [
     "ELEMENTS",
@@ -19,6 +19,7 @@ __all__ = [
     "Event",
     "EventKind",
     "FrictionHistory",
+    "LineLoad",
     "Load",
     "Pin",
     "Result",

@@ -1,9 +1,9 @@
-"""Statement of a beam: its section, its undeformed axis and its division into elements."""
+"""Statement of a beam: its section, its undeformed axis, its division into elements, and the loads along it."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from tsm.elements import ELEMENTS, MIXED
@@ -14,6 +14,8 @@ LARGEST = 1e50
 """Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
 MOST = 1_000_000
 """Elements of a structure at most."""
+_ALIKE = 1e-12
+"""Largest relative difference of two lengths or ratios that are one."""
 
 
 def check(ok: bool, owner: str, field: str, value: object, rule: str) -> None:
@@ -74,7 +76,7 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class Beam:
-    """A straight, initially stress-free beam divided into elements, equal ones unless `nodes` says where.
+    """An initially stress-free beam divided into elements, equal ones unless `nodes` says where.
 
     Parameters
     ----------
@@ -83,13 +85,18 @@ class Beam:
     start, end : tuple of float
         End points of the axis [length]; the beam's direction is start to end.
     section : Section
-        Stiffnesses.
+        Stiffnesses, of a tapered beam those at the start.
     elements : int
         Number of elements.
     element : str
         Element type, a key of `tsm.ELEMENTS`.
     nodes : tuple of float
         Where the elements meet, as parts of the length: one value less than elements; equal elements if empty.
+    turn : float
+        Angle by which the undeformed axis turns to the left from start to end [rad]. The axis is an arc of a circle, a straight line for 0.
+    end_section : Section or None
+        Stiffnesses at the end of a tapered beam. Height and width, which are proportional to ``sqrt(EI/EA)`` and ``EA/sqrt(EI/EA)``, vary
+        linearly in the arc length, and GA is proportional to EA. None for a uniform beam.
     """
 
     name: str
@@ -99,9 +106,22 @@ class Beam:
     elements: int = 20
     element: str = MIXED.name
     nodes: tuple[float, ...] = ()
+    turn: float = 0.0
+    end_section: Section | None = None
 
     def __post_init__(self) -> None:
         owner = f"Beam({self.name})"
+        check(
+            abs(self.turn) < math.tau,
+            owner,
+            "turn",
+            self.turn,
+            "must lie between -2 pi and 2 pi, without them",
+        )
+        if self.end_section is not None:
+            start, end = (section.GA / section.EA for section in (self.section, self.end_section))
+            alike = abs(start - end) <= _ALIKE * start
+            check(alike, owner, "end_section", self.end_section, "must have the GA/EA of section")
         for field in ("start", "end"):
             value = getattr(self, field)
             check(
@@ -140,4 +160,110 @@ class Beam:
     @property
     def length(self) -> float:
         """Length of the undeformed axis."""
-        return math.dist(self.start, self.end)
+        chord, half = math.dist(self.start, self.end), self.turn / 2
+        return chord * half / math.sin(half) if half else chord
+
+    @property
+    def curvature(self) -> float:
+        """Natural curvature, positive where the axis turns to the left."""
+        return self.turn / self.length
+
+    @property
+    def varies(self) -> bool:
+        """Whether the beam is curved or tapered."""
+        return self.turn != 0 or self.end_section is not None
+
+    def direction(self, part: float) -> float:
+        """Angle of the undeformed axis from the x axis, at a part of the length.
+
+        >>> section = Section(EA=1, GA=1, EI=1)
+        >>> arc = Beam(name="arc", start=(1.0, 0.0), end=(0.0, 1.0), section=section, turn=math.pi / 2)
+        >>> round(arc.direction(0.5) / math.pi, 12)
+        0.75
+        """
+        chord = math.atan2(self.end[1] - self.start[1], self.end[0] - self.start[0])
+        return chord + (part - 0.5) * self.turn
+
+    def point(self, part: float) -> Point:
+        """Point of the undeformed axis at a part of the length.
+
+        >>> section = Section(EA=1, GA=1, EI=1)
+        >>> arc = Beam(name="arc", start=(1.0, 0.0), end=(0.0, 1.0), section=section, turn=math.pi / 2)
+        >>> [round(x, 12) for x in arc.point(0.5)]
+        [0.707106781187, 0.707106781187]
+        """
+        if not self.turn or part in {0.0, 1.0}:
+            x, y = ((1 - part) * a + part * b for a, b in zip(self.start, self.end, strict=True))
+            return x, y
+        half = part * self.turn / 2
+        chord, angle = self.length * part * math.sin(half) / half, self.direction(part / 2)
+        return self.start[0] + chord * math.cos(angle), self.start[1] + chord * math.sin(angle)
+
+    def node(self, arc: float) -> int | None:
+        """Number of the node at an arc position, None where there is none.
+
+        >>> section = Section(EA=1, GA=1, EI=1)
+        >>> Beam(name="b", start=(0, 0), end=(4, 0), section=section, elements=2).node(2.0)
+        1
+        """
+        apart = [abs(part - arc / self.length) for part in self.parts]
+        nearest = min(range(len(apart)), key=apart.__getitem__)
+        return nearest if apart[nearest] <= _ALIKE else None
+
+    def divided(self, *arcs: float) -> Beam:
+        """Beam with further nodes at arc positions [length].
+
+        >>> section = Section(EA=1, GA=1, EI=1)
+        >>> Beam(name="b", start=(0, 0), end=(4, 0), section=section, elements=2).divided(1.0, 2.0).parts
+        (0.0, 0.25, 0.5, 1.0)
+        """
+        new = {arc / self.length for arc in arcs if self.node(arc) is None}
+        parts = sorted({*self.parts, *new})
+        if not new:
+            return self
+        return replace(self, elements=len(parts) - 1, nodes=tuple(parts[1:-1]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineLoad:
+    """Dead force per undeformed length along a beam or a part of it, at load parameter 1; it keeps its direction.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    force : tuple of tuple of float
+        Force per length (x, y) [force/length]: the coefficients of a polynomial in the arc position over the beam's length, the constant
+        one first. The weight of a tapered beam has three.
+    start, end : float
+        Arc positions between which the load acts [length], nodes of the beam; by default the whole beam.
+    """
+
+    beam: str
+    force: tuple[Point, ...]
+    start: float = 0.0
+    end: float = math.inf
+
+    def __post_init__(self) -> None:
+        owner = f"LineLoad({self.beam})"
+        check(
+            len(self.force) > 0 and all(len(part) == 2 and finite(*part) for part in self.force),
+            owner, "force", self.force, f"must hold pairs of finite numbers, of at most {LARGEST:g}",
+        )  # fmt: skip
+        check(0 <= self.start < self.end, owner, "start", self.start, "must lie between 0 and end")
+
+    def elements(self, beam: Beam) -> range:
+        """Elements of its beam on which the load acts, counted from 0."""
+        first, last = beam.node(self.start), beam.node(min(self.end, beam.length))
+        assert first is not None, "the load begins at a node"
+        assert last is not None, "the load ends at a node"
+        return range(first, last)
+
+    def check(self, beam: Beam) -> None:
+        """Raise ValueError unless the load lies on its beam and begins and ends at nodes."""
+        owner, longest = f"LineLoad({self.beam})", beam.length * (1 + _ALIKE)
+        inside = self.end <= longest or self.end == math.inf
+        check(inside, owner, "end", self.end, f"must be at most the length {beam.length:g}")
+        for field, arc in (("start", self.start), ("end", min(self.end, beam.length))):
+            at_node = beam.node(arc) is not None
+            check(at_node, owner, field, arc, "must be a node of the beam, see Beam.divided")

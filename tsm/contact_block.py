@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tsm.elements.properties import Array
-from tsm.rods.assembly import CutElement
 from tsm.rods.layout import CUT, OWN
+from tsm.rods.records import CutElement
 from tsm.state import Touch
 
 if TYPE_CHECKING:

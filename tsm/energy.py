@@ -56,6 +56,12 @@ def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...
     spent[0] = system.nodal[model.fixed] @ q[model.fixed]
     q[model.free] = by.unknowns[: model.equations]
     spent[0] += state.load_parameter * float(model.load @ q)
+    if model.along.loaded:
+        contacts = by.unknowns[model.equations :]
+        spent[0] += sum(
+            group.load_power(state, tangent, q, contacts)
+            for group, tangent in zip(model.groups, system.tangent.groups, strict=True)
+        )
     for k, (fx, fy) in system.forces.items():
         if model.pairs[k].pin is not None:
             spent[0] += fx * velocities[k][0] + fy * velocities[k][1]

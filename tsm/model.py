@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from tsm.along import Along
 from tsm.elements import ELEMENTS, ClosedForm
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
@@ -51,12 +52,16 @@ class Model:
         Whether a contact has friction.
     turns : tuple of float
         Load parameters at which the paths of the pins turn; with friction, every corner, since each may reverse a slip.
+    along : Along
+        What varies along the elements.
     sizes : Sizes
         Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
+        _refuse(structure)
+        self.along = Along(structure.beams, structure.line_loads)
         self._place_beams(structure.beams)
         self._sort_elements(structure.beams)
         self._prescribe(structure)
@@ -83,7 +88,7 @@ class Model:
         for beam in beams:
             nodes = []
             for k, part in enumerate(beam.parts):
-                x, y = ((1 - part) * a + part * b for a, b in zip(beam.start, beam.end, strict=True))
+                x, y = beam.point(part)
                 at_end = k in {0, beam.elements}
                 node = ends.get((x, y), len(coordinates)) if at_end else len(coordinates)
                 if at_end:
@@ -153,7 +158,10 @@ class Model:
         self.fixed_values = np.array([self.prescribed[dof] for dof in self.fixed])
         self.load = np.zeros(self.dof_count)
         for load in structure.loads:
+            place = self.beams[load.beam]
             node = self.end_node(f"{load.beam}.{load.end}")
+            if load.arc is not None:
+                node = int(place.nodes[place.beam.node(load.arc) or 0])
             self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
 
     @cached_property
@@ -351,6 +359,25 @@ class Model:
         return [
             Properties(*row) for row in zip(*(column.tolist() for column in self.properties), strict=True)
         ]
+
+
+def _refuse(structure: Structure) -> None:
+    """Raise ValueError where a beam has what its elements cannot state."""
+    laden = {load.beam for load in structure.line_loads}
+    for beam in structure.beams:
+        if ELEMENTS[beam.element].varies:
+            continue
+        for field, there in (
+            ("turn", beam.turn),
+            ("end_section", beam.end_section),
+            ("load", beam.name in laden),
+        ):
+            if there:
+                able = ", ".join(name for name, kind in ELEMENTS.items() if kind.varies)
+                raise ValueError(
+                    f'Beam({beam.name}).{field}: elements "{beam.element}" are straight and uniform, '
+                    f"without loads along them; use {able}"
+                )
 
 
 def _lengths(beam: Beam, arcs: list[float]) -> list[float]:

@@ -106,6 +106,8 @@ class Newton:
     def potential(self, state: State) -> float:
         """Strain energy less the work of the dead loads."""
         work = state.load_parameter * float(self.model.load @ state.q)
+        if self.model.along.loaded:
+            work += sum(group.load_work(state) for group in self.model.groups)
         return self.assembler.energy(state) - work
 
     def balanced(self, equilibrium: Equilibrium) -> bool:
@@ -116,7 +118,10 @@ class Newton:
         pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
         loads = equilibrium.state.load_parameter * model.load
         total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
+        along = model.along.total(equilibrium.state.load_parameter)
+        total = total + along
         largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
+        largest += float(np.abs(along).max())
         noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
@@ -280,7 +285,7 @@ class Newton:
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
         dofs[model.free], dofs[model.fixed] = dq, along * model.fixed_values
-        change = Change(dofs, dz, float(residual), factor)
+        change = Change(dofs, dz, float(residual), factor, along)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,

@@ -86,7 +86,8 @@ def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:
     structure, reached = result.model.structure, len(result.load_parameter)
     ks = np.unique(np.linspace(0, reached - 1, shown if reached else 0).round().astype(int))
     for number, beam in enumerate(structure.beams):
-        axes.plot(*np.array([beam.start, beam.end]).T, color="0.7", linewidth=1.0, linestyle="--")
+        undeformed = [beam.point(float(part)) for part in np.linspace(0, 1, 50 if beam.turn else 2)]
+        axes.plot(*np.array(undeformed).T, color="0.7", linewidth=1.0, linestyle="--")
         for k in ks:
             label = beam.name if k == ks[-1] else None
             faint = 0.35 + 0.65 * (k + 1) / reached

@@ -19,8 +19,8 @@ import numpy as np
 from tsm.elements.properties import Array
 from tsm.groups import ExactGroup
 from tsm.inertia import Symmetric, negatives
-from tsm.rods.assembly import RodBalance
 from tsm.rods.layout import OWN
+from tsm.rods.records import RodBalance
 from tsm.rods.variation import Bordered, modes_at_least, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation

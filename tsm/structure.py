@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import Literal
 
-from tsm.beam import LARGEST, MOST, Beam, Point, Section
+from tsm.beam import LARGEST, MOST, Beam, LineLoad, Point, Section
 from tsm.beam import check as _check
 from tsm.beam import finite as _finite
 
@@ -22,7 +22,19 @@ End = Literal["start", "end"]
 Side = Literal["left", "right"]
 
 
-__all__ = ["Beam", "ContactPair", "End", "Load", "Pin", "Point", "Section", "Side", "Structure", "Support"]
+__all__ = [
+    "Beam",
+    "ContactPair",
+    "End",
+    "LineLoad",
+    "Load",
+    "Pin",
+    "Point",
+    "Section",
+    "Side",
+    "Structure",
+    "Support",
+]
 
 
 def _between(a: Point, b: Point, part: float) -> Point:
@@ -75,14 +87,16 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
-    """Dead force and moment on a beam end at load parameter 1; both keep their direction.
+    """Dead force and moment on a node of a beam at load parameter 1; both keep their direction.
 
     Parameters
     ----------
     beam : str
         Name of the beam.
-    end : {"start", "end"}
-        Which end.
+    end : {"start", "end"} or None
+        Which end, None for a node inside the beam.
+    arc : float or None
+        Arc position of the node inside the beam [length], instead of `end`.
     force : tuple of float
         Force (x, y).
     moment : float
@@ -90,13 +104,17 @@ class Load:
     """
 
     beam: str
-    end: End
+    end: End | None = None
+    arc: float | None = None
     force: Point = (0.0, 0.0)
     moment: float = 0.0
 
     def __post_init__(self) -> None:
-        owner = f"Load({self.beam}.{self.end})"
-        _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        owner = f"Load({self.beam}.{self.arc if self.end is None else self.end})"
+        if self.arc is None:
+            _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        else:
+            _check(self.end is None, owner, "arc", self.arc, "is given instead of end, not besides")
         _check(
             len(self.force) == 2 and _finite(*self.force),
             owner,
@@ -275,6 +293,7 @@ class Structure:
     pins: tuple[Pin, ...] = ()
     contacts: tuple[ContactPair, ...] = ()
     loads: tuple[Load, ...] = ()
+    line_loads: tuple[LineLoad, ...] = ()
 
     def __post_init__(self) -> None:
         _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
@@ -291,6 +310,12 @@ class Structure:
             _check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
         for load in self.loads:
             _check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
+            if load.arc is not None:
+                at_node = self.beam(load.beam).node(load.arc) is not None
+                _check(at_node, f"Load({load.beam})", "arc", load.arc, "must be a node, see Beam.divided")
+        for line_load in self.line_loads:
+            _check(line_load.beam in beams, "LineLoad", "beam", line_load.beam, "names no beam")
+            line_load.check(self.beam(line_load.beam))
         for pair in self.contacts:
             _check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
             _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")

@@ -183,6 +183,8 @@ class Assembler:
                 nodal[model.dofs[:, touch.element]] += forces
                 if pair.slot >= 0:
                     contacts[pair.slots] = rows
+        if model.along.loaded:
+            nodal = nodal + self._gather([group.load_rate(state, contacts) for group in model.groups])
         if model.fixed_values.any():
             q = self.prescribed_rate()
             nodal = nodal + self._gather([group.rate(state, q, contacts) for group in model.groups])

@@ -23,12 +23,14 @@ def solve_batch(
 
     Newton's method runs for all of them in the same array operations, each structure with its own load step, contacts, events and
     status; `solve` finds the same for each alone, to round-off where the tolerance is sharp. Structures that loads or moving
-    supports drive, that touch exact elements or the paper's, or that have no contacts are solved one after the other.
+    supports drive, that touch exact elements or the paper's, that have curved or tapered beams, or no contacts are solved one after
+    the other.
 
     Parameters
     ----------
     structures : sequence of Structure
-        Alike in everything but coordinates, lengths of elements, sections, pin paths, and sides, offsets and `keep` of contacts.
+        Alike in everything but coordinates, turns and lengths of elements, sections, loads, pin paths, and sides, offsets and `keep` of
+        contacts.
     load_parameters, settings
         As for `solve`.
 

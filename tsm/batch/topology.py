@@ -9,7 +9,7 @@ from typing import Any
 from tsm.model import Model
 from tsm.structure import Beam, Structure
 
-_SIZES = {"start", "end", "section", "nodes"}
+_SIZES = {"start", "end", "section", "nodes", "turn", "end_section"}
 _KIND = [field.name for field in fields(Beam) if field.name not in _SIZES]
 
 
@@ -46,16 +46,22 @@ def topology(structure: Structure) -> dict[str, Any]:
         ],
         "pins": [pin.name for pin in structure.pins],
         "contacts": [(pair.node, pair.beam) for pair in structure.contacts],
-        "loads": [(load.beam, load.end) for load in structure.loads],
+        "loads": [(load.beam, load.end or "inside") for load in structure.loads],
+        "line_loads": [load.beam for load in structure.line_loads],
     }
 
 
 def covered(structures: Sequence[Structure], model: Model) -> bool:
-    """Whether the structures can be solved at once: pins without friction drive them, and every contact has its force as unknown."""
+    """Whether the structures can be solved at once: pins without friction drive them, and every contact has its force as unknown.
+
+    Their beams are straight and uniform.
+    """
     driven = any(
-        structure.loads or any(s.ux or s.uy or s.rotation for s in structure.supports)
+        structure.loads or structure.line_loads or any(s.ux or s.uy or s.rotation for s in structure.supports)
         for structure in structures
     )
     mixed = all(pair.slot >= 0 and not pair.cuts for pair in model.pairs)
     rubbed = any(pair.friction for structure in structures for pair in structure.contacts)
-    return not driven and not rubbed and model.rods is None and len(model.pairs) > 0 and mixed
+    varies = any(beam.varies for structure in structures for beam in structure.beams)
+    whole = not driven and not rubbed and not varies
+    return whole and model.rods is None and len(model.pairs) > 0 and mixed

@@ -52,6 +52,11 @@ class ElementType(ABC):
     def rubs(self) -> bool:
         """Whether its contacts may have friction."""
 
+    @property
+    @abstractmethod
+    def varies(self) -> bool:
+        """Whether its beams may be curved or tapered, or have loads along them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(ElementType):
@@ -69,6 +74,11 @@ class Integrated(ElementType):
 
     @property
     def rubs(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def varies(self) -> bool:
         """True."""
         return True
 
@@ -113,6 +123,11 @@ class ClosedForm(ElementType):
     def rubs(self) -> bool:
         """Whether its contact law has friction."""
         return self.contact.coupling is not None and self.contact.coupling.friction is not None
+
+    @property
+    def varies(self) -> bool:
+        """False."""
+        return False
 
     def constants(self, p: Properties) -> Properties:
         """Return the section's constants as this element has them."""

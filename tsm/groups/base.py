@@ -57,12 +57,15 @@ class Change(NamedTuple):
         Part of the residual that the change removes.
     factor : float
         Part of the change that is taken.
+    load : float
+        Change of the load parameter.
     """
 
     dofs: Array
     contacts: Array
     residual: float
     factor: float
+    load: float
 
 
 class ElementGroup(ABC):
@@ -107,6 +110,18 @@ class ElementGroup(ABC):
     @abstractmethod
     def rate(self, state: State, q: Array, contacts: Array) -> Array:
         """Change (n, e) of the forces with the degrees of freedom; what belongs to the contacts' rows is added to `contacts`."""
+
+    @abstractmethod
+    def load_rate(self, state: State, contacts: Array) -> Array:
+        """Change (n, e) of the forces with the load parameter, by loads along the elements; the contacts' rows change in `contacts`."""
+
+    @abstractmethod
+    def load_work(self, state: State) -> float:
+        """Work of the loads along the elements at the state, as they are there, on the displacements."""
+
+    @abstractmethod
+    def load_power(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:
+        """Work of the loads along the elements at rates of all degrees of freedom and of the contacts' unknowns."""
 
     @abstractmethod
     def pin_rate(

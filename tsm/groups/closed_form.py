@@ -105,6 +105,18 @@ class ClosedFormGroup(ElementGroup):
         rate: Array = np.einsum("ijn,jn->in", tangent.reshape(6, 6, -1), q[self.dofs])
         return rate
 
+    def load_rate(self, _state: State, _contacts: Array) -> Array:
+        """Zero: there are no loads along the elements."""
+        return np.zeros((6, len(self.elements)))
+
+    def load_work(self, _state: State) -> float:
+        """Zero: there are no loads along the elements."""
+        return 0.0
+
+    def load_power(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> float:
+        """Zero: there are no loads along the elements."""
+        return 0.0
+
     def pin_rate(
         self, pair: PairModel, touch: Touch, state: State, velocity: tuple[float, float]
     ) -> tuple[Array, Array]:

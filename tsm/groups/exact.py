@@ -14,10 +14,12 @@ from tsm.elements.properties import Array
 from tsm.groups.base import Change, ElementGroup
 from tsm.projection import PROJECTED, Projection, arc_position, overshoot, slide
 from tsm.rods.accuracy import deflected, finer, inaccurate, truncation
-from tsm.rods.assembly import RodBalance, Rods, RodTangent
+from tsm.rods.assembly import Rods
 from tsm.rods.layout import OWN
 from tsm.rods.profile import alike, recut, undeformed
+from tsm.rods.records import RodBalance, RodTangent
 from tsm.rods.shape import RodShape, Stations, pieces, tangent_at
+from tsm.rods.varying import VaryingRods
 from tsm.state import Profile, State, Touch, Traction
 
 if TYPE_CHECKING:
@@ -41,7 +43,8 @@ class ExactGroup(ElementGroup):
     @cached_property
     def rods(self) -> Rods:
         """Numerics of the elements."""
-        return Rods(self.model, self.dofs, self.elements)
+        varies = self.model.along.varies[self.elements].any()
+        return (VaryingRods if varies else Rods)(self.model, self.dofs, self.elements)
 
     def forces(self, state: State, contacts: ContactBlock) -> RodBalance:
         """Residual of the elements and of the contacts that cut them."""
@@ -67,6 +70,18 @@ class ExactGroup(ElementGroup):
         rate: Array = np.einsum("ijn,jn->in", tangent.tangent.reshape(OWN, OWN, -1), x)
         return rate
 
+    def load_rate(self, state: State, contacts: Array) -> Array:
+        """Change (9, e) of the forces with the load parameter, and of the rows of the contacts."""
+        return self.rods.load_rate(state, contacts)
+
+    def load_work(self, state: State) -> float:
+        """Work of the loads along the elements."""
+        return self.rods.load_work(state)
+
+    def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
+        """Work of the loads along the elements at rates of the unknowns."""
+        return self.rods.load_power(state, tangent, dofs, contacts)
+
     def pin_rate(
         self, pair: PairModel, _touch: Touch, _state: State, velocity: tuple[float, float]
     ) -> tuple[Array, Array]:
@@ -84,7 +99,10 @@ class ExactGroup(ElementGroup):
         """Slip rate of a contact."""
         part = next(part for part in tangent.cut if k in part.pairs)
         own = dofs[self.dofs[:, part.element]]
-        return float(part.slip[k] @ np.concatenate([own, contacts[self.rods.slots(part.pairs)], [0.0]]))
+        return float(
+            part.slip[k]
+            @ np.concatenate([own, contacts[self.rods.slots(part.pairs)], self.rods.fixed(1.0, 0.0)])
+        )
 
     def energy(self, state: State) -> float:
         """Strain energy of the elements; contacts have none."""
@@ -102,7 +120,8 @@ class ExactGroup(ElementGroup):
         """State with its angles inside changed."""
         profile = before.profile
         assert profile is not None, "a model with exact elements has their profile"
-        inside = self.rods.inside(tangent, before, change.dofs, change.contacts, change.residual)
+        fixed = (change.load, change.residual)
+        inside = self.rods.inside(tangent, before, change.dofs, change.contacts, fixed)
         moved = Profile(cuts=profile.cuts, angle=profile.angle + change.factor * inside)
         return replace(after, profile=moved)
 
@@ -145,7 +164,7 @@ class ExactGroup(ElementGroup):
             l0 = target.lengths[e]
             inside = min(max(arc, 0.0), l0)
             at = shape.at(first + e, np.array([inside]))
-            tangent, bend = tangent_at(self.rods, first + e, at)
+            tangent, bend = tangent_at(self.rods, first + e, inside, at)
             apart = at.position[0] + (arc - inside) * tangent - node
             slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
             step = float(apart @ tangent) / slope if slope > 0 else 0.0
@@ -169,10 +188,7 @@ class ExactGroup(ElementGroup):
         profile, place = state.profile, int(self.model.place[touch.element])
         assert profile is not None, "an exact element has a profile"
         s = int(forces.entry.place.first[place]) + dict(profile.cuts)[place].index(k)
-        fx, fy = (float(row[s, 0] + row[s + 1, 0]) / 2 for row in forces.entry.segments.force)
-        axial = fx * math.cos(touch.angle) + fy * math.sin(touch.angle)
-        p = self.model.element[touch.element]
-        return float(float(forces.entry.moment[s + 1, 0]) / p.EI / (1 + axial / p.EA))
+        return self.rods.curvature(forces.entry, s, touch)
 
     def intervals(self, elements: int) -> int:
         """Intervals in which an element is drawn."""
@@ -185,8 +201,9 @@ class ExactGroup(ElementGroup):
 
     def section_axes(self, beam: BeamModel, shape: Array) -> Array:
         """Directions of the sections' normals at both ends of the elements."""
-        p = self.model.element[beam.first]
-        angle = np.arctan2(p.dy0, p.dx0) + shape[:, 2]
+        rods, own = self.rods, self.model.place[beam.first : beam.last + 1]
+        natural = np.append(rods.angle0[own], rods.angle1[own[-1]]) if rods.varies else rods.angle0[own[0]]
+        angle = natural + shape[:, 2]
         t = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         return np.stack([t[:-1], t[1:]])
 

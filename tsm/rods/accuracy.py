@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsm.elements import rod
 from tsm.elements.collocation import collocation
-from tsm.rods.assembly import Entry, Memo, RodBalance, Rods, profile_of
+from tsm.rods.assembly import Rods, profile_of
 from tsm.rods.profile import resampled
+from tsm.rods.records import Entry, Memo, RodBalance
 from tsm.rods.shape import RodShape, plain_shape
 from tsm.state import State
 
@@ -32,9 +32,12 @@ def truncation(rods: Rods, entry: Entry) -> float:
     """
     segments, values = entry.segments, entry.field.values
     order = values.shape[2]
-    tail = np.abs(values @ collocation(order).legendre[-2:].T).max(axis=2)
+    last = collocation(order).legendre[-2:].T
+    tail = np.abs(values @ last).max(axis=2)
     length = np.abs(segments.length[:, 0])
-    turn = tail[0] * length**2 * segments.flexibility.bend[:, 0]
+    turn = tail[0] * length**2 * segments.flexibility.bend.max(axis=1)
+    if rods.varies:
+        turn = np.maximum(turn, np.abs(rods.turning(entry) @ last).max(axis=1) * length)
     largest = np.maximum(turn, tail[1:].max(axis=0) * length / rods.model.length).max()
     return float(largest / order) ** 2
 
@@ -72,10 +75,10 @@ def _finer_inside(rods: Rods, state: State) -> Entry:
     finer = resampled(rods, state, 2 * profile_of(state).angle.shape[1])
     entry = rods.enter(finer)
     for _ in range(5):
-        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
+        arrival = rods.arrive(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         if np.abs(arrival.inside).max() < _SMOOTH:
             break
-        inner = rod.condense(entry.segments, entry.field, arrival, entry.moment).inner
+        inner = rods.condense(entry.segments, entry.field, arrival, entry.moment).inner
         profile = profile_of(finer)
         finer = replace(finer, profile=replace(profile, angle=profile.angle + inner[:, :, 6]))
         entry = rods.enter(finer)

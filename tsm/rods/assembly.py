@@ -8,173 +8,32 @@ the angle. The angles inside the segments are eliminated (`tsm.elements.rod`) an
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+import math
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.elements.rod import INPUTS, Arrival, Field, Flexibility, Segments
+from tsm.elements.rod import Arrival, Condensed, Field, Flexibility, Segments
 from tsm.rods import contact_rows
+from tsm.rods.contact_rows import Explicit
 from tsm.rods.friction_rows import Rubbing, placed, rubbing
 from tsm.rods.layout import COLUMNS, CUT, FIXED, OWN, ROWS, Layout, chain, layout
+from tsm.rods.records import CutElement, Entry, Memo, Owned, RodBalance, RodTangent, Section
 from tsm.state import Cuts, Profile, State, Touch
 
 if TYPE_CHECKING:
     from tsm.model import Model
-    from tsm.rods.shape import RodShape
 
 
 _KEPT = 16
 """Divisions into segments whose constants are kept."""
 
 
-class Owned(NamedTuple):
-    """Constants of the elements, one for every segment.
-
-    Attributes
-    ----------
-    place : Layout
-        The segments.
-    dofs : ndarray of int, shape (9, s)
-        Degrees of freedom of the elements.
-    angle0, length : ndarray, shape (s,)
-        Angle of the undeformed elements, and their length.
-    flexibility : Flexibility
-        Flexibilities of the elements.
-    """
-
-    place: Layout
-    dofs: Array
-    angle0: Array
-    length: Array
-    flexibility: Flexibility
-
-
-class Entry(NamedTuple):
-    """Where the segments of a state begin and end.
-
-    Attributes
-    ----------
-    place : Layout
-        Elements of the segments.
-    segments : rod.Segments
-        Force, length and angles inside.
-    field : rod.Field
-        The rod's equations there.
-    start, end, moment : ndarray, shape (s, 1)
-        Angles at both ends, moment at the start.
-    gain : ndarray, shape (s,)
-        Moment at the end minus moment at the start.
-    vector : ndarray, shape (2, s)
-        Vector from start to end.
-    rubbing : dict of Rubbing
-        Contacts with friction, by pair.
-    """
-
-    place: Layout
-    segments: Segments
-    field: Field
-    start: Array
-    end: Array
-    moment: Array
-    gain: Array
-    vector: Array
-    rubbing: dict[int, Rubbing]
-
-
-class RodBalance(NamedTuple):
-    """Residual of the exact elements.
-
-    Attributes
-    ----------
-    entry : Entry
-        The segments.
-    arrival : rod.Arrival
-        Their residuals.
-    nodal : ndarray, shape (9, r)
-        Forces on node i, arrival at node j, forces on node j.
-    contacts : dict of list
-        By pair: the rows of position (2), direction and arrival of the angle.
-    tangents : dict of tuple
-        By pair: the axis' tangent vectors before and after the contact.
-    inside : float
-        Largest residual inside [rad].
-    """
-
-    entry: Entry
-    arrival: Arrival
-    nodal: Array
-    contacts: dict[int, list[Any]]
-    tangents: dict[int, tuple[rod.Tangent, rod.Tangent]]
-    inside: float
-
-    @property
-    def ends(self) -> Array:
-        """Forces and moments at both ends of the elements, shape (6, r)."""
-        ends: Array = self.nodal[[0, 1, 2, 6, 7, 8]]
-        return ends
-
-
-class CutElement(NamedTuple):
-    """Tangent of an element with contacts.
-
-    Attributes
-    ----------
-    element : int
-        Counted over the exact elements.
-    pairs : tuple of int
-        Its contact pairs in order of arc position.
-    tangent : ndarray, shape (9 + 4 k, 10 + 4 k)
-        Tangent over the unknowns of the element, then of the contacts. The last column is the contribution of the inner residual.
-    inputs : ndarray, shape (k + 1, 7, 10 + 4 k)
-        Inputs of the segments by the same unknowns.
-    slip : dict of ndarray, shape (10 + 4 k,)
-        By pair with friction: its slip rate as a linear form over the same unknowns.
-    """
-
-    element: int
-    pairs: tuple[int, ...]
-    tangent: Array
-    inputs: Array
-    slip: dict[int, Array]
-
-
-class RodTangent(NamedTuple):
-    """Tangent of the exact elements.
-
-    Attributes
-    ----------
-    condensed_residual : ndarray, shape (9, r)
-        Contribution of the inner residual to the residual after the inner unknowns are eliminated.
-    tangent : ndarray, shape (81, r)
-        Derivative of the residual, row by row.
-    cut : tuple of CutElement
-        Tangents of the elements with contacts. The part without contacts is in the arrays above too.
-    inner : ndarray, shape (s, p, 7)
-        Derivatives of the angles inside by the inputs of the segments.
-    transfer : ndarray, shape (s, 4, 7)
-        Derivatives of their outputs, see `rod.Condensed`.
-    """
-
-    condensed_residual: Array
-    tangent: Array
-    cut: tuple[CutElement, ...]
-    inner: Array
-    transfer: Array
-
-
-class Memo(NamedTuple):
-    """Cache of the last deflected axis, with its state and the closest points by pair."""
-
-    state: State
-    shape: RodShape
-    closest: dict[int, Any]
-
-
 class Rods:
-    """The exact elements of a model.
+    """The exact elements of a model, straight and uniform ones without loads along them.
 
     Parameters
     ----------
@@ -186,12 +45,14 @@ class Rods:
         Global numbers of the elements.
     """
 
+    varies: ClassVar[bool] = False
+
     def __init__(self, model: Model, dofs: Array, exact: Array) -> None:
-        self.model, self.dofs = model, dofs
+        self.model, self.dofs, self.elements = model, dofs, exact
         nodes = model.element_nodes[exact]
         self.start, self.end = model.coordinates[nodes[:, 0]].T, model.coordinates[nodes[:, 1]].T
         p = model.properties
-        self.angle0 = np.arctan2(p.dy0[exact], p.dx0[exact])
+        self.angle0 = self.angle1 = np.arctan2(p.dy0[exact], p.dx0[exact])
         self.length = p.l0[exact]
         psi = p.Phi[exact] * self.length**2 / 12
         self.flexibility = Flexibility(1 / p.EA[exact], psi / p.EI[exact], 1 / p.EI[exact])
@@ -201,9 +62,9 @@ class Rods:
     def enter(self, state: State) -> Entry:
         """Cut the elements at their contacts and evaluate the rod's equations inside."""
         profile = profile_of(state)
-        place, dofs, angle0, length, flexibility = self._owned(profile.cuts)
+        place, dofs, (angle0, angle1), length, flexibility = self._owned(profile.cuts)
         q, length = state.q[dofs], length.copy()
-        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle0, q[5]
+        force, start, end, moment = q[3:5, :, None], q[2] + angle0, q[8] + angle1, q[5]
         for element, pairs in profile.cuts:
             s, behind = int(place.first[element]), 0.0
             for k in pairs:
@@ -215,8 +76,8 @@ class Rods:
                 force[0, s, 0] = force[0, s - 1, 0] - touch.force[0]
                 force[1, s, 0] = force[1, s - 1, 0] - touch.force[1]
             length[s] = self.length[element] - behind
-        segments = Segments(flexibility, force, length[:, None], profile.angle)
-        field = rod.field(segments)
+        segments = self.segments(state, place, Segments(flexibility, force, length[:, None], profile.angle))
+        field = self.field(segments)
         sums = field.sums[:, :, 0] * length
         gain = sums[0]
         rubbed: dict[int, Rubbing] = {}
@@ -227,10 +88,67 @@ class Rods:
                     rubbed[k] = self._rubbing(state, k, segments, s, moment[s + 1])
                     moment[s + 1] = moment[s + 1] - rubbed[k].couple
         return Entry(
-            place, segments, field, start[:, None], end[:, None], moment[:, None], gain, sums[1:], rubbed
+            place,
+            segments,
+            field,
+            start[:, None],
+            end[:, None],
+            moment[:, None],
+            gain,
+            sums[1:],
+            rubbed,
+            state.load_parameter,
         )
 
-    def _rubbing(self, state: State, k: int, segments: Segments, s: int, moment: Any) -> Rubbing:
+    def field(self, segments: Any) -> Field:
+        """Evaluate the rod's equations at the Gauss nodes."""
+        return rod.field(segments)
+
+    def arrive(self, segments: Any, field: Field, start: Array, moment: Array, end: Array) -> Arrival:
+        """Residuals of segments, see `rod.arrival`."""
+        return rod.arrival(segments, field, start, moment, end)
+
+    def condense(self, segments: Any, field: Field, arrived: Arrival, moment: Array) -> Condensed:
+        """Eliminate the angles inside, see `rod.condense`."""
+        return rod.condense(segments, field, arrived, moment)
+
+    def segments(self, _state: State, _place: Layout, uniform: Segments) -> Any:
+        """Segments with what varies along them, from those with the forces at their starts."""
+        return uniform
+
+    def turning(self, entry: Entry) -> Array:
+        """Derivatives (s, p) of the angles at the Gauss nodes in the arc position."""
+        segments, table = entry.segments, collocation(entry.segments.angle.shape[1])
+        moment = entry.moment + segments.length * (entry.field.values[0] @ table.once.T)
+        turning: Array = segments.flexibility.bend * moment
+        return turning
+
+    def undeformed_angle(self, element: Any, _arc: Array) -> Any:
+        """Angle of the undeformed axis of elements, counted over the exact ones, at arc positions within them."""
+        return self.angle0[element]
+
+    def along(self, entry: Entry) -> tuple[Array, Array | None]:
+        """Internal force (2, s) at the starts of the segments, and its derivative (2, s, p) at the Gauss nodes where it varies."""
+        return entry.segments.force[:, :, 0], None
+
+    def section(self, element: int, _arc: float) -> Section:
+        """Section of an element at an arc position within it."""
+        stretch, shear, bend = (float(value[element]) for value in self.flexibility)
+        return Section(stretch, shear, bend, 0.0)
+
+    def curvature(self, entry: Entry, s: int, touch: Touch) -> float:
+        """Curvature of the axis at the contact at the end of segment s, from moment and stretch."""
+        fx, fy = (float(row[s, 0] + row[s + 1, 0]) / 2 for row in entry.segments.force)
+        axial = fx * math.cos(touch.angle) + fy * math.sin(touch.angle)
+        p = self.model.element[touch.element]
+        return float(float(entry.moment[s + 1, 0]) / p.EI / (1 + axial / p.EA))
+
+    def end_force(self, entry: Entry) -> Array:
+        """Internal force (2, r) at the end of every element."""
+        force: Array = entry.segments.force[:, entry.place.last, 0]
+        return force
+
+    def _rubbing(self, state: State, k: int, segments: Any, s: int, moment: Any) -> Rubbing:
         """Contact with friction at the end of segment s, with the moment before it."""
         pair, touch, bend = self.model.pairs[k], touch_of(state, k), segments.flexibility.bend[s, 0]
         contact = rubbing(pair, touch.force, self._tangents(state, k, segments, s), touch.angle, bend)
@@ -245,21 +163,25 @@ class Rods:
             stretch, shear, bend = (value[own, None] for value in self.flexibility)
             flexibility = Flexibility(stretch, shear, bend)
             self._constants[cuts] = Owned(
-                place, self.dofs[:, own], self.angle0[own], self.length[own], flexibility
+                place,
+                self.dofs[:, own],
+                (self.angle0[own], self.angle1[own]),
+                self.length[own],
+                flexibility,
             )
         return self._constants[cuts]
 
     def balance(self, state: State) -> RodBalance:
         """Residual at a state."""
         entry = self.enter(state)
-        arrival = rod.arrival(entry.segments, entry.field, entry.start, entry.moment, entry.end)
+        arrival = self.arrive(entry.segments, entry.field, entry.start, entry.moment, entry.end)
         q = state.q[self.dofs]
         first, last = entry.place.first, entry.place.last
         residual = np.empty_like(q)
         residual[0:3] = -q[3:6]
         residual[3:5] = (self.start - self.end) + (q[0:2] - q[6:8]) + entry.vector[:, first]
         residual[5] = arrival.end_residual[last]
-        residual[6:8] = entry.segments.force[:, last, 0]
+        residual[6:8] = self.end_force(entry)
         residual[8] = entry.moment[last, 0] + entry.gain[last]
         contacts: dict[int, list[Any]] = {}
         tangents: dict[int, tuple[rod.Tangent, rod.Tangent]] = {}
@@ -281,7 +203,7 @@ class Rods:
         largest = float(np.abs(arrival.inside).max())
         return RodBalance(entry, arrival, residual, contacts, tangents, largest)
 
-    def _tangents(self, state: State, k: int, segments: Segments, s: int) -> tuple[rod.Tangent, rod.Tangent]:
+    def _tangents(self, state: State, k: int, segments: Any, s: int) -> tuple[rod.Tangent, rod.Tangent]:
         """Tangent vectors before and after the contact at the end of segment s."""
         flexibility = segments.flexibility
         stretch, shear = float(flexibility.stretch[s, 0]), float(flexibility.shear[s, 0])
@@ -292,7 +214,7 @@ class Rods:
     def linearise(self, state: State, balance: RodBalance) -> RodTangent:
         """Tangent at a state."""
         entry = balance.entry
-        condensed = rod.condense(entry.segments, entry.field, balance.arrival, entry.moment)
+        condensed = self.condense(entry.segments, entry.field, balance.arrival, entry.moment)
         first = entry.place.first
         tangent = np.empty((len(first), OWN, OWN), dtype=state.q.dtype)
         tangent[:] = FIXED
@@ -310,11 +232,19 @@ class Rods:
             condensed_residual, tangent.reshape(len(first), -1).T, cut, condensed.inner, condensed.transfer
         )
 
+    def chain(self, count: int) -> tuple[Array, Array, Array]:
+        """Constant matrices of an element with `count` cuts, see `layout.chain`."""
+        return chain(count)
+
+    def explicit(self, _state: State, _k: int, _balance: RodBalance, _selectors: Array) -> Explicit | None:
+        """Derivatives of the tangent vectors at a contact that do not pass through angle and force; None without any."""
+        return None
+
     def _cut(
         self, state: State, element: int, pairs: tuple[int, ...], balance: RodBalance, transfer: Array
     ) -> CutElement:
         first, count = int(balance.entry.place.first[element]), len(pairs)
-        inputs, fixed, selectors = chain(count)
+        inputs, fixed, selectors = self.chain(count)
         inputs, tangent = inputs.astype(transfer.dtype), fixed.astype(transfer.dtype)
         moved, slip = tangent[3:5].copy(), {}
         for k in range(count):
@@ -328,11 +258,11 @@ class Rods:
                 touch_of(state, pairs[k]),
                 balance.tangents[pairs[k]],
             )
-            rows = tangent[row : row + 3]
-            contact_rows.differentiate(rows, touch.force, tangents, pair.reach, selectors[k, :5])
+            rows, own = tangent[row : row + 3], self.explicit(state, pairs[k], balance, selectors[k])
+            contact_rows.differentiate(rows, touch.force, tangents, pair.reach, selectors[k, :5], own)
             if touch.grip is not None:
                 forms = balance.entry.rubbing[pairs[k]].differentiate(
-                    touch.grip, self.model.stick_stiffness, tangents, selectors[k], out[1]
+                    touch.grip, self.model.stick_stiffness, tangents, selectors[k], out[1], own
                 )
                 rows[2], slip[pairs[k]] = forms.row, forms.slip
                 inputs[k + 1, 1] = out[1] - forms.couple
@@ -343,7 +273,9 @@ class Rods:
         tangent[5], tangent[8] = out[0], out[1]
         return CutElement(element, pairs, tangent, inputs, slip)
 
-    def inside(self, tangent: RodTangent, state: State, dq: Array, contacts: Array, constant: float) -> Array:
+    def inside(
+        self, tangent: RodTangent, state: State, dq: Array, contacts: Array, fixed: tuple[float, float]
+    ) -> Array:
         """Change of the inner angles that follows from a change of all other unknowns.
 
         Parameters
@@ -356,21 +288,44 @@ class Rods:
             Change of the displacements and element forces.
         contacts : ndarray, shape (contact unknowns,)
             Change of the contacts' unknowns.
-        constant : float
-            1 to remove the residual inside, 0 to follow a path on which it is zero.
+        fixed : tuple of 2 float
+            Change of the load parameter; then 1 to remove the residual inside, 0 to follow a path on which it is zero.
         """
-        place = layout(len(self.length), profile_of(state).cuts)
-        x = dq[self.dofs]
-        inputs = np.zeros((len(place.owner), INPUTS))
-        inputs[:, :5] = x[COLUMNS][:, place.owner].T
-        inputs[:, 6] = constant
-        for part in tangent.cut:
-            slots = self.slots(part.pairs)
-            z = np.concatenate([x[:, part.element], contacts[slots], [constant]])
-            first = place.first[part.element]
-            inputs[first : first + len(part.inputs)] = part.inputs @ z
+        inputs = self.inputs(tangent, state, dq, contacts, fixed)
         change: Array = (tangent.inner @ inputs[:, :, None])[:, :, 0]
         return change
+
+    def inputs(
+        self, tangent: RodTangent, state: State, dq: Array, contacts: Array, fixed: tuple[float, float]
+    ) -> Array:
+        """Change (s, inputs) of the inputs of the segments, see `inside`."""
+        place = layout(len(self.length), profile_of(state).cuts)
+        x = dq[self.dofs]
+        inputs = np.zeros((len(place.owner), tangent.inner.shape[2]))
+        inputs[:, :5] = x[COLUMNS][:, place.owner].T
+        inputs[:, 6], inputs[:, 8:] = fixed[1], fixed[0]
+        for part in tangent.cut:
+            slots = self.slots(part.pairs)
+            z = np.concatenate([x[:, part.element], contacts[slots], self.fixed(*fixed)])
+            first = place.first[part.element]
+            inputs[first : first + len(part.inputs)] = part.inputs @ z
+        return inputs
+
+    def fixed(self, _load: float, constant: float) -> tuple[float, ...]:
+        """Last columns of a tangent: what is no unknown."""
+        return (constant,)
+
+    def load_rate(self, state: State, _contacts: Array) -> Array:
+        """Change of the forces with the load parameter, none without loads along elements."""
+        return np.zeros_like(state.q[self.dofs])
+
+    def load_work(self, _state: State) -> float:
+        """Work of loads along elements, of which there are none."""
+        return 0.0
+
+    def load_power(self, _state: State, _tangent: RodTangent, _dofs: Array, _contacts: Array) -> float:
+        """Power of loads along elements, of which there are none."""
+        return 0.0
 
     def slots(self, pairs: tuple[int, ...]) -> list[int]:
         """Positions of the pairs' unknowns among the contacts' unknowns."""

@@ -6,7 +6,7 @@ that mean: ``r + offset - x_c = 0``, ``F . (r'_- + r'_+) = 0``.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,21 @@ from tsm.elements.properties import Array
 
 Point = tuple[Any, Any]
 Tangents = tuple[rod.Tangent, rod.Tangent]
+
+
+class Explicit(NamedTuple):
+    """Derivatives at a contact by the unknowns that pass neither through the section's angle nor through the forces.
+
+    Attributes
+    ----------
+    vector : ndarray, shape (2, n)
+        Of the sum of the tangent vectors.
+    turn : ndarray, shape (n,)
+        Of the mean derivative of the angle in the arc position.
+    """
+
+    vector: Array
+    turn: Array
 
 
 def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> list[Any]:
@@ -38,7 +53,14 @@ def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> li
     return [x, y, force[0] * tx + force[1] * ty]
 
 
-def differentiate(rows: Array, force: Point, tangents: Tangents, reach: float, selectors: Array) -> None:
+def differentiate(
+    rows: Array,
+    force: Point,
+    tangents: Tangents,
+    reach: float,
+    selectors: Array,
+    explicit: Explicit | None = None,
+) -> None:
     """Add to the rows (3, n) of position and direction the derivatives through the tangent vectors.
 
     Parameters
@@ -49,6 +71,8 @@ def differentiate(rows: Array, force: Point, tangents: Tangents, reach: float, s
         As for `residual`.
     selectors : ndarray, shape (5, n)
         Derivatives of the section's angle, the internal force before, and the contact force.
+    explicit : Explicit, optional
+        Further derivatives of the tangent vectors.
     """
     before, after = tangents
     (Fx, Fy), (tx, ty) = force, _sum(tangents)
@@ -63,8 +87,12 @@ def differentiate(rows: Array, force: Point, tangents: Tangents, reach: float, s
         ty - Fx * ay - Fy * aa,
     ]
     rows[2] = np.array(by_direction) @ selectors
+    if explicit is not None:
+        rows[2] += Fx * explicit.vector[0] + Fy * explicit.vector[1]
     if reach:
         turned_x, turned_y = np.array([[ux, sx, sy, -ax, -ay], [uy, sy, ss, -ay, -aa]]) @ selectors
+        if explicit is not None:
+            turned_x, turned_y = turned_x + explicit.vector[0], turned_y + explicit.vector[1]
         across = (tx * turned_y - ty * turned_x) * (reach / (tx * tx + ty * ty) ** 1.5)
         rows[0] += tx * across
         rows[1] += ty * across

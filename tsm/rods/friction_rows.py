@@ -22,6 +22,7 @@ import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.properties import Array, cosine, sine
+from tsm.rods.contact_rows import Explicit
 from tsm.state import Grip, Place
 
 if TYPE_CHECKING:
@@ -78,6 +79,8 @@ class Rubbing(NamedTuple):
         Force on the beam.
     bend : float
         1/EI.
+    curvature : float
+        Natural curvature.
     mean : Mean
         Mean tangent.
     place : Place
@@ -89,6 +92,7 @@ class Rubbing(NamedTuple):
     pair: PairModel
     force: Pair
     bend: float
+    curvature: float
     mean: Mean
     place: Place
     tangential: Any
@@ -110,7 +114,13 @@ class Rubbing(NamedTuple):
         return stiffness * (slid + self.pair.roll * (here.direction - held.direction))
 
     def differentiate(
-        self, grip: Grip, stiffness: float, tangents: Tangents, selectors: Array, moment: Array
+        self,
+        grip: Grip,
+        stiffness: float,
+        tangents: Tangents,
+        selectors: Array,
+        moment: Array,
+        explicit: Explicit | None = None,
     ) -> Forms:
         """Derivatives.
 
@@ -124,6 +134,8 @@ class Rubbing(NamedTuple):
             Derivatives of the section's angle, the internal force before (2), the contact force (2), and the arc position.
         moment : ndarray, shape (n,)
             Derivative of the moment before the contact.
+        explicit : Explicit, optional
+            Further derivatives of the tangent vectors and of the curvature.
         """
         pair, (fx, fy), (tx, ty), stretch = self.pair, self.force, self.mean.t, self.mean.stretch
         before, after = tangents
@@ -133,10 +145,14 @@ class Rubbing(NamedTuple):
             [before.turned[1] + after.turned[1], xy + ay, yy + aa, -ay, -aa],
         ]
         vector = np.array(by) / 2 @ selectors[:5]
+        if explicit is not None:
+            vector = vector + explicit.vector / 2
         direction, arc = (tx * vector[1] - ty * vector[0]) / stretch, selectors[5]
         shear = direction - selectors[0]
         couple = pair.lever * ((fy * tx - fx * ty) * direction + tx * selectors[3] + ty * selectors[4])
         longer = tx * vector[0] + ty * vector[1] + pair.lever * self.bend * (moment - couple / 2)
+        if explicit is not None:
+            longer = longer + pair.lever * explicit.turn
         angles = pair.lever * shear + pair.roll * direction
         slip = self.place.stretch * arc + angles
         if grip.held is None:
@@ -150,8 +166,10 @@ class Rubbing(NamedTuple):
         return Forms(row, couple, slip)
 
 
-def rubbing(pair: PairModel, force: Pair, tangents: Tangents, angle: Any, bend: float) -> Rubbing:
-    """Contact with friction whose arc position and curvature are left open."""
+def rubbing(
+    pair: PairModel, force: Pair, tangents: Tangents, angle: Any, bend: float, curvature: float = 0.0
+) -> Rubbing:
+    """Contact with friction whose arc position and moment are left open."""
     before, after = tangents
     x, y = (before.vector[0] + after.vector[0]) / 2, (before.vector[1] + after.vector[1]) / 2
     stretch = (x * x + y * y) ** 0.5
@@ -160,14 +178,14 @@ def rubbing(pair: PairModel, force: Pair, tangents: Tangents, angle: Any, bend: 
     here = Place(0.0, shear, angle + shear, stretch)
     tangential = force[0] * t[0] + force[1] * t[1]
     normal = pair.side * (force[1] * t[0] - force[0] * t[1])
-    return Rubbing(pair, force, bend, Mean(t, stretch, shear), here, tangential, normal)
+    return Rubbing(pair, force, bend, curvature, Mean(t, stretch, shear), here, tangential, normal)
 
 
 def placed(contact: Rubbing, arc: Any, moment: Any) -> Rubbing:
     """Contact at an arc position, with the moment before it."""
     lever = contact.pair.lever
-    curvature = contact.bend * (moment - lever * contact.tangential / 2)
-    stretch = contact.mean.stretch + lever * curvature
+    turn = contact.bend * (moment - lever * contact.tangential / 2) + contact.curvature
+    stretch = contact.mean.stretch + lever * turn
     return contact._replace(place=contact.place._replace(arc=arc, stretch=stretch))
 
 

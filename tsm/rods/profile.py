@@ -14,7 +14,7 @@ from tsm.rods.shape import RodShape, plain_shape
 from tsm.state import Cuts, Profile, State, Touch
 
 START_ORDER = 14
-"""Gauss nodes of a straight element."""
+"""Gauss nodes of an undeformed element."""
 
 
 def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
@@ -27,10 +27,16 @@ def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
 
 
 def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
-    """Profile of the straight elements."""
+    """Profile of the undeformed elements."""
     cuts = cuts_of(rods, touches)
-    owner = layout(len(rods.length), cuts).owner
-    return Profile(cuts=cuts, angle=np.repeat(rods.angle0[owner][:, None], START_ORDER, axis=1))
+    place, nodes, inside = layout(len(rods.length), cuts), collocation(START_ORDER).c, dict(cuts)
+    angle = np.empty((len(place.owner), START_ORDER))
+    for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
+        places = (touches[k] for k in inside.get(element, ()))
+        ends = np.array([0.0, *(touch.xi for touch in places if touch is not None), 1.0])
+        arcs = (ends[:-1, None] + np.diff(ends)[:, None] * nodes) * rods.length[element]
+        angle[first : last + 1] = rods.undeformed_angle(element, arcs)
+    return Profile(cuts=cuts, angle=angle)
 
 
 def recut(rods: Rods, state: State, after: State) -> State:

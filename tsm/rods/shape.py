@@ -9,7 +9,8 @@ import numpy as np
 from tsm.elements import rod
 from tsm.elements.collocation import collocation, interpolation
 from tsm.elements.properties import Array
-from tsm.rods.assembly import Entry, Rods, profile_of
+from tsm.rods.assembly import Rods, profile_of
+from tsm.rods.records import Entry
 from tsm.state import State
 
 
@@ -65,10 +66,10 @@ class RodShape:
     arc, length : ndarray, shape (s,)
         Arc position of the start within the element, and undeformed length, of every segment.
     force : ndarray, shape (2, s)
-        Internal force of every segment.
-    start : ndarray, shape (4, s)
-        Position (x, y), angle and moment at the start of every segment.
-    rates : ndarray, shape (4, s, p)
+        Internal force at the start of every segment.
+    start : ndarray, shape (4, s) or (6, s)
+        Position (x, y), angle and moment at the start of every segment, and the internal force where it varies.
+    rates : ndarray, shape (4, s, p) or (6, s, p)
         Their derivatives in the arc position at the Gauss nodes.
     """
 
@@ -105,17 +106,15 @@ class RodShape:
 
     def within(self, segment: int, sigma: Array) -> Station:
         """Stations at parts sigma (m,) of a segment."""
-        x, y, angle, moment = self.values[:, segment] @ interpolation(self.order, sigma).T
+        x, y, angle, moment, *varying = self.values[:, segment] @ interpolation(self.order, sigma).T
         force = np.empty((len(sigma), 2))
-        force[:] = self.force[:, segment]
+        force[:] = np.array(varying).T if varying else self.force[:, segment]
         return Station(np.array([x, y]).T, angle, moment, force)
 
 
 def plain_shape(rods: Rods, state: State, entry: Entry) -> RodShape:
     """Polynomials through what is known at the Gauss nodes."""
     segments, field, place = entry.segments, entry.field, entry.place
-    table = collocation(segments.angle.shape[1])
-    moment = entry.moment + segments.length * (field.values[0] @ table.once.T)
     x, y = rods.start[:, place.owner] + state.q[rods.dofs[:2]][:, place.owner]
     length = segments.length[:, 0]
     arc = np.zeros(len(length))
@@ -124,16 +123,20 @@ def plain_shape(rods: Rods, state: State, entry: Entry) -> RodShape:
             arc[s + 1] = arc[s] + length[s]
             x[s + 1], y[s + 1] = x[s] + entry.vector[0, s], y[s] + entry.vector[1, s]
     start = np.stack([x, y, entry.start[:, 0], entry.moment[:, 0]])
-    rates = np.stack([*field.values[1:], segments.flexibility.bend * moment, field.values[0]])
-    return RodShape(place.first, place.last, arc, length, segments.force[:, :, 0], start, rates)
+    rates = np.stack([*field.values[1:], rods.turning(entry), field.values[0]])
+    force, force_rate = rods.along(entry)
+    if force_rate is not None:
+        start, rates = np.concatenate([start, force]), np.concatenate([rates, force_rate])
+    return RodShape(place.first, place.last, arc, length, force, start, rates)
 
 
-def tangent_at(rods: Rods, element: int, at: Station) -> tuple[Array, Array]:
+def tangent_at(rods: Rods, element: int, arc: float, at: Station) -> tuple[Array, Array]:
     """Tangent vector r' of the axis at a single station of an element, and its derivative along the arc."""
-    stretch, shear, bend = (float(value[element]) for value in rods.flexibility)
+    section = rods.section(element, arc)
     x, y = at.force[0].tolist()
-    axis = rod.tangent(stretch, shear, (x, y), float(at.angle[0]))
-    return np.array(axis.vector), np.array(axis.turned) * (bend * float(at.moment[0]))
+    axis = rod.tangent(section.stretch, section.shear, (x, y), float(at.angle[0]))
+    turn = section.bend * float(at.moment[0]) + section.curvature
+    return np.array(axis.vector), np.array(axis.turned) * turn
 
 
 def pieces(rods: Rods, shape: RodShape, element: int, count: int) -> Stations:
@@ -146,7 +149,7 @@ def pieces(rods: Rods, shape: RodShape, element: int, count: int) -> Stations:
         nx, ny = at.force.T
         forces = np.stack([nx * c + ny * sn, ny * c - nx * sn, at.moment], axis=1)
         arc = shape.arc[s] + sigma * shape.length[s]
-        lines.append((arc, at.position, at.angle - rods.angle0[element], forces))
+        lines.append((arc, at.position, at.angle - rods.undeformed_angle(element, arc), forces))
     pairs = np.arange(count)[:, None] + np.arange(2)
     return Stations(
         *(np.concatenate([part[pairs] for part in column]) for column in zip(*lines, strict=True))

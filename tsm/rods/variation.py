@@ -14,16 +14,19 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
-from tsm.rods.assembly import RodBalance, Rods, profile_of, touch_of
+from tsm.rods.assembly import Rods, profile_of, touch_of
 from tsm.rods.layout import COLUMNS, CUT, OWN
+from tsm.rods.records import RodBalance
 from tsm.rods.shape import plain_shape
+from tsm.rods.varying import VaryingRods
+from tsm.rods.varying_variation import hessians
 from tsm.state import State
 
 _LONGEST = 7.0
@@ -85,8 +88,8 @@ class _Pieces(NamedTuple):
         Pieces of every segment.
     short : ndarray of bool, shape (p,)
         Those that keep their moment.
-    hessian : ndarray, shape (p, 6, 6)
-        Second derivatives of G over the inputs of `rod`; the moment is an input of short pieces only.
+    hessian : ndarray, shape (p, 6, 6) or (p, 7, 7)
+        Second derivatives of G over the inputs of `rod`, or of `varying`, without what is constant; the moment is an input of short pieces only.
     """
 
     counts: Array
@@ -106,12 +109,20 @@ def modes_at_least(balance: RodBalance) -> int:
     arrival of its end takes away.
     """
     segments, field = balance.entry.segments, balance.entry.field
-    length, bend = segments.length[:, 0], segments.flexibility.bend[:, 0]
-    falling = (field.gq * field.q - field.N * field.turn) * (length * length * bend)[:, None]
+    falling = (field.gq * field.q - field.N * field.turn) * _square(segments)
     most = np.sqrt(np.maximum(falling.max(axis=1), 0.0)) / _PIECE
     if not most.sum() > _MOST:
         return 0
     return int((np.sqrt(np.maximum(falling.min(axis=1), 0.0)) / math.pi).sum())
+
+
+def _square(segments: Any) -> Array:
+    """``h^2/EI``, by which a falling coefficient is multiplied; where EI varies it is ``(int ds/EI)^2 EI``, of shape (s, p)."""
+    length, bend = segments.length, segments.flexibility.bend
+    square: Array = length * length * bend
+    if bend.shape[1] > 1:
+        square *= ((bend @ collocation(bend.shape[1]).w)[:, None] / bend) ** 2
+    return square
 
 
 def variation(rods: Rods, state: State, balance: RodBalance, transfer: Array | None = None) -> Variation:
@@ -162,29 +173,34 @@ def _without_force(tangent: Array) -> Array:
 def _pieces(rods: Rods, state: State, balance: RodBalance, transfer: Array | None) -> _Pieces:
     entry = balance.entry
     segments, field, start, moment, end = entry.segments, entry.field, entry.start, entry.moment, entry.end
-    arrival, gain, bend = balance.arrival, entry.gain, entry.segments.flexibility.bend[:, 0]
+    arrival, gain = balance.arrival, entry.gain
     length, whole = segments.length[:, 0], rods.length[entry.place.owner]
-    falling = (field.gq * field.q - field.N * field.turn).max(axis=1) * length * length * bend
+    falling = ((field.gq * field.q - field.N * field.turn) * _square(segments)).max(axis=1)
     counts = np.ones(len(length), dtype=int)
     if falling.max() > _LONGEST:
         long = falling > _LONGEST
         counts[long] = np.ceil(np.sqrt(falling[long]) / _PIECE).astype(int)
         segments, start, moment, end = _divided(rods, state, balance, counts)
-        field, transfer = rod.field(segments), None
-        length, whole, bend = segments.length[:, 0], np.repeat(whole, counts), np.repeat(bend, counts)
-        arrival, gain = rod.arrival(segments, field, start, moment, end), field.sums[0, :, 0] * length
+        field, transfer = rods.field(segments), None
+        length, whole = segments.length[:, 0], np.repeat(whole, counts)
+        arrival, gain = rods.arrive(segments, field, start, moment, end), field.sums[0, :, 0] * length
     if transfer is None:
-        transfer = rod.condense(segments, field, arrival, moment).transfer
-    bent, short = (moment[:, 0] + gain) * bend, length < _SHORT * whole
+        transfer = rods.condense(segments, field, arrival, moment).transfer
+    short = length < _SHORT * whole
+    if isinstance(rods, VaryingRods):
+        moments = np.stack([moment[:, 0], moment[:, 0] + gain])
+        ends = np.stack([np.stack([start[:, 0], end[:, 0]]), moments])
+        hessian, with_moment = hessians(rods, segments, ends, transfer, state.load_parameter)
+        hessian[short] = with_moment[short]
+        return _Pieces(counts, short, hessian)
+    bent = (moment[:, 0] + gain) * segments.flexibility.bend[:, 0]
     hessian = _hessian(transfer, bent)
     if short.any():
         hessian[short] = _hessian_with_moment(transfer[short], bent[short])
     return _Pieces(counts, short, hessian)
 
 
-def _divided(
-    rods: Rods, state: State, balance: RodBalance, count: Array
-) -> tuple[rod.Segments, Array, Array, Array]:
+def _divided(rods: Rods, state: State, balance: RodBalance, count: Array) -> tuple[Any, Array, Array, Array]:
     """Equal pieces of the segments, with their angles and moments at the ends."""
     entry, own = balance.entry, np.repeat(np.arange(len(count)), count)
     shape, nodes = plain_shape(rods, state, entry), collocation(entry.segments.angle.shape[1]).c
@@ -196,7 +212,12 @@ def _divided(
         ends.append(np.stack([at.angle[:-1], at.moment[:-1], at.angle[1:]], axis=1))
     flexibility = rod.Flexibility(*(value[own] for value in entry.segments.flexibility))
     length = entry.segments.length[own] / count[own, None]
-    segments = rod.Segments(flexibility, entry.segments.force[:, own], length, np.concatenate(inside))
+    segments: Any = rod.Segments(flexibility, entry.segments.force[:, own], length, np.concatenate(inside))
+    if isinstance(rods, VaryingRods):
+        part = np.arange(len(own)) - (np.cumsum(count) - count)[own]
+        begin = entry.segments.begin[own] + part[:, None] * length
+        segments = segments._replace(force=entry.segments.constant[:, own])
+        segments = rods.placed(entry.segments.owner[own], begin, segments, state.load_parameter)
     start, moment, end = np.concatenate(ends).T[:, :, None]
     return segments, start, moment, end
 
@@ -242,38 +263,38 @@ def _bordered(
     begin = int(pieces.counts[:first].sum())
     own = slice(begin, begin + sum(counts))
     short = tuple(pieces.short[own].tolist())
-    fixed, inputs, directions = _stations(counts, short)
+    fixed, inputs, directions = _stations(counts, short, pieces.hessian.shape[1])
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
     for n, k in enumerate(pairs):
         if model.pairs[k].reach:
-            matrix += _surface(
-                touch_of(state, k).force, balance.tangents[k], model.pairs[k].reach, directions[n]
-            )
+            arc = rods.slopes(state, k, balance)[0] if isinstance(rods, VaryingRods) else None
+            force, tangents = touch_of(state, k).force, balance.tangents[k]
+            matrix += _surface(force, tangents, model.pairs[k].reach, directions[n], arc)
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
     slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
 
 
 @lru_cache(maxsize=64)
-def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, Array, Array]:
+def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> tuple[Array, Array, Array]:
     """Constant matrices of an element whose segments have `counts` pieces, which may be short.
 
     Returns
     -------
     fixed : ndarray, shape (n, n)
         Second derivatives of ``n . (r_j - r_i) - sum F . (r_j - x_c)``.
-    inputs : ndarray, shape (pieces, 6, n)
-        Inputs of the pieces by the element's unknowns; only short pieces have a moment.
-    directions : ndarray, shape (contacts, 5, n)
-        Angle, force before and contact force of every contact by the same.
+    inputs : ndarray, shape (pieces, width, n)
+        Inputs of the pieces by the element's unknowns; only short pieces have a moment. The seventh is the arc position of the start.
+    directions : ndarray, shape (contacts, 6, n)
+        Angle, force before, contact force and arc position of every contact by the same.
     """
     contacts, pieces = len(counts) - 1, sum(counts)
     own_angle = OWN + CUT * contacts
     own_moment = own_angle + pieces - len(counts)
     rows = np.eye(own_moment + sum(short))
-    fixed, inputs = np.zeros_like(rows), np.zeros((pieces, 6, len(rows)))
+    fixed, inputs = np.zeros_like(rows), np.zeros((pieces, width, len(rows)))
     fixed[:OWN, :OWN] = _PULL
-    directions = np.zeros((contacts, 5, len(rows)))
+    directions = np.zeros((contacts, 6, len(rows)))
     force, angle, arc, piece = rows[3:5].copy(), rows[2], np.zeros(len(rows)), 0
     for segment, count in enumerate(counts):
         own, ahead = OWN + CUT * segment, segment < contacts
@@ -282,6 +303,7 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, 
             arriving = rows[own_angle] if part < count - 1 else rows[own + 3] if ahead else rows[8]
             own_angle += part < count - 1
             inputs[piece, [0, 2, 3, 4, 5]] = [angle, arriving, *force, (ends - arc) / count]
+            inputs[piece, 6:] = arc + (ends - arc) * (part / count)
             if short[piece]:
                 inputs[piece, 1] = rows[own_moment]
                 own_moment += 1
@@ -289,13 +311,17 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...]) -> tuple[Array, 
         arc = ends
         if ahead:
             fixed[[own, own + 1, 6, 7], [6, 7, own, own + 1]] -= 1
-            directions[segment] = [rows[own + 3], *force, *rows[own : own + 2]]
+            directions[segment] = [rows[own + 3], *force, *rows[own : own + 3]]
             force -= rows[own : own + 2]
     return fixed, inputs, directions
 
 
 def _surface(
-    force: tuple[float, float], tangents: tuple[rod.Tangent, rod.Tangent], reach: float, selectors: Array
+    force: tuple[float, float],
+    tangents: tuple[rod.Tangent, rod.Tangent],
+    reach: float,
+    selectors: Array,
+    by_arc: Array | None,
 ) -> Array:
     """Second derivatives of ``- reach F . nu``, nu across the sum of the tangent vectors, where F is parallel to nu.
 
@@ -307,8 +333,10 @@ def _surface(
     turned_x = [before.turned[0] + after.turned[0], xx + ax, xy + ay, -ax, -ay]
     turned_y = [before.turned[1] + after.turned[1], xy + ay, yy + aa, -ay, -aa]
     size = math.hypot(tx, ty)
-    turn = (tx * np.array(turned_y) - ty * np.array(turned_x)) / size**2 @ selectors
-    along = np.array([tx, ty]) / size @ selectors[3:]
+    turn = (tx * np.array(turned_y) - ty * np.array(turned_x)) / size**2 @ selectors[:5]
+    if by_arc is not None:
+        turn = turn + (tx * by_arc[1] - ty * by_arc[0]) / size**2 * selectors[5]
+    along = np.array([tx, ty]) / size @ selectors[3:5]
     across = (force[0] * ty - force[1] * tx) / size
     both = np.outer(along, turn)
     surface: Array = -reach * (both + both.T - across * np.outer(turn, turn))

@@ -1,0 +1,131 @@
+"""What varies along the elements of a structure: natural curvature, sections of tapered beams, and loads along the beams."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from tsm.beam import Beam, LineLoad
+from tsm.elements.properties import Array
+from tsm.elements.rod import Flexibility
+from tsm.elements.varying import Course
+
+
+class Along:
+    """Curvature, sections and loads over the elements of all beams, in the order of the structure.
+
+    Parameters
+    ----------
+    beams : sequence of Beam
+        The beams.
+    loads : sequence of LineLoad
+        Loads along them.
+
+    Attributes
+    ----------
+    varies : ndarray of bool, shape (e,)
+        Elements of the beams that are curved or tapered, or have a load along them.
+    loaded : bool
+        Whether there are loads along beams.
+    length, curvature : ndarray, shape (e,)
+        Undeformed length and natural curvature.
+    start, end : ndarray, shape (e,)
+        Angle of the undeformed axis at both ends.
+    gauge, gyration : ndarray, shape (2, e)
+        ``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at both ends; both are linear between them.
+    ratio : ndarray, shape (e,)
+        GA/EA.
+    shed : ndarray, shape (loads, 2, d, e)
+        Integrals of the loads at load parameter 1 from the start of an element: coefficients of the powers 1 to d of the part of its
+        length.
+    """
+
+    def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad]) -> None:
+        self.loaded = bool(loads)
+        laden = {load.beam for load in loads}
+        spans = [(beam, *part) for beam in beams for part in pairwise(beam.parts)]
+        self.varies = np.array([beam.varies or beam.name in laden for beam, _, _ in spans])
+        self.length = np.array([(b - a) * beam.length for beam, a, b in spans])
+        self.curvature = np.array([beam.curvature for beam, _, _ in spans])
+        self.start = np.array([beam.direction(a) for beam, a, _ in spans])
+        self.end = np.array([beam.direction(b) for beam, _, b in spans])
+        self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
+        self.ratio = np.array([beam.section.GA / beam.section.EA for beam, _, _ in spans])
+        degree = max((len(load.force) for load in loads), default=0)
+        self.shed = np.zeros((len(loads), 2, degree, len(spans)))
+        first: dict[str, int] = {}
+        for number, (beam, _, _) in enumerate(spans):
+            first.setdefault(beam.name, number)
+        for row, load in zip(self.shed, loads, strict=True):
+            beam = next(beam for beam in beams if beam.name == load.beam)
+            for element in load.elements(beam):
+                place = first[beam.name] + element
+                row[:, : len(load.force), place] = _integral(load, *spans[place])
+
+        self._total: Array = self.shed.sum(axis=0)
+
+    def shed_at(self, load_parameter: float) -> Array:
+        """Integrals (2, d, e) of all loads together at a load parameter."""
+        shed: Array = load_parameter * self._total
+        return shed
+
+    def shed_rate(self, _load_parameter: float) -> Array:
+        """Derivative of `shed_at` in the load parameter."""
+        return self._total
+
+    def total(self, load_parameter: float) -> Array:
+        """Sum (2,) of all loads along the beams at a load parameter."""
+        total: Array = self.shed_at(load_parameter).sum(axis=(1, 2))
+        return total
+
+    def course(self, elements: Array, part: Array, shed: Array, shed_rate: Array) -> Course:
+        """What varies, at parts (s, p) of the lengths of elements (s,).
+
+        Parameters
+        ----------
+        elements : ndarray of int, shape (s,)
+            Global numbers of the elements.
+        part : ndarray, shape (s, p)
+            Where.
+        shed, shed_rate : ndarray, shape (2, d, s)
+            Integrals of all loads together along these elements, and their derivatives in the load parameter.
+        """
+        length = self.length[elements, None]
+        gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
+        wide, high = gauge[0] + (gauge[1] - gauge[0]) * part, gyration[0] + (gyration[1] - gyration[0]) * part
+        EA = wide * high
+        EA_slope = ((gauge[1] - gauge[0]) * high + wide * (gyration[1] - gyration[0])) / length
+        high_slope = (gyration[1] - gyration[0]) / length
+        stretch, bend = 1 / EA, 1 / (EA * high * high)
+        stretch_slope = -stretch * EA_slope / EA
+        bend_slope = -bend * (EA_slope / EA + 2 * high_slope / high)
+        ratio = self.ratio[elements, None]
+        powers = part ** np.arange(shed.shape[1] + 1)[:, None, None]
+        risen = np.arange(1, shed.shape[1] + 1)[:, None, None] * powers[:-1] / length
+        return Course(
+            Flexibility(stretch, stretch / ratio, bend),
+            Flexibility(stretch_slope, stretch_slope / ratio, bend_slope),
+            *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
+                (shed, powers[1:]), (shed, risen), (shed_rate, powers[1:]))),
+        )  # fmt: skip
+
+
+def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:
+    """``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at two parts of the length of a beam."""
+    rows = []
+    for section in (beam.section, beam.end_section or beam.section):
+        gyration = (section.EI / section.EA) ** 0.5
+        rows.append((section.EA / gyration, gyration))
+    (wide, high), (wide_end, high_end) = rows
+    return [(wide + part * (wide_end - wide), high + part * (high_end - high)) for part in (begin, end)]
+
+
+def _integral(load: LineLoad, beam: Beam, begin: float, end: float) -> Array:
+    """Coefficients (2, d) of the powers 1 to d of the part of an element's length, of the load's integral from its start."""
+    inside = Polynomial([begin, end - begin])
+    length = beam.length * (end - begin)
+    rows = [(Polynomial(force)(inside) * length).integ().coef[1:] for force in np.array(load.force).T]
+    return np.array([np.pad(row, (0, len(load.force) - len(row))) for row in rows])

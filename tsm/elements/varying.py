@@ -1,0 +1,218 @@
+"""The Reissner rod with loads along it, natural curvature and taper, by Gauss collocation; see `rod`.
+
+With the internal force ``n(s) = n - P(s)``, of which n is constant between two contacts and ``P' = q`` is the load per length, natural
+curvature k0, and flexibilities ``e, u, b = 1/EA, 1/GA, 1/EI`` that depend on s, where ``g = e - u``::
+
+    phi' = b m + k0,   m' = f = -Q (1 + g N),   r' = (1 + e N) d_1 + u Q d_2
+
+The inner unknowns are the angles at p Gauss nodes, as in `rod`. Half of the end residual is held where the inner equations are
+eliminated: ``c/2`` times it is added to the equation at the node c.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tsm.elements.collocation import collocation
+from tsm.elements.properties import Array, cosine, sine
+from tsm.elements.rod import Arrival, Condensed, Field, Flexibility
+
+INPUTS = 9
+"""Number of inputs: those of `rod`, then the arc position of the start, and the load parameter."""
+
+
+class Course(NamedTuple):
+    """What varies along segments, at the same points of each; all have the shape (s, p), or two of them in front.
+
+    Attributes
+    ----------
+    flexibility : Flexibility
+        1/EA, 1/GA, 1/EI.
+    slope : Flexibility
+        Their derivatives in the arc position.
+    shed : ndarray, shape (2, s, p)
+        P, the force that the load has taken from the internal force since the start of the element.
+    load : ndarray, shape (2, s, p)
+        q, the load per length.
+    shed_rate : ndarray, shape (2, s, p)
+        Derivative of P in the load parameter.
+    """
+
+    flexibility: Flexibility
+    slope: Flexibility
+    shed: Array
+    load: Array
+    shed_rate: Array
+
+    def single(self, s: int) -> Course:
+        """What varies along one segment."""
+        of = slice(s, s + 1)
+        flexibility, slope = (Flexibility(*(v[of] for v in part)) for part in (self.flexibility, self.slope))
+        return Course(flexibility, slope, self.shed[:, of], self.load[:, of], self.shed_rate[:, of])
+
+
+class VaryingSegments(NamedTuple):
+    """Rods between two contacts, s of them; the first four attributes are those of `rod.Segments`, at the Gauss nodes.
+
+    Attributes
+    ----------
+    flexibility : Flexibility
+        Flexibilities, each of shape (s, p).
+    force : ndarray, shape (2, s, p)
+        Internal force.
+    length : ndarray, shape (s, 1)
+        Undeformed length.
+    angle : ndarray, shape (s, p)
+        Angles of the sections, from the x axis.
+    course : Course
+        What varies along the segments.
+    curvature : ndarray, shape (s, 1)
+        Natural curvature.
+    constant : ndarray, shape (2, s, 1)
+        Part n of the internal force, constant between two contacts.
+    begin : ndarray, shape (s, 1)
+        Arc position of the start within the element.
+    owner : ndarray of int, shape (s,)
+        Elements of the segments, counted over the exact ones.
+    at_end : Course
+        What varies, at the ends of the segments, of shape (s, 1).
+    """
+
+    flexibility: Flexibility
+    force: Array
+    length: Array
+    angle: Array
+    course: Course
+    curvature: Array
+    constant: Array
+    begin: Array
+    owner: Array
+    at_end: Course
+
+
+class _Bent(NamedTuple):
+    """Moment and derivative of the angle at the Gauss nodes, shape (s, p)."""
+
+    moment: Array
+    turn: Array
+
+
+def _bent(at: VaryingSegments, of: Field, moment: Array) -> _Bent:
+    along = moment + at.length * (of.values[0] @ collocation(at.angle.shape[1]).once.T)
+    return _Bent(along, at.flexibility.bend * along + at.curvature)
+
+
+def arrival(at: VaryingSegments, of: Field, start: Array, moment: Array, end: Array) -> Arrival:
+    """Residuals with given angle and moment at the start and angle at the end, each of shape (s, 1); `bent` is the derivative of the angle."""
+    table = collocation(at.angle.shape[1])
+    turn = _bent(at, of, moment).turn
+    inside = at.angle - start - table.c * ((end - start) / 2) - at.length * (turn @ _half_way(table).T)
+    end_residual = start + at.length * (turn @ table.w)[:, None] - end
+    return Arrival(end_residual[:, 0], inside, turn)
+
+
+def _half_way(table: Any) -> Array:
+    """Integrals to the Gauss nodes, less half of what they are at the end, shape (p, p)."""
+    half: Array = table.once - np.outer(table.c, table.w) / 2
+    return half
+
+
+def condense(at: VaryingSegments, of: Field, arrived: Arrival, moment: Array) -> Condensed:
+    """Eliminate the angles inside; the derivatives are by the nine inputs."""
+    table, h = collocation(at.angle.shape[1]), at.length
+    slope, turned = _by_angle(of)
+    f_by, r_by = _by_inputs(at, of, turned)
+    bend, bent = at.flexibility.bend, _bent(at, of, moment)
+    # derivative of the angle's derivative by the inputs, without what passes through the angles
+    turn_by = h[:, :, None] * bend[:, :, None] * (table.once @ f_by)
+    turn_by[:, :, 1] += bend
+    along = at.course.slope.bend * bent.moment
+    turn_by[:, :, 7] += along
+    turn_by[:, :, 5] += along * table.c + bend * (of.values[0] @ table.once.T)
+
+    half, (count, p) = _half_way(table), at.angle.shape
+    matrix = np.eye(p) - (h * h)[:, :, None] * (half @ (bend[:, :, None] * table.once)) * slope[:, None, :]
+    right = h[:, :, None] * (half @ turn_by)
+    right[:, :, 0] += 1 - table.c / 2
+    right[:, :, 2] += table.c / 2
+    right[:, :, 5] += bent.turn @ half.T
+    right[:, :, 6] -= arrived.inside
+    inner: Array = np.linalg.solve(matrix, right)
+
+    weights = np.empty((count, 4, p), dtype=right.dtype)
+    weights[:, 0] = h * h * ((table.w * bend) @ table.once) * slope
+    weights[:, 1] = h * table.w * slope
+    weights[:, 2:] = (h * table.w * turned).transpose(1, 0, 2)
+    direct = np.empty((count, 4, INPUTS), dtype=right.dtype)
+    direct[:, 0] = h * (table.w @ turn_by)
+    direct[:, 0, [0, 2]] += (1, -1)
+    direct[:, 0, 5] += bent.turn @ table.w
+    direct[:, 1] = h * (table.w @ f_by)
+    direct[:, 1, 1] += 1
+    direct[:, 2:] = h[:, :, None] * (table.w @ r_by).transpose(1, 0, 2)
+    direct[:, 1:, 5] += (of.values @ table.w).T
+    return Condensed(weights @ inner + direct, inner)
+
+
+def _by_angle(of: Field) -> tuple[Array, Array]:
+    """Derivatives of f (s, p) and r' (2, s, p) by the angle at the node."""
+    turned = np.stack([-of.gq * of.c - of.turn * of.s, of.turn * of.c - of.gq * of.s])
+    slope: Array = of.N * of.turn - of.gq * of.q
+    return slope, turned
+
+
+def _by_inputs(at: VaryingSegments, of: Field, turned: Array) -> tuple[Array, Array]:
+    """Derivatives of f (s, p, 9) and r' (2, s, p, 9) at the nodes by the inputs, the angle held; f falls with n as r' does with the angle."""
+    table, (stretch, shear, _) = collocation(at.angle.shape[1]), at.flexibility
+    gc = (stretch - shear) * of.c
+    xx, xy, yy = shear + gc * of.c, gc * of.s, stretch - gc * of.c
+    (e, u, _), (px, py), (tx, ty) = at.course.slope, at.course.load, at.course.shed_rate
+    # Q = -q
+    along = np.stack(
+        [
+            e * of.N * of.c + u * of.q * of.s - xx * px - xy * py,
+            e * of.N * of.s - u * of.q * of.c - xy * px - yy * py,
+        ]
+    )
+    f_along = of.q * (e - u) * of.N + turned[0] * px + turned[1] * py
+    f_by, r_by = np.zeros((*of.N.shape, INPUTS), of.N.dtype), np.zeros((2, *of.N.shape, INPUTS), of.N.dtype)
+    f_by[:, :, 3], f_by[:, :, 4] = -turned
+    f_by[:, :, 5], f_by[:, :, 7] = f_along * table.c, f_along
+    f_by[:, :, 8] = turned[0] * tx + turned[1] * ty
+    r_by[0, :, :, 3], r_by[0, :, :, 4] = xx, xy
+    r_by[1, :, :, 3], r_by[1, :, :, 4] = xy, yy
+    r_by[:, :, :, 5], r_by[:, :, :, 7] = along * table.c, along
+    r_by[0, :, :, 8], r_by[1, :, :, 8] = -(xx * tx + xy * ty), -(xy * tx + yy * ty)
+    return f_by, r_by
+
+
+def tangent_rate(at: VaryingSegments, of: Field, inside: Array, inputs: Array) -> Array:
+    """Change (2, s, p) of r' at the Gauss nodes with the angles inside (s, p) and the inputs (s, 9)."""
+    _, turned = _by_angle(of)
+    rate: Array = turned * inside + (_by_inputs(at, of, turned)[1] @ inputs[:, :, None])[..., 0]
+    return rate
+
+
+def tangent_slope(course: Course, force: tuple[Any, Any], angle: Any) -> tuple[Array, Array]:
+    """Derivatives (2,) of the tangent vector r' at one section by the arc position and by the load parameter, the angle and n held.
+
+    Parameters
+    ----------
+    course : Course
+        What varies, at a single point.
+    force : tuple of 2 numbers
+        Internal force there.
+    angle : number
+        Angle of the section.
+    """
+    c, s = cosine(angle), sine(angle)
+    nx, ny = force
+    (stretch, shear, _), (e, u, _) = (
+        [value[0, 0] for value in part] for part in (course.flexibility, course.slope)
+    )
+    N, Q, g = nx * c + ny * s, ny * c - nx * s, stretch - shear
+    compliance = np.array([[shear + g * c * c, g * c * s], [g * c * s, stretch - g * c * c]])
+    own = np.array([e * N * c - u * Q * s, e * N * s + u * Q * c])
+    return own - compliance @ course.load[:, 0, 0], -(compliance @ course.shed_rate[:, 0, 0])
