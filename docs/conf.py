@@ -26,8 +26,14 @@ extensions = [
     "docs.extensions.proofs",
     "docs.extensions.generated",
     "docs.extensions.manual",
+    "docs.extensions.notebooks",
 ]
-exclude_patterns = ["extensions", "static", "_generated/*.md"]  # those pages are included by others
+exclude_patterns = [
+    "extensions",
+    "static",
+    "_generated/*.md",  # included by other pages
+    "_generated/notebooks",  # files to download
+]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
