@@ -161,7 +161,7 @@ class Beam:
     def length(self) -> float:
         """Length of the undeformed axis."""
         chord, half = math.dist(self.start, self.end), self.turn / 2
-        return chord * half / math.sin(half) if half else chord
+        return chord * (half / math.sin(half)) if half else chord
 
     @property
     def curvature(self) -> float:

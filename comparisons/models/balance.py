@@ -1,13 +1,15 @@
 """The balance of forces and moments on the whole structure, from a response and its scene alone."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.response import Array, ContactHistory, Response
-from comparisons.scene import ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
+from comparisons.scene.rules import Point
 
 BALANCE = 1e-6
 """Largest unbalanced force, relative to the largest force that acts. Newton's tolerances are far below."""
@@ -18,6 +20,10 @@ much more, but by no more than the limit."""
 
 LEAST = 1e-4
 """Smallest force, over ``EI/L^2``, that `BALANCE` is relative to: Newton's methods end at a residual of 1e-10."""
+
+
+_PANELS, _NODES = 20, 4
+"""Panels, and nodes in each, of the quadrature of a load along a beam."""
 
 
 class Action(NamedTuple):
@@ -92,11 +98,59 @@ def _supports(response: Response, scene: Scene) -> list[Action]:
 
 
 def _loads(response: Response, scene: Scene) -> list[Action]:
-    t = response.load_parameter
-    return [
-        _action(scene, np.outer(t, load.force), _place(response, scene, load.node), load.moment * t)
-        for load in scene.loads
-    ]
+    """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
+    t, actions = response.load_parameter, []
+    for load in scene.loads:
+        if load.force_per_length is not None:
+            actions.append(
+                _along(response, scene, load.beam, load.span, partial(_even, load.force_per_length))
+            )
+            continue
+        place = _inside(response, scene, load) if load.at is not None else _place(response, scene, load.node)
+        actions.append(_action(scene, np.outer(t, load.force), place, load.moment * t))
+    for beam in scene.beams:
+        if beam.density is not None and scene.gravity is not None:
+            weight = partial(_weight, beam, scene.gravity)
+            actions.append(_along(response, scene, beam.name, (0.0, 1.0), weight))
+    return actions
+
+
+def _even(force_per_length: Point, parts: Array) -> Array:
+    return np.broadcast_to(np.array(force_per_length), (len(parts), 2))
+
+
+def _weight(beam: BeamSpec, gravity: Point, parts: Array) -> Array:
+    """Weight per length (m, 2) at parts of the length, at load parameter 1."""
+    return np.outer([beam.mass_per_length(part) for part in parts], gravity)
+
+
+def _inside(response: Response, scene: Scene, load: LoadSpec) -> Array:
+    """Deformed position (s, 2) of a point inside a beam."""
+    at = (load.at or 0.0) * scene.beam(load.beam).length
+    return _axis_at(response, load.beam, np.array([at]))[:, 0]
+
+
+def _axis_at(response: Response, beam: str, arcs: Array) -> Array:
+    """Deformed positions (s, m, 2) of a beam's axis, by cubic splines through the points that the response states."""
+    from scipy.interpolate import CubicSpline
+
+    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
+    return np.array([CubicSpline(arc, line)(arcs) for arc, line in lines]).reshape(-1, len(arcs), 2)
+
+
+def _along(
+    response: Response, scene: Scene, name: str, span: tuple[float, float], density: Callable[[Array], Array]
+) -> Action:
+    """Action of a load per length, ``density(parts)`` (m, 2) at parts of the length, by Gauss's rule in `_PANELS` panels."""
+    length, t = scene.beam(name).length, response.load_parameter
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    ends = np.linspace(*span, _PANELS + 1)
+    parts = (ends[:-1, None] + np.diff(ends)[:, None] * (nodes + 1.0) / 2.0).ravel()
+    weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * length / _PANELS
+    force = density(parts) * weights[:, None]
+    arm = _axis_at(response, name, parts * length) - np.array(scene.beams[0].start)
+    moment = (arm[:, :, 0] * force[:, 1] - arm[:, :, 1] * force[:, 0]).sum(axis=1)
+    return Action(np.outer(t, force.sum(axis=0)), t * moment)
 
 
 def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:

@@ -256,11 +256,11 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
     beam = scene.beams[number]
     stations = result.stations(beam.name, k)
     arc, deformed = stations.arc.ravel(), stations.position.reshape(-1, 2)
-    fraction = arc[:, None] / beam.length
-    reference = (1.0 - fraction) * np.array(beam.start) + fraction * np.array(beam.end)
+    fraction = arc / beam.length
+    reference = np.array([beam.place(part) for part in fraction])
     N, V, M = stations.forces.reshape(-1, 3).T
-    area, inertia, _ = beam.cross_section
-    height = beam.height or 0.0
+    area, inertia, _ = np.array([beam.section(part) for part in fraction]).T
+    height = np.array([beam.height_at(part) for part in fraction])
     return {
         "reference": reference,
         "displacement": deformed - reference,
@@ -271,7 +271,7 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
         "M": M,
         "beam": np.full(len(arc), float(number)),
         "arc": arc,
-        "height": np.full(len(arc), height),
+        "height": height,
         "axial_stress_right": N / area + M * height / (2.0 * inertia),
         "axial_stress_left": N / area - M * height / (2.0 * inertia),
     }

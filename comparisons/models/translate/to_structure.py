@@ -1,5 +1,6 @@
-"""A scene as TSM beams: Timoshenko sections on the axis, rigid joints, supports and dead loads at nodes."""
+"""A scene as TSM beams: Timoshenko sections on the axis, rigid joints, supports, dead loads at nodes and along the beams."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
@@ -7,8 +8,9 @@ from comparisons.scene import BeamSpec, Scene, SupportSpec
 from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
-    from tsm import Beam, Structure, Support
+    from tsm import Beam, LineLoad, Load, Section, Structure, Support
     from tsm.elements import ElementType
+    from tsm.structure import End
 
 
 def to_structure(scene: Scene, *, elements: int | None = None, element: str | None = None) -> "Structure":
@@ -28,7 +30,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     ModelError
         If there is no such element, or the scene uses a key that the beams do not state.
     """
-    from tsm import ContactPair, Load, Pin, Structure
+    from tsm import ContactPair, Pin, Structure
     from tsm.elements import ELEMENTS, MIXED
 
     unknown = unstated(scene, "the tangent stiffness method", BEAMS)
@@ -36,19 +38,18 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         raise ModelError(unknown)
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
+    for contact in scene.contacts:
+        if contact.surface != "axis" and isinstance(scene.beam(contact.beam).height, tuple):
+            raise ModelError(
+                f'contact {contact.pair}: surface = "{contact.surface}": the tangent stiffness method does not state the face of a beam '
+                'whose height tapers, give surface = "axis"'
+            )
     kind = MIXED if element is None else ELEMENTS[element]
     return Structure(
-        beams=tuple(_beam(beam, elements, kind) for beam in scene.beams),
+        beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
         supports=tuple(_support(support) for support in scene.all_supports),
-        loads=tuple(
-            Load(
-                beam=load.beam,
-                end="start" if load.end == "start" else "end",
-                force=load.force,
-                moment=load.moment,
-            )
-            for load in scene.loads
-        ),
+        loads=tuple(_loads(scene)),
+        line_loads=(*_line_loads(scene), *_weights(scene)),
         pins=tuple(Pin(name=pin.name, path=pin.points) for pin in scene.pins),
         contacts=tuple(
             ContactPair(
@@ -74,18 +75,70 @@ def _support(spec: SupportSpec) -> "Support":
     )
 
 
-def _beam(spec: BeamSpec, elements: int | None, kind: "ElementType") -> "Beam":
-    from tsm import Beam, Section
+def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: "ElementType") -> "Beam":
+    """Beam with nodes where loads inside it begin, end or act."""
+    from tsm import Beam
 
-    section = Section(EA=spec.EA, GA=spec.GA, EI=spec.EI)
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
+    own = [load for load in scene.loads if load.beam == spec.name]
+    ends = [part for load in own if load.force_per_length is not None for part in load.span]
+    places = [load.at for load in own if load.at is not None]
     return Beam(
         name=spec.name,
         start=spec.start,
         end=spec.end,
-        section=section,
+        section=_section(spec, 0.0 if spec.tapers else 0.5),
+        end_section=_section(spec, 1.0) if spec.tapers else None,
+        turn=spec.turn,
         elements=count,
         element=kind.name,
         nodes=nodes,
-    )
+    ).divided(*(part * spec.length for part in (*ends, *places)))
+
+
+def _section(spec: BeamSpec, fraction: float) -> "Section":
+    from tsm import Section
+
+    EA, GA, EI = spec.stiffness(fraction)
+    return Section(EA=EA, GA=GA, EI=EI)
+
+
+def _loads(scene: Scene) -> Iterator["Load"]:
+    """Yield the forces and moments at points."""
+    from tsm import Load
+
+    for load in scene.loads:
+        if load.at is not None:
+            arc = load.at * scene.beam(load.beam).length
+            yield Load(beam=load.beam, arc=arc, force=load.force, moment=load.moment)
+        elif load.end is not None:
+            end: End = "start" if load.end == "start" else "end"
+            yield Load(beam=load.beam, end=end, force=load.force, moment=load.moment)
+
+
+def _line_loads(scene: Scene) -> Iterator["LineLoad"]:
+    """Yield the forces per length."""
+    from tsm import LineLoad
+
+    for load in scene.loads:
+        if load.force_per_length is not None:
+            start, end = (part * scene.beam(load.beam).length for part in load.span)
+            yield LineLoad(beam=load.beam, force=(load.force_per_length,), start=start, end=end)
+
+
+def _weights(scene: Scene) -> Iterator["LineLoad"]:
+    """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
+    from tsm import LineLoad
+
+    gx, gy = scene.gravity or (0.0, 0.0)
+    for beam in scene.beams:
+        if beam.density is None or not (gx or gy):
+            continue
+        start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
+        mass = (
+            (start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end)
+            if beam.tapers
+            else (middle,)
+        )
+        yield LineLoad(beam=beam.name, force=tuple((gx * m, gy * m) for m in mass))

@@ -1,0 +1,90 @@
+"""Scenes with natural curvature, taper, weight and loads along a beam, by beams."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from comparisons.models import solve
+from comparisons.models.options import ModelError, Options
+from comparisons.models.translate import to_structure
+from comparisons.models.verify import failures
+from comparisons.scene import read_scene
+
+HOOK = """
+scene = { name = "hook", load_parameters = 2, gravity = [0.5, -9.81] }
+pin = [{ name = "pin", start = [0.3, 0.15], displacement = [0, -0.2] }]
+contact = [{ node = "pin", beam = "strip", side = "left" }]
+load = [
+  { beam = "strip", force_per_length = [0, -10], part = [0.3, 0.6] },
+  { beam = "strip", at = 0.8, force = [0, 3], moment = 0.1 },
+]
+
+[[beam]]
+name = "strip"
+start = [0, 0]
+end = [0.4, 0.1]
+turn = -1.2
+clamped = ["start"]
+width = [0.02, 0.01]
+height = [0.004, 0.002]
+youngs_modulus = 2e11
+poissons_ratio = 0.3
+density = 7850
+"""
+EXACT = Options(element="exact")
+
+
+def scene(**strip):
+    loaded = read_scene(HOOK, "hook")
+    return replace(loaded, beams=(replace(loaded.beams[0], **strip),))
+
+
+def test_the_structure_has_what_the_scene_states():
+    beam, loads = to_structure(scene(), element="exact").beams[0], to_structure(scene(), element="exact")
+    assert beam.parts == pytest.approx([0.0, 0.3, 0.6, 0.8, 1.0])
+    assert beam.length == scene().beams[0].length
+    assert tuple(scene().beams[0].stiffness(x)[2] for x in (0.0, 1.0)) == (
+        beam.section.EI,
+        beam.end_section.EI,
+    )
+    (part, weight), (point,) = loads.line_loads, loads.loads
+    assert (part.start, part.end, part.force) == (0.3 * beam.length, 0.6 * beam.length, ((0, -10),))
+    # area at a quarter of the length times density times gravity
+    area = 0.0175 * 0.0035
+    x = 0.25
+    assert sum(c[1] * x**k for k, c in enumerate(weight.force)) == pytest.approx(-9.81 * 7850 * area)
+    assert (point.arc, point.force, point.moment) == (0.8 * beam.length, (0, 3), 0.1)
+
+
+def test_the_answer_balances_and_a_wrong_one_does_not():
+    response = solve(scene(), "tsm", EXACT)
+    assert response.completed
+    assert (response.contacts["pin->strip"].force > 0).all()
+    for wrong in (
+        scene(density=7860.0),
+        replace(scene(), loads=scene().loads[:1]),
+        replace(scene(), loads=scene().loads[1:]),
+    ):
+        assert any("do not balance" in failure for failure in failures(response, wrong))
+
+
+def test_undeformed_axis_and_stresses_of_the_grid():
+    spec = scene().beams[0]
+    data = solve(scene(), "tsm", EXACT).grid(-1)
+    arc = data.point_data["arc"] / spec.length
+    reference = np.array([spec.place(part) for part in arc])
+    assert np.abs(data.points - reference).max() <= 1e-15
+    width, height = 0.02 - 0.01 * arc, 0.004 - 0.002 * arc
+    N, M = data.point_data["N"], data.point_data["M"]
+    left = N / (width * height) - 6 * M / (width * height**2)
+    assert np.abs(data.point_data["axial_stress_left"] - left).max() <= 1e-12 * np.abs(left).max()
+    assert np.abs(M).max() > 0.1
+
+
+def test_what_elements_and_contacts_do_not_state_is_refused_in_one_line():
+    with pytest.raises(ModelError, match=r'elements "timoshenko" are straight and uniform.*; use '):
+        solve(scene(), "tsm", Options(element="timoshenko"))
+    on_face = replace(scene(), contacts=(replace(scene().contacts[0], surface="face"),))
+    with pytest.raises(ModelError, match="does not state the face of a beam whose height tapers"):
+        solve(on_face, "tsm", EXACT)
