@@ -19,7 +19,7 @@ from comparisons.referee.rubbing import rubs_wrongly_on_the_way
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.scene import Scene
-from comparisons.scene.keys import RODS, unstated
+from comparisons.scene.keys import REFEREE, unstated
 
 ALLOWED = 1e-2
 """Default of the largest difference allowed; smaller differences are not visible in a plot."""
@@ -43,8 +43,8 @@ def certify(
         Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
-    unknown = unstated(scene, "the referee", RODS)
-    if unknown is not None:
+    unknown = unstated(scene, "the referee", REFEREE) or _unknown_face(scene)
+    if unknown:
         allowed = ALLOWED if allowance is None else allowance
         return Certificate(
             verdict=Verdict.NOT_JUDGED, reason=unknown, allowance=allowed, judged=(), path=(), seconds=0.0
@@ -73,6 +73,15 @@ def certify(
         verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
         seconds=perf_counter() - began,
     )  # fmt: skip
+
+
+def _unknown_face(scene: Scene) -> str:
+    """Return why the faces of a scene are not judged; empty if they are."""
+    for spec in scene.contacts:
+        beam = scene.beam(spec.beam)
+        if spec.surface == "face" and beam.height_at(0.0) != beam.height_at(1.0):
+            return f"the referee does not judge {spec.pair} on a face of a height that tapers"
+    return ""
 
 
 def _on_the_path(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.loads import dead_loads
 from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import Scene
@@ -134,11 +135,12 @@ def least_force(scene: Scene) -> float:
 def scales(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
     t = exact.load_parameter
+    acting = list(dead_loads(scene, t))
     forces = [float(np.hypot(*item.force)) for item in exact.contacts.values()]
     forces += [float(np.hypot(*held[:2])) for held in exact.reactions.values()]
-    forces += [t * math.hypot(*load.force) for load in scene.loads]
+    forces += [math.hypot(*load.force) for load in acting]
     moments = [abs(float(held[2])) for held in exact.reactions.values()]
-    moments += [abs(t * load.moment) for load in scene.loads]
+    moments += [abs(load.moment) for load in acting]
     length = max(beam.length for beam in scene.beams)
     size = max(LEAST * least_force(scene), *forces, *(value / length for value in moments), 0.0)
     considerable = max(moments, default=0.0) > 1e-3 * size * length
@@ -160,8 +162,8 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         here = np.array(scene.place(support.node))
         way = (_end(answer, support.node) - here).tolist()
         off = [
-            abs(x - answer.load_parameter * motion) / scene.beam(support.beam).length
-            for x, motion in zip(way, support.motion[:2], strict=True)
+            abs(x - motion) / scene.beam(support.beam).length
+            for x, motion in zip(way, support.motion_at(answer.load_parameter)[:2], strict=True)
             if motion is not None
         ]
         if off:

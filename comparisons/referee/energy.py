@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.friction import Grip
 from comparisons.referee.history import History, UnknownFrictionError
-from comparisons.referee.march import rates, reach, slip_rate
+from comparisons.referee.march import corners, rates, reach, slip_rate
 from comparisons.referee.state import Equilibrium, touching
 
 Array = NDArray[np.float64]
@@ -34,9 +34,9 @@ def dissipated(history: History, k: int, exact: Equilibrium) -> dict[str, float]
     times = history.response.load_parameter
     begin, end = (float(times[k - 1]) if k else 0.0), float(times[k])
     pairs = [spec.pair for spec in history.scene.contacts if spec.friction]
-    corners = [t for pin in history.scene.pins for t in pin.corners if begin < t < end]
+    between = [t for t in corners(history.scene) if begin < t < end]
     try:
-        cuts = dict.fromkeys([begin, *corners]) | _cuts(history, k) | {end: exact.solution}
+        cuts = dict.fromkeys([begin, *between]) | _cuts(history, k) | {end: exact.solution}
         spent, there = dict.fromkeys(pairs, 0.0), None
         for first, last in reversed(list(pairwise(sorted(cuts)))):
             there = cuts[last] or there

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import AMPLITUDE, DEGREE, GAUSS, VALUES, shapes
-from comparisons.referee.equations import Mesh, System, assemble, mesh_of, properties, rotations
+from comparisons.referee.elements import Mesh, mesh_of, properties, rotations
+from comparisons.referee.equations import System, assemble
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.start import AnswerState, Rotations, first_guess
 from comparisons.scene import Scene
@@ -200,7 +201,8 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
     grids = []
     for part in layout.parts:
         n = float(np.hypot(*z[part.force : part.force + 2]))
-        rate = np.sqrt(n * (1.0 + n * abs(part.stretch - part.shear)) / part.EI)
+        EI, stretch, shear = part.rod.greatest
+        rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
         count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
@@ -238,9 +240,8 @@ class _Newton(NamedTuple):
 def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
     """Iterate until the corrections are round-off."""
     rods, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
-    least = _LAST_PLACES / (
-        _ROUND_OFF * min(min(part.stretch, part.shear or np.inf) for part in layout.parts)
-    )
+    most = [part.rod.greatest for part in layout.parts]
+    least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
     arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
     forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)])
     turning = np.ones(mesh.unknowns, dtype=bool)
@@ -285,9 +286,9 @@ def _inside(system: System, change: Array) -> Array:
 
 
 def _element_changes(system: System, change: Array) -> Array:
-    """Changes (e, 5) of the unknowns of every element."""
+    """Changes (e, 5 or 6) of the unknowns of every element."""
     local = system.sign * np.append(change, 0.0)[system.local]
-    return np.column_stack([local[:, :4], local[:, 4] + local[:, 5]])
+    return np.column_stack([local[:, :4], local[:, 4] + local[:, 5], local[:, 6:]])
 
 
 def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import AMPLITUDE, DEGREE
-from comparisons.referee.equations import mesh_for, mesh_of
+from comparisons.referee.elements import mesh_for, mesh_of
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.march import closed_pairs, tangent

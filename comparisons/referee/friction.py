@@ -1,11 +1,11 @@
 """Coulomb friction at a contact: the rows of slip and stick, and the couple of a face.
 
-With the mean tangent ``(r'_- + r'_+)/2 = a t``, its left normal n, the section's rotation theta and curvature k, the angle phi of t, and
-``lever = h/2`` and ``roll = R`` to the right of the beam, minus these values to its left::
+With the mean tangent ``(r'_- + r'_+)/2 = a t``, its left normal n, the section's rotation theta from its undeformed direction, the natural
+curvature kappa0 and the whole one ``k = theta' + kappa0``, the angle phi of t, and ``lever = h/2`` and ``roll = R`` to the right of the beam, minus these values to its left::
 
     F_t = F . t,  F_n = side F . n           tangential and normal force on the beam, side = 1 for a node on the right
     m_- - m_+ = C = lever F_t                couple on the section, since F acts on the face
-    v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta
+    v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta - kappa0 s
     slip:   F_t = sigma mu F_n,  sigma = sign v
     stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
 
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from comparisons.referee.layout import Layout, Part, Touch
+    from comparisons.referee.rods import Flexibility
 
 Array = NDArray[np.float64]
 
@@ -110,29 +111,35 @@ def _local(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: 
     """Evaluate the equations of the module, real or complex."""
     assert touch.grip is not None, "only a contact with friction has these rows"
     theta, phi, m, s = given[0], given[5], given[6], given[7]
-    mean = (_tangent(parts[0], theta, given[1:3]) + _tangent(parts[1], theta, given[3:5])) / 2.0
+    rod = parts[0].rod
+    flexible, frame = rod.flexibility(s), rod.frame(s)
+    before, behind = given[1:3], given[3:5]
+    if not rod.uniform:
+        before, behind = parts[0].local(before, s), parts[1].local(behind, s)
+    mean = (_tangent(flexible, frame, theta, before) + _tangent(flexible, frame, theta, behind)) / 2.0
     force = parts[0].axes @ (given[1:3] - given[3:5])
     a = (mean[0] ** 2 + mean[1] ** 2) ** 0.5
     drag = (force[0] * mean[0] + force[1] * mean[1]) / a
     push = touch.right * (force[1] * mean[0] - force[0] * mean[1]) / a
     couple = touch.lever * drag
-    stretch = a + touch.lever * (m - couple / 2.0) / parts[0].EI
+    stretch = a + touch.lever * (m - couple / 2.0) / flexible.EI + touch.lever * rod.curvature
     aligned = mean[1] * np.cos(phi) - mean[0] * np.sin(phi)
     hold = touch.grip.hold
     if hold is None:
         return Local(drag - touch.grip.slip * touch.grip.friction * push, couple, aligned, stretch)
     row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position / layout.length)
     if touch.angle >= 0:
-        row = row + touch.lever * _wrapped(phi - theta - hold.shear) + touch.roll * (phi - hold.direction)
+        turned = theta + rod.curvature * s
+        row = row + touch.lever * _wrapped(phi - turned - hold.shear) + touch.roll * (phi - hold.direction)
     return Local(row, couple, aligned, stretch)
 
 
-def _tangent(part: "Part", theta: Any, n: Any) -> Any:
-    """``r'`` of a part: ``(1 + N/EA) d1 + (Q/GA) d2``."""
+def _tangent(flexible: "Flexibility", frame: Any, theta: Any, n: Any) -> Any:
+    """``r'`` under a force in the frame of the undeformed tangent: ``(1 + N/EA) d1 + (Q/GA) d2``."""
     c, s = np.cos(theta), np.sin(theta)
-    along = 1.0 + part.stretch * (n[0] * c + n[1] * s)
-    across = part.shear * (n[1] * c - n[0] * s)
-    return part.axes @ np.array([along * c - across * s, along * s + across * c])
+    along = 1.0 + flexible.stretch * (n[0] * c + n[1] * s)
+    across = flexible.shear * (n[1] * c - n[0] * s)
+    return frame @ np.array([along * c - across * s, along * s + across * c])
 
 
 def _wrapped(angle: Any) -> Any:

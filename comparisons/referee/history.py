@@ -11,12 +11,13 @@ import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.friction import LOOSE, Grip, Hold
-from comparisons.referee.march import place, rates, reach, slip_rate, speed
+from comparisons.referee.march import corners, place, rates, reach, slip_rate, speed
 from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import Response
-from comparisons.scene import ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene.consistency import signed_gap
 
 _ITERATIONS = 60
 """Largest number of steps of a root."""
@@ -196,10 +197,9 @@ class History:
         return Begin(load_parameter=begin, solution=now)
 
     def _jumps(self, spec: ContactSpec, t: float) -> bool:
-        """Whether rates jump at load parameter t: at a corner of a pin's path, and where another contact changes."""
-        corners = [corner for pin in self.scene.pins for corner in pin.corners]
+        """Whether rates jump at load parameter t: at a corner of a pin's path, at the end of a stage, and where another contact changes."""
         others = [phase.stated for pair, own in self.phases.items() if pair != spec.pair for phase in own[1:]]
-        return any(abs(t - other) <= SAME for other in (*corners, *others))
+        return any(abs(t - other) <= SAME for other in (*corners(self.scene), *others))
 
     def _around(self, spec: ContactSpec | None, t: float) -> dict[str, Grip]:
         """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there."""
@@ -258,10 +258,25 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     beam = scene.beam(spec.beam)
     x, y = beam.direction
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
-    way = np.array(there) - np.array(beam.start)
-    angle = math.atan2(y, x)
-    arc = float(np.clip(way @ np.array([x, y]), 0.0, beam.length))
-    return Hold(load_parameter=0.0, arc_position=arc, stretch=1.0, shear=angle, direction=angle)
+    angle, arc = math.atan2(y, x), _foot(beam, there)
+    lever = scene.offset(spec) - scene.radius(spec)
+    beta = beam.turn * (arc / beam.length - 0.5)
+    return Hold(
+        load_parameter=0.0,
+        arc_position=arc,
+        stretch=1.0 + (lever if spec.side == "right" else -lever) * beam.curvature,
+        shear=angle - beam.turn / 2.0,
+        direction=angle + beta,
+    )
+
+
+def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
+    """Arc position of the undeformed axis next to a point."""
+    x, y = beam.direction
+    if not beam.turn:
+        return float(np.clip((np.array(point) - np.array(beam.start)) @ np.array([x, y]), 0.0, beam.length))
+    _, fraction = signed_gap(beam, "left", 0.0, point)
+    return float(np.clip(fraction, 0.0, 1.0)) * beam.length
 
 
 def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens: bool) -> float:

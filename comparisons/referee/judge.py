@@ -97,7 +97,7 @@ def _verdict(
         return Verdict.NOT_AN_EQUILIBRIUM, words
     if not differences.largest[1] <= allowed:
         return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line()}, allowed {allowed:.2g}"
-    imbalance = "" if response.continuum or response.outside else unbalanced(scene, answer)
+    imbalance = "" if response.continuum or response.outside else unbalanced(scene, answer, exact)
     if imbalance:
         return Verdict.NOT_AN_EQUILIBRIUM, imbalance
     violation = next(inadmissible(scene, exact), "")

@@ -1,56 +1,31 @@
 """A scene with a set of closed contacts as rods between stations, and the numbering of the unknowns.
 
-Stations are the contacts and the ends of the beams; joined ends are one station. A part is a rod between neighbouring stations of
-a beam. Loads act at ends only, so that the force ``n`` of a part is constant. Lengths are in units of the longest beam and forces
-in units of ``EI/L^2`` with the largest EI, so that all quantities are dimensionless.
+Stations are the contacts, the ends of the beams, and the places inside a beam where a force acts or a load begins or ends. Joined ends
+are one station; an end behind a hinge is a station of its own with the place of the joint. A part is a rod between neighbouring stations
+of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are in units of the longest beam and forces in units of
+``EI/L^2`` with the largest EI, so that all quantities are dimensionless.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.friction import Grip
+from comparisons.referee.joints import inner_stations, joints, relative, rod_of, units_of
+from comparisons.referee.rods import Rod
+from comparisons.referee.stations import NONE, Hinge, Position, Station
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
-NONE = -1
-"""Index of a quantity that is prescribed and not unknown."""
 _FREE: Mapping[str, Grip] = MappingProxyType({})
-
-
-@dataclass(frozen=True, kw_only=True)
-class Position:
-    """A position, the sum of a reference position and a displacement with prescribed or unknown components.
-
-    Attributes
-    ----------
-    reference : (float, float)
-        Undeformed position, or the position of a pin. It may be far larger than the displacement.
-    prescribed : (float, float)
-        Prescribed displacement.
-    unknown : (int, int)
-        Indices of the unknown displacements; `NONE` for a prescribed component.
-    """
-
-    reference: tuple[float, float]
-    prescribed: tuple[float, float] = (0.0, 0.0)
-    unknown: tuple[int, int] = (NONE, NONE)
-
-    def displacement(self, z: Array) -> Array:
-        """Return the displacement."""
-        return np.array(
-            [z[k] if k != NONE else g for g, k in zip(self.prescribed, self.unknown, strict=True)]
-        )
-
-    def position(self, z: Array) -> Array:
-        """Return the position."""
-        return np.array(self.reference) + self.displacement(z)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,35 +66,6 @@ class Touch:
         return -1.0 if self.spec.side == "left" else 1.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Station:
-    """An end of a beam, a joint or a contact.
-
-    Attributes
-    ----------
-    place : Position
-        Position of the axis; for a contact, position of the touching point.
-    rotation_unknown : int
-        Index of the unknown rotation; `NONE` if the rotation is prescribed.
-    prescribed_rotation : float
-        Prescribed rotation.
-    force, moment
-        Dead load.
-    touch : int
-        Index of the contact; `NONE` for an end.
-    ends : tuple of str
-        Ends of beams at the station.
-    """
-
-    place: Position
-    rotation_unknown: int
-    prescribed_rotation: float = 0.0
-    force: tuple[float, float] = (0.0, 0.0)
-    moment: float = 0.0
-    touch: int = NONE
-    ends: tuple[str, ...] = ()
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Part:
     """A rod between two stations of a beam.
@@ -131,21 +77,26 @@ class Part:
     first, last : int
         Indices of the stations at the start and the end.
     force : int
-        Index of the first of the two unknown force components, along the undeformed beam and to its left.
+        Index of the first of the two unknown components of c, along the chord of the undeformed beam and to its left.
+    rod : Rod
+        Axis, stiffnesses and load of the beam.
     axes : ndarray, shape (2, 2)
-        Unit vectors along the undeformed beam and to its left, as columns.
-    EI, stretch, shear : float
-        Bending stiffness EI and flexibilities 1/EA and 1/GA.
+        Unit vectors along the chord of the undeformed beam and to its left, as columns.
+    piece : int
+        Index of the piece of the load on the part.
     """
 
     beam: int
     first: int
     last: int
     force: int
+    rod: Rod
     axes: Array
-    EI: float
-    stretch: float
-    shear: float
+    piece: int = 0
+
+    def local(self, c: Any, s: Any) -> Any:
+        """Force at an arc position in the frame of the undeformed tangent."""
+        return self.rod.local(self.piece, c, s)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -160,8 +111,8 @@ class Layout:
         Load parameter of supports, loads and pins.
     length, force : float
         Units of length and force.
-    stations, touches, parts : tuple
-        Stations, closed contacts and parts of the scene; the parts of a beam are consecutive and in order.
+    stations, touches, parts, hinges : tuple
+        Stations, closed contacts, parts and hinges of the scene; the parts of a beam are consecutive and in order.
     unknowns : int
         Number of unknowns without the rotations inside the parts.
     """
@@ -173,15 +124,28 @@ class Layout:
     stations: tuple[Station, ...]
     touches: tuple[Touch, ...]
     parts: tuple[Part, ...]
+    hinges: tuple[Hinge, ...]
     unknowns: int
 
     def arc(self, z: Array, station: int, part: Part) -> float:
         """Arc position of a part's station."""
-        touch = self.stations[station].touch
-        if touch != NONE:
-            return float(z[self.touches[touch].arc])
+        there = self.stations[station]
+        if there.touch != NONE:
+            return float(z[self.touches[there.touch].arc])
+        if there.arc is not None:
+            return there.arc
         beam = self.scene.beams[part.beam]
-        return 0.0 if f"{beam.name}.start" in self.stations[station].ends else beam.length / self.length
+        return 0.0 if f"{beam.name}.start" in there.ends else beam.length / self.length
+
+    @cached_property
+    def uniform(self) -> bool:
+        """Whether all beams are straight, of one section, and without a load along them."""
+        return all(part.rod.uniform for part in self.parts)
+
+    @cached_property
+    def sprung(self) -> bool:
+        """Whether a joint has a spring to the ground."""
+        return any(any(station.springs) for station in self.stations)
 
     @property
     def rubs(self) -> bool:
@@ -192,6 +156,10 @@ class Layout:
     def grips(self) -> dict[str, Grip]:
         """How friction holds the contacts, by pair."""
         return {touch.spec.pair: touch.grip for touch in self.touches if touch.grip is not None}
+
+    def rod(self, beam: int) -> Rod:
+        """Return the rod of a beam."""
+        return next(part.rod for part in self.parts if part.beam == beam)
 
     def touch(self, pair: str) -> Touch:
         """Return the closed contact of a pair."""
@@ -207,6 +175,10 @@ class Layout:
         before = next(part for part in self.parts if part.last == number)
         behind = next(part for part in self.parts if part.first == number)
         return before, behind
+
+    def ends(self, z: Array, part: Part) -> tuple[float, float]:
+        """Arc positions at the start and the end of a part."""
+        return self.arc(z, part.first, part), self.arc(z, part.last, part)
 
     def extent(self, z: Array, part: Part) -> float:
         """Undeformed length of a part."""
@@ -242,21 +214,23 @@ def lay_out(
     `closed` are the arc positions of the closed pairs, which order them along the beams, and `grips` say how friction holds them; pairs
     without a grip have no friction.
     """
-    length = max(beam.length for beam in scene.beams)
-    force = max(beam.EI for beam in scene.beams) / length**2
-    stations = _ends(scene, load_parameter, length, force)
-    count = _count(stations)
+    units = length, force = units_of(scene)
+    rods = [rod_of(scene, beam, load_parameter, units) for beam in scene.beams]
+    stations, hinges = joints(scene, load_parameter, units, rods)
+    count = 1 + max(
+        (k for item in stations for k in (*item.place.unknown, item.rotation_unknown)), default=NONE
+    )
     touches: list[Touch] = []
-    where = {end: number for number, station in enumerate(stations) for end in station.ends}
+    at = {end: number for number, station in enumerate(stations) for end in station.joint}
     on_beam: dict[str, list[tuple[float, int]]] = {beam.name: [] for beam in scene.beams}
     for spec in scene.contacts:
         if spec.pair not in closed:
             continue
         if "." in spec.node:
-            place = stations[where[spec.node]].place
+            place = stations[at[spec.node]].place
         else:
             x, y = scene.pin(spec.node).position(load_parameter)
-            place = Position(reference=_relative(scene, (x, y), length))
+            place = Position(reference=relative(scene, (x, y), length))
         left = 1.0 if spec.side == "left" else -1.0
         offset, roll = scene.offset(spec) / length * left, -scene.radius(spec) / length * left
         turn, arc, count = count, count + 1, count + 2
@@ -275,26 +249,25 @@ def lay_out(
                 roll=roll,
             )
         )
+    for beam, rod in zip(scene.beams, rods, strict=True):
+        for station in inner_stations(scene, beam, rod, load_parameter, units, count):
+            assert station.arc is not None, "a place inside a beam has an arc position"
+            on_beam[beam.name].append((station.arc * length, len(stations)))
+            stations.append(station)
+            count += 3
+    ends = {end: number for number, station in enumerate(stations) for end in station.ends}
     parts: list[Part] = []
-    for number, beam in enumerate(scene.beams):
-        x, y = beam.direction
+    for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
         chain = [
-            where[f"{beam.name}.start"],
+            ends[f"{beam.name}.start"],
             *(k for _, k in sorted(on_beam[beam.name])),
-            where[f"{beam.name}.end"],
+            ends[f"{beam.name}.end"],
         ]
+        piece = 0
         for first, last in pairwise(chain):
+            piece += stations[first].arc is not None
             parts.append(
-                Part(
-                    beam=number,
-                    first=first,
-                    last=last,
-                    force=count,
-                    axes=np.array([[x, -y], [y, x]]),
-                    EI=beam.EI / (force * length**2),
-                    stretch=force / beam.EA,
-                    shear=force / beam.GA,
-                )
+                Part(beam=number, first=first, last=last, force=count, rod=rod, axes=rod.axes, piece=piece)
             )
             count += 2
     return Layout(
@@ -305,57 +278,6 @@ def lay_out(
         stations=tuple(stations),
         touches=tuple(touches),
         parts=tuple(parts),
+        hinges=tuple(hinges),
         unknowns=count,
     )
-
-
-def _relative(scene: Scene, point: tuple[float, float], length: float) -> tuple[float, float]:
-    """Return a position relative to the first beam's start, in units of length."""
-    x, y = scene.beams[0].start
-    return (point[0] - x) / length, (point[1] - y) / length
-
-
-def _count(stations: list[Station]) -> int:
-    """Number of unknowns of the stations."""
-    return 1 + max(
-        (k for item in stations for k in (*item.place.unknown, item.rotation_unknown)), default=NONE
-    )
-
-
-def _ends(scene: Scene, t: float, length: float, force: float) -> list[Station]:
-    """Return the stations of the beams' ends, with indices of the free components."""
-    names: dict[tuple[float, float], list[str]] = {}
-    for beam in scene.beams:
-        names.setdefault(beam.start, []).append(f"{beam.name}.start")
-        names.setdefault(beam.end, []).append(f"{beam.name}.end")
-    stations, count = [], 0
-    for point, ends in names.items():
-        motion: tuple[float | None, ...] = (None, None, None)
-        for support in scene.all_supports:
-            if support.node in ends:
-                motion = support.motion
-        unknown = [NONE, NONE, NONE]
-        for component in range(3):
-            if motion[component] is None:
-                unknown[component], count = count, count + 1
-        prescribed = (t * (motion[0] or 0.0) / length, t * (motion[1] or 0.0) / length)
-        station = Station(
-            place=Position(
-                reference=_relative(scene, point, length),
-                prescribed=prescribed,
-                unknown=(unknown[0], unknown[1]),
-            ),
-            rotation_unknown=unknown[2],
-            prescribed_rotation=t * (motion[2] or 0.0),
-            ends=tuple(ends),
-        )
-        for load in scene.loads:
-            if load.node in ends:
-                px, py = station.force
-                station = replace(
-                    station,
-                    force=(px + t * load.force[0] / force, py + t * load.force[1] / force),
-                    moment=station.moment + t * load.moment / (force * length),
-                )
-        stations.append(station)
-    return stations

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.equations import mesh_for
+from comparisons.referee.elements import mesh_for
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct, newton_step
 from comparisons.referee.friction import Grip, Hold, rows
-from comparisons.referee.layout import NONE, Touch, lay_out
+from comparisons.referee.layout import Touch, lay_out
+from comparisons.referee.stations import NONE
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -24,7 +25,13 @@ _AHEAD, _AHEAD_TURNED = 1e-4, 1e-6
 
 
 _CORNER = 1e-9
-"""Distance from a corner of a pin's path, in load parameters, that counts as none."""
+"""Distance from a corner, in load parameters, that counts as none."""
+
+
+def corners(scene: Scene) -> tuple[float, ...]:
+    """Load parameters at which rates jump: corners of the pins' paths, and ends of stages."""
+    turns = {corner for pin in scene.pins for corner in pin.corners}
+    return tuple(sorted(turns | {float(k + 1) for k in range(len(scene.stages))}))
 
 
 def closed_pairs(solution: Solution) -> dict[str, float]:
@@ -60,10 +67,10 @@ def tangent(scene: Scene, now: Solution, little: float) -> tuple[Array, Array]:
 
 
 def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
-    """Rates of the unknowns ahead, or behind, up to the next corner of a pin's path."""
+    """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     t, sign = now.layout.load_parameter, -1.0 if behind else 1.0
-    turned = any(support.motion[2] for support in scene.all_supports)
-    apart = [sign * (corner - t) for pin in scene.pins for corner in pin.corners]
+    turned = any(item[2] for support in scene.all_supports for item in (support.motion, *support.onward))
+    apart = [sign * (corner - t) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
     return tangent(scene, now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
 
@@ -90,7 +97,7 @@ def place(solution: Solution, touch: Touch) -> Hold:
         load_parameter=layout.load_parameter,
         arc_position=float(z[touch.arc]) * layout.length,
         stretch=stretch,
-        shear=phi - theta,
+        shear=phi - theta - before.rod.curvature * float(z[touch.arc]),
         direction=phi,
     )
 
@@ -103,6 +110,7 @@ def slip_rate(solution: Solution, touch: Touch, rate: Array) -> float:
     if touch.angle == NONE:
         return slipping
     theta, phi = float(rate[layout.stations[before.last].rotation_unknown]), float(rate[touch.angle])
+    theta += before.rod.curvature * float(rate[touch.arc])
     return slipping + touch.lever * (phi - theta) + touch.roll * phi
 
 

@@ -118,18 +118,21 @@ def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
         return response.axis_line(beam, k)[1]
     arc, _ = response.axis_line(beam, 0)
     spec = scene.beam(beam)
+    if spec.turn:
+        return np.array([spec.place(float(s) / spec.length) for s in arc])
     return np.asarray(np.array(spec.start) + np.outer(arc, spec.direction))
 
 
 def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
-    """Whether a beam has one fixed clamp and no load, joint or closed contact, so that it is straight."""
+    """Whether a beam has one fixed clamp and no load, joint or closed contact, so that it is undeformed."""
     ends, held = (f"{beam}.start", f"{beam}.end"), scene.supports_of(beam)
     events = scene.beam(beam)
     joined = any(
         {events.start, events.end} & {item.start, item.end} for item in scene.beams if item is not events
     )
-    still = len(held) == 1 and held[0].motion == (0.0, 0.0, 0.0)
-    if joined or not still or any(load.node in ends for load in scene.loads):
+    still = len(held) == 1 and None not in held[0].motion and not held[0].moves
+    loaded = any(item.load.beam == beam for item in scene.load_histories) or events.density is not None
+    if joined or not still or loaded:
         return False
     pairs = [spec.pair for spec in scene.contacts if spec.beam == beam or spec.node in ends]
     return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)

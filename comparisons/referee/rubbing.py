@@ -10,7 +10,7 @@ from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.energy import dissipated
 from comparisons.referee.history import History, UnknownFrictionError, at_rest
 from comparisons.referee.layout import Touch
-from comparisons.referee.march import place, rates, slip_rate, speed
+from comparisons.referee.march import corners, place, rates, slip_rate, speed
 from comparisons.referee.phases import OPEN, PASSES, UNKNOWN
 from comparisons.referee.state import Equilibrium, touching
 from comparisons.response import FrictionHistory, Response
@@ -142,7 +142,7 @@ def _backwards(scene: Scene, exact: Equilibrium, touch: Touch) -> float:
         size = -touch.grip.slip * slip_rate(exact.solution, touch, rate) / speed(scene, exact.solution, rate)
         sizes.append(size)
         t = exact.load_parameter
-        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for pin in scene.pins for corner in pin.corners):
+        if size <= 0.0 or not any(abs(t - corner) < 1e-9 for corner in corners(scene)):
             break
     return min(sizes)
 

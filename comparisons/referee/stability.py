@@ -5,9 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.equations import fields
+from comparisons.referee.elements import fields
 from comparisons.referee.equilibrium import Solution, scales
-from comparisons.referee.layout import NONE
+from comparisons.referee.layout import Part
+from comparisons.referee.stations import NONE
 
 Array = NDArray[np.float64]
 
@@ -44,19 +45,39 @@ def _directions(solution: Solution) -> Array:
             continue
         angle = layout.touches[station.touch].angle
         angles.append(angle)
-        turned, forced, whole = np.zeros(2), [], np.zeros(2)
+        turned, forced, whole, moved = np.zeros(2), [], np.zeros(2), np.zeros(2)
         for part in (item for item in layout.parts if number in (item.first, item.last)):
-            theta, n = float(z[station.rotation_unknown]), z[part.force : part.force + 2]
-            here, a, c = fields(np.array(theta), n, part.stretch, part.shear), part.stretch, part.shear
+            theta, s = float(z[station.rotation_unknown]), layout.arc(z, number, part)
+            _, a, c = part.rod.flexibility(s)
+            n = part.local(z[part.force : part.force + 2], s)
+            here = fields(np.array(theta), n, a, c)
             d1 = np.array([np.cos(theta), np.sin(theta)])
             d2 = np.array([-d1[1], d1[0]])
             whole += here.tangent + np.array([1.0, 0.0])
             turned += d2 * (1.0 + here.N * (a - c)) + d1 * here.Q * (a - c)
-            forced.append((part.force, a * np.outer(d1, d1) + c * np.outer(d2, d2)))
+            flexible = a * np.outer(d1, d1) + c * np.outer(d2, d2)
+            forced.append((part.force, flexible if part.rod.turn == 0.0 else flexible @ _rotation(part, s)))
+            if not part.rod.uniform:
+                moved += flexible @ part.rod.steepness(part.piece, n, s) + _softer(part, s) @ [
+                    here.N * d1,
+                    here.Q * d2,
+                ]
         across = np.array([-whole[1], whole[0]]) / (whole @ whole)
         row = np.zeros(size)
         row[station.rotation_unknown] = across @ turned
         for force, by_force in forced:
             row[force : force + 2] = across @ by_force
+        row[layout.touches[station.touch].arc] = across @ moved + part.rod.curvature
         free[angle] = row
     return np.delete(free, angles, axis=1)
+
+
+def _rotation(part: Part, s: float) -> Array:
+    """Rotation from the frame of the chord to that of the undeformed tangent."""
+    return np.asarray((part.axes.T @ part.rod.frame(s)).T)
+
+
+def _softer(part: Part, s: float) -> Array:
+    """Derivatives of 1/EA and 1/GA by the arc position."""
+    first, _ = part.rod.derivatives(np.array(s))
+    return np.array([first.stretch, first.shear])

@@ -7,12 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.friction import Grip
-from comparisons.referee.layout import NONE, Layout, Part, Position
+from comparisons.referee.layout import Layout, Part
+from comparisons.referee.stations import NONE, Position
 from comparisons.response import Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
+_LOADED = 65
+"""Points of a part at which the moment of the load along it is evaluated."""
 _CLOSED_LOOP = 1e-3
 """Weight of the parts' moment balance, which depends on the inaccurate curvature of the axis; it only completes the force balance."""
 
@@ -115,12 +118,16 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
 
 
 def _chords(layout: Layout, answer: AnswerState, number: int) -> tuple[Array, NDArray[np.complex128]]:
-    """Arc positions of the middles of the axis' chords, and the chords over their arc lengths in the beam's frame as complex numbers."""
-    beam = layout.scene.beams[number]
+    """Arc positions of the middles of the axis' chords, and the chords over their arc lengths as complex numbers.
+
+    The real axis is the undeformed tangent at the middle.
+    """
+    beam, rod = layout.scene.beams[number], layout.rod(number)
     arc, line = answer.axes[beam.name]
     pieces, extents = np.diff(line, axis=0) @ (1.0, 1.0j) / complex(*beam.direction), np.diff(arc)
     long = (np.abs(pieces) > 0.0) & (extents > 0.0)
-    return (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
+    middle, way = (arc[:-1] + arc[1:])[long] / (2.0 * layout.length), pieces[long] / extents[long]
+    return middle, way * np.exp(-1.0j * rod.angle(middle)) if rod.turn else way
 
 
 def _tangents(layout: Layout, answer: AnswerState, number: int) -> Rotations:
@@ -162,20 +169,30 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
     """Set the displacements of the stations and the normals of the contacts."""
     scene = layout.scene
     origin = np.array(scene.beams[0].start)
-    for station in layout.stations:
+    for number, station in enumerate(layout.stations):
         if station.touch == NONE:
-            name, end = station.ends[0].split(".")
-            line = answer.axes[name][1]
-            seen = (line[0 if end == "start" else -1] - origin) / layout.length - np.array(
+            seen = (_stated_place(layout, answer, number) - origin) / layout.length - np.array(
                 station.place.reference
             )
             _set_displacement(z, station.place, seen)
         else:
             touch = layout.touches[station.touch]
             if touch.angle != NONE:
-                number = [beam.name for beam in scene.beams].index(touch.spec.beam)
-                x, y = scene.beams[number].direction
-                z[touch.angle] = math.atan2(y, x) + float(turns[number].angle(z[touch.arc]))
+                beam = [item.name for item in scene.beams].index(touch.spec.beam)
+                x, y = scene.beams[beam].direction
+                undeformed = math.atan2(y, x) + layout.rod(beam).angle(float(z[touch.arc]))
+                z[touch.angle] = undeformed + float(turns[beam].angle(z[touch.arc]))
+
+
+def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
+    """Position of an end, a joint or a place inside a beam in the answer."""
+    station = layout.stations[number]
+    if station.arc is not None:
+        part = next(item for item in layout.parts if item.first == number)
+        arc, line = answer.axes[layout.scene.beams[part.beam].name]
+        return np.array([np.interp(station.arc * layout.length, arc, way) for way in line.T])
+    name, end = (station.joint or station.ends)[0].split(".")
+    return np.asarray(answer.axes[name][1][0 if end == "start" else -1])
 
 
 def _set_displacement(z: Array, place: Position, moved: Array) -> None:
@@ -188,18 +205,22 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
     column = {part.force: 2 * k for k, part in enumerate(layout.parts)}
     size = 2 * len(layout.parts)
-    acting, known = _acting(layout, answer)
+    acting, known = _acting(layout, answer, z)
+    joined = {hinge.end: hinge.joint for hinge in layout.hinges}
     rows, right = [], []
     for k, item in enumerate(layout.stations):
+        if k in joined:
+            continue
         row = np.zeros((2, size))
         for part in layout.parts:
             here = slice(column[part.force], column[part.force] + 2)
-            row[:, here] += ((part.last == k) * 1.0 - (part.first == k) * 1.0) * part.axes
+            first, last = joined.get(part.first, part.first), joined.get(part.last, part.last)
+            row[:, here] += ((last == k) * 1.0 - (first == k) * 1.0) * part.axes
         stated = [k in known or item.touch != NONE or number != NONE for number in item.place.unknown]
         rows += [row[component] for component in range(2) if stated[component]]
         right += [acting[k, component] for component in range(2) if stated[component]]
     for part in layout.parts:
-        lever, value = _moments(layout, part, turns, z)
+        lever, value = _moments(layout, part, answer, turns, z)
         full = np.zeros(size)
         full[column[part.force] : column[part.force] + 2] = _CLOSED_LOOP * lever
         rows.append(full)
@@ -209,10 +230,18 @@ def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Arr
         z[part.force : part.force + 2] = forces[column[part.force] : column[part.force] + 2]
 
 
-def _acting(layout: Layout, answer: AnswerState) -> tuple[Array, set[int]]:
-    """External forces (stations, 2) on the stations, and the stations whose reactions the answer has."""
+def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
+    """External forces (stations, 2) on the stations, and the stations whose reactions the answer has.
+
+    The forces on ends behind a hinge count at the joint.
+    """
     acting = np.array([item.force for item in layout.stations])
-    where = {end: k for k, item in enumerate(layout.stations) for end in item.ends}
+    for k, item in enumerate(layout.stations):
+        if any(item.springs):
+            acting[k] -= np.array(item.springs[:2]) * item.place.displacement(z)
+    for hinge in layout.hinges:
+        acting[hinge.joint] += acting[hinge.end]
+    where = {end: k for k, item in enumerate(layout.stations) for end in item.joint}
     for end, (x, y, _) in answer.reactions.items():
         acting[where[end]] += np.array([x, y]) / layout.force
     for k, item in enumerate(layout.stations):
@@ -226,16 +255,26 @@ def _acting(layout: Layout, answer: AnswerState) -> tuple[Array, set[int]]:
     return acting, {where[end] for end in answer.reactions}
 
 
-def _moments(layout: Layout, part: Part, turns: list[Rotations], z: Array) -> tuple[Array, float]:
-    """Coefficients and right side of ``(r_b - r_a) x n = m_a - m_b`` in the beam's frame."""
+def _moments(
+    layout: Layout, part: Part, answer: AnswerState, turns: list[Rotations], z: Array
+) -> tuple[Array, float]:
+    """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
     a, b = layout.arc(z, part.first, part), layout.arc(z, part.last, part)
     chord = part.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
     turn, step = turns[part.beam], (b - a) / 8.0
     m_a, m_b = (
-        part.EI * float(turn.angle(x + step) - turn.angle(x)) / step if step > 0.0 else 0.0
+        part.rod.flexibility(x).EI * float(turn.angle(x + step) - turn.angle(x)) / step if step > 0.0 else 0.0
         for x in (a, b - step)
     )
-    return np.array([-chord[1], chord[0]]), m_a - m_b
+    lever = np.array([-chord[1], chord[0]])
+    if not part.rod.loaded:
+        return lever, m_a - m_b
+    arc, line = answer.axes[layout.scene.beams[part.beam].name]
+    s = np.linspace(a, b, _LOADED)
+    way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
+    x, y = part.axes.T @ way
+    W = part.rod.resultant(part.piece, (s[:-1] + s[1:]) / 2.0)
+    return lever, m_a - m_b + float(x @ W[:, 1] - y @ W[:, 0])
 
 
 def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: int, z: Array) -> Rotations:
@@ -249,14 +288,15 @@ def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: in
     if not len(way):
         return turn
     for part in layout.parts:
-        if part.beam != number or not part.shear:
+        _, stretch, shear = part.rod.flexibility(turn.arc)
+        if part.beam != number or not np.any(shear):
             continue
         inside = (turn.arc >= layout.arc(z, part.first, part)) & (turn.arc <= layout.arc(z, part.last, part))
-        n = complex(z[part.force], z[part.force + 1])
-        along = way - part.shear * n
+        n = part.local(z[part.force : part.force + 2], turn.arc) @ (1.0, 1.0j)
+        along = way - shear * n
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)
-        factor = (part.stretch - part.shear) * (d1 * n.conjugate()).real
+        factor = (stretch - shear) * (d1 * n.conjugate()).real
         d1 = np.where(np.abs(1.0 + factor - size) <= np.abs(1.0 - factor + size), d1, -d1)
         theta = np.where(inside & (size > 0.0), np.angle(d1), theta)
     return Rotations(arc=turn.arc, theta=np.unwrap(theta))

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import VALUES, WEIGHTS, shapes, up_to
-from comparisons.referee.equations import fields, rotations
+from comparisons.referee.basis import GAUSS, VALUES, WEIGHTS, shapes, up_to
+from comparisons.referee.elements import Fields, fields, rotations
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.layout import Part, Touch
 from comparisons.referee.stability import index_and_margin
@@ -80,7 +80,7 @@ class Equilibrium:
     ends : dict of ndarray, shape (2,)
         Positions of the beams' ends, by names such as ``upper.end``.
     strain_energy : float
-        Strain energy of all rods.
+        Energy of all rods, springs and hinges.
     index : int
         Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 without an equilibrium.
     margin : float
@@ -115,6 +115,12 @@ class Equilibrium:
         layout = self.solution.layout
         number = next(k for k, station in enumerate(layout.stations) if end in station.ends)
         return np.append(self.ends[end], layout.rotation(self.solution.z, number))
+
+    def joint_rotation(self, end: str) -> float:
+        """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
+        layout = self.solution.layout
+        number = next(k for k, station in enumerate(layout.stations) if end in station.joint)
+        return layout.rotation(self.solution.z, number)
 
 
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
@@ -162,7 +168,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
         ends={
             end: origin + layout.length * station.place.position(solution.z)
             for station in layout.stations
-            for end in station.ends
+            for end in station.joint
         },
         strain_energy=solution.system.energy * layout.force * layout.length,
         index=index,
@@ -182,8 +188,10 @@ def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
 def _tangent_at(solution: Solution, part: Part, station: int) -> Array:
     """Return ``r'`` of a part at one of its stations."""
     theta = np.array(solution.layout.rotation(solution.z, station))
-    there = fields(theta, solution.z[part.force : part.force + 2], part.stretch, part.shear)
-    return np.asarray(part.axes @ (there.tangent + np.array([1.0, 0.0])))
+    s = solution.layout.arc(solution.z, station, part)
+    _, stretch, shear = part.rod.flexibility(s)
+    there = fields(theta, part.local(solution.z[part.force : part.force + 2], s), stretch, shear)
+    return np.asarray(part.rod.frame(s) @ (there.tangent + np.array([1.0, 0.0])))
 
 
 def touching(solution: Solution, touch: Touch) -> Contact:
@@ -207,26 +215,40 @@ def touching(solution: Solution, touch: Touch) -> Contact:
 
 def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Array]:
     """Reactions (3,) by supported end, from the balance of parts, loads and contacts; zero in free components."""
-    layout, z, mesh = solution.layout, solution.z, solution.mesh
-    assert solution.system is not None, "an equilibrium has its equations"
+    layout = solution.layout
     reactions: dict[str, Array] = {}
     for support in layout.scene.all_supports:
-        number = next(k for k, item in enumerate(layout.stations) if support.node in item.ends)
-        station = layout.stations[number]
-        total = -np.array([*station.force, station.moment])
-        for k, part in enumerate(layout.parts):
-            elements = np.flatnonzero(mesh.part == k)
-            for end, sign, e, side in ((part.first, -1.0, elements[0], 0), (part.last, 1.0, elements[-1], 1)):
-                if end == number:
-                    total[:2] += sign * part.axes @ z[part.force : part.force + 2]
-                    total[2] += solution.system.ends[e, side]
-        total *= layout.force * np.array([1.0, 1.0, layout.length])
+        number = next(k for k, item in enumerate(layout.stations) if support.node in item.joint)
+        total = _held(solution, number) * layout.force * np.array([1.0, 1.0, layout.length])
         for touch in layout.touches:
-            if touch.spec.node in station.ends:
+            if touch.spec.node in layout.stations[number].joint:
                 total[:2] += contacts[touch.spec.pair].force
         held = [value is not None for value in support.motion]
         reactions[support.node] = np.where(held, total, 0.0)
     return reactions
+
+
+def _held(solution: Solution, number: int) -> Array:
+    """Force and moment (3,) of parts, springs and hinges less the loads at a joint, in units of `Layout`."""
+    layout, z, mesh = solution.layout, solution.z, solution.mesh
+    assert solution.system is not None, "an equilibrium has its equations"
+    station = layout.stations[number]
+    total = -np.array([*station.force, station.moment])
+    total += np.array(station.springs) * [*station.place.displacement(z), layout.rotation(z, number)]
+    here = {number}
+    for hinge in layout.hinges:
+        if hinge.joint == number:
+            here.add(hinge.end)
+            total[:2] -= layout.stations[hinge.end].force
+            total[2] += hinge.stiffness * (layout.rotation(z, number) - layout.rotation(z, hinge.end))
+    for k, part in enumerate(layout.parts):
+        elements = np.flatnonzero(mesh.part == k)
+        for end, sign, e, side in ((part.first, -1.0, elements[0], 0), (part.last, 1.0, elements[-1], 1)):
+            if end in here:
+                total[:2] += sign * part.axes @ z[part.force : part.force + 2]
+            if end == number:
+                total[2] += solution.system.ends[e, side]
+    return total
 
 
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
@@ -244,9 +266,9 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         if not inside.any():
             continue
         elements = np.flatnonzero(mesh.part == k)
-        n = z[part.force : part.force + 2]
         half = mesh.share[elements] * extent / 2.0
-        inner = fields(coefficients[elements] @ VALUES.T, n, part.stretch, part.shear).tangent
+        points = first + extent * mesh.start[elements][:, None] + half[:, None] * (1.0 + GAUSS)
+        inner = _fields(part, points, coefficients[elements] @ VALUES.T, z).tangent
         starts = np.zeros((len(elements) + 1, 2))
         np.cumsum(half[:, None] * (WEIGHTS @ inner), axis=0, out=starts[1:])
         share = (s[inside] - first) / extent
@@ -255,12 +277,17 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         values, slopes = shapes(xi)
         theta = np.einsum("mi,mi->m", values, coefficients[elements][e])
         bent = np.einsum("mi,mi->m", slopes, coefficients[elements][e]) / half[e]
-        N, Q, tangent = fields(theta, n, part.stretch, part.shear)
+        N, Q, tangent = _fields(part, s[inside], theta, z)
         along = starts[e] + half[e][:, None] * np.einsum("mq,mqk->mk", up_to(xi), inner[e])
-        along[:, 0] += s[inside] - first
-        tangent[:, 0] += 1.0
+        if part.rod.turn:
+            along += np.array([part.rod.between(first, float(x)) for x in s[inside]])
+            tangent += np.array([part.rod.direction(float(x)) for x in s[inside]])
+        else:
+            along[:, 0] += s[inside] - first
+            tangent[:, 0] += 1.0
         position = layout.position(z, part.first) + along @ part.axes.T
-        table[inside] = np.column_stack([position, tangent @ part.axes.T, theta, part.EI * bent, N, Q])
+        moment = part.rod.flexibility(s[inside]).EI * bent
+        table[inside] = np.column_stack([position, tangent @ part.axes.T, theta, moment, N, Q])
     unit = layout.force * layout.length
     return Shape(
         position=np.array(layout.scene.beams[0].start) + layout.length * table[:, :2],
@@ -270,3 +297,10 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         N=layout.force * table[:, 6],
         Q=layout.force * table[:, 7],
     )
+
+
+def _fields(part: Part, s: Array, theta: Array, z: Array) -> Fields:
+    """Fields of a part at arc positions (...), with the tangent in the frame of the chord."""
+    _, stretch, shear = part.rod.flexibility(s)
+    N, Q, tangent = fields(theta, part.local(z[part.force : part.force + 2], s), stretch, shear)
+    return Fields(N, Q, part.rod.turned(tangent, s, back=True))

@@ -21,8 +21,10 @@ BEAMS: Final = frozenset({"turn", "taper", "density", "force_per_length", "at"})
 """Keys that the tangent stiffness method states."""
 STRIPS: Final[frozenset[str]] = frozenset()
 """Keys that the solid states."""
-RODS: Final[frozenset[str]] = frozenset()
-"""Keys that the referee states, and with it the exact rods that it solves."""
+REFEREE: Final[frozenset[str]] = frozenset(SPECIAL)
+"""Keys that the referee judges."""
+RODS: Final[frozenset[str]] = REFEREE & BEAMS
+"""Keys that the exact rods state: the referee solves them along the path that exact elements follow."""
 ONE_ROD: Final[frozenset[str]] = frozenset()
 """Keys that the exact answers by quadrature state, for one beam under a pin or with a tied tip."""
 PROGRAMS: Final[frozenset[str]] = frozenset()

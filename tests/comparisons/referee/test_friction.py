@@ -12,8 +12,9 @@ from comparisons.models.network import solve_network
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, answer_state, certify, equilibrium
 from comparisons.referee.basis import DEGREE
+from comparisons.referee.elements import mesh_of, properties
 from comparisons.referee.energy import dissipated
-from comparisons.referee.equations import assemble, mesh_of, properties
+from comparisons.referee.equations import assemble
 from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out

@@ -12,7 +12,8 @@ from comparisons.exact.elastica import fold_angle
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
-from comparisons.referee.equations import assemble, mesh_for, properties
+from comparisons.referee.elements import mesh_for, properties
+from comparisons.referee.equations import assemble
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
 
 GA, EA = 50.0, 400.0

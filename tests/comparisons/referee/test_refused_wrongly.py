@@ -8,7 +8,7 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, certify
-from comparisons.referee.equations import mesh_of
+from comparisons.referee.elements import mesh_of
 from comparisons.referee.equilibrium import SearchStatus, correct
 from comparisons.referee.layout import lay_out
 from comparisons.response import Response
