@@ -4,12 +4,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
+WAITING = $(PYTHON) .ci/waiting.py "installing the libraries of .constraints.txt, which takes minutes" $(VENV)
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
 
 .PHONY: run test test-all results coverage mutation docs bench fuzz platforms peers lint format setup clean
 
 run: setup
-	$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
+	@echo "comparing all models on ks-cantilever"
+	@$(THREADS) $(BIN)/crossval compare ks-cantilever --out out/ks-cantilever
+	@echo "the page is out/ks-cantilever/report.html; other commands: $(BIN)/crossval --help"
 
 test: lint
 	$(PYTEST) -m "not slow"
@@ -68,15 +71,17 @@ format: setup
 setup: $(STAMP)
 
 $(STAMP): pyproject.toml .constraints.txt
+	@echo "making $(VENV), once and when the requirements have changed"
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python >= 3.11 is needed; set PYTHON=..."; exit 1; }
 	@if command -v uv >/dev/null 2>&1; then \
 	  uv venv --quiet --allow-existing --python $(PYTHON) $(VENV) && \
-	  uv pip install --quiet --python $(BIN)/python --constraint .constraints.txt --editable '.[dev]'; \
+	  $(WAITING) uv pip install --python $(BIN)/python --constraint .constraints.txt --editable '.[dev]'; \
 	else \
 	  $(PYTHON) -m venv $(VENV) && \
-	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .constraints.txt --editable '.[dev]'; \
+	  $(WAITING) $(BIN)/python -m pip install --disable-pip-version-check --constraint .constraints.txt --editable '.[dev]'; \
 	fi
 	@touch $@
+	@echo "crossval is $(BIN)/crossval: $(BIN)/crossval scenes"
 
 clean:
 	rm -rf $(VENV) .nox out mutants docs/_generated bench.json .mypy_cache .ruff_cache .import_linter_cache

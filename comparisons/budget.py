@@ -18,6 +18,7 @@ import numpy as np
 from comparisons.errors import forces, moments, size
 from comparisons.models import ROD, SOLID, TSM, solve
 from comparisons.models.options import ModelError, Options
+from comparisons.models.progress import Count, uncounted
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 
@@ -69,8 +70,12 @@ class Budget:
         return np.asarray((total - explained) / total)
 
 
-def error_budget(scene: Scene) -> Budget:
-    """Measure the budget of a scene that beams and solid state.
+SOLUTIONS = 10
+"""Solutions behind a budget."""
+
+
+def error_budget(scene: Scene, count: Count = uncounted) -> Budget:
+    """Measure the budget of a scene that beams and solid state; `count` receives every solution.
 
     The quantities are the forces and arc positions of all contact pairs, or the forces of the supports in a scene without contact,
     and the moments of the supports.
@@ -80,20 +85,29 @@ def error_budget(scene: Scene) -> Budget:
     ModelError
         If the solid cannot state the scene, a solution behind the budget stops, or no quantity has a value.
     """
+    done = 0
+
+    def values(scene: Scene, model: str, options: Options | None = None) -> Values:
+        nonlocal done
+        found = _values(scene, model, options)
+        done += 1
+        count(done, SOLUTIONS)
+        return found
+
     short = replace(scene, load_parameters=STEPS)
-    rod = _values(short, ROD.name)
+    rod = values(short, ROD.name)
     quantities = tuple(name for name, values in rod.items() if np.isfinite(values).any())
     if not quantities:
         raise ModelError(
             "the budget is relative to the exact rods, which have no force at its load parameters"
         )
-    coarse, fine = (_values(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
-    solid, finer = _values(short, SOLID.name), _values(_refined(short), SOLID.name)
-    augmented = _values(_augmented(short), SOLID.name)
-    careful = _values(replace(short, load_parameters=2 * STEPS), SOLID.name)
+    coarse, fine = (values(short, TSM.name, Options(elements=n)) for n in (ELEMENTS, 2 * ELEMENTS))
+    solid, finer = values(short, SOLID.name), values(_refined(short), SOLID.name)
+    augmented = values(_augmented(short), SOLID.name)
+    careful = values(replace(short, load_parameters=2 * STEPS), SOLID.name)
     biot = replace(short, beams=tuple(replace(beam, material=BIOT) for beam in short.beams))
-    like_rod, finer_like_rod = (_values(_augmented(one), SOLID.name) for one in (biot, _refined(biot)))
-    linear = _values(biot, SOLID.name)
+    like_rod, finer_like_rod = (values(_augmented(one), SOLID.name) for one in (biot, _refined(biot)))
+    linear = values(biot, SOLID.name)
     parts: dict[str, Callable[[str], Array]] = {
         "TSM mesh": lambda q: -_step(coarse, fine, q, order=4),
         "TSM theory": lambda q: coarse[q] + _step(coarse, fine, q, order=4) - rod[q],
@@ -104,6 +118,7 @@ def error_budget(scene: Scene) -> Budget:
         "load steps": lambda q: careful[q] - solid[q],
     }
     assert tuple(parts) == tuple(PARTS), "every part is explained"
+    assert done == SOLUTIONS, "every solution is counted"
     return Budget(
         scene=scene.name,
         total={q: (coarse[q] - solid[q]) / rod[q] for q in quantities},

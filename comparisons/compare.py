@@ -13,7 +13,7 @@ from comparisons.extras import install
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.progress import Watch, unwatched
+from comparisons.models.progress import Count, Watch, uncounted, unwatched
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import json_text
 from comparisons.referee import Verdict
@@ -32,6 +32,7 @@ from tsm.elements import TIMOSHENKO, ElementType
 
 Report = Callable[[str], None]
 Watching = Callable[[str], AbstractContextManager[Watch]]
+Staging = Callable[[str], AbstractContextManager[Count]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +78,8 @@ DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=
 """The runs whose deflected axes are drawn over each other: the widest line first, the exact rod on top."""
 
 BRANCH = ("force", "moment", "tip")
+WRITTEN = 5
+"""Parts of the files: shapes, stress, budget, VTU files, tables and page."""
 APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
 
@@ -115,8 +118,17 @@ def _silent(_: str) -> AbstractContextManager[Watch]:
     return nullcontext(unwatched)
 
 
+def _unsaid(_: str) -> AbstractContextManager[Count]:
+    return nullcontext(uncounted)
+
+
 def compare(
-    scene: Scene, folder: Path, report: Report, watching: Watching = _silent, others: Sequence[str] = ()
+    scene: Scene,
+    folder: Path,
+    report: Report,
+    watching: Watching = _silent,
+    staging: Staging = _unsaid,
+    others: Sequence[str] = (),
 ) -> Comparison:
     """Solve `scene` with every model that can state it and write the results to `folder`.
 
@@ -130,6 +142,8 @@ def compare(
         Receives lines about the progress.
     watching : callable
         ``watching(label)`` gives a context with the `Watch` of a run.
+    staging : callable
+        ``staging(label)`` gives a context with the `Count` of a stage of the work after the runs.
     others : sequence of str
         Programs of others that run as well, by their names or program files.
 
@@ -151,11 +165,11 @@ def compare(
         )
         for label, response in responses.items()
     ]
-    report("measuring the error budget")
-    budget = _budget(scene, rows, report)
-    report("writing files")
-    with alone_in(folder):
-        return Comparison(rows=rows, files=_write_all(scene, rows, budget, exported, folder, report))
+    with staging("measuring the error budget") as count:
+        budget = _budget(scene, rows, report, count)
+    with staging("drawing and writing files") as count, alone_in(folder):
+        files = _write_all(scene, rows, budget, exported, folder, report, count)
+    return Comparison(rows=rows, files=files)
 
 
 def _exported(scene: Scene, folder: Path, report: Report) -> tuple[Run, ...]:
@@ -197,14 +211,14 @@ def _solve_all(scene: Scene, runs: Sequence[Run], report: Report, watching: Watc
     return responses
 
 
-def _budget(scene: Scene, rows: list[Row], report: Report) -> Budget | None:
+def _budget(scene: Scene, rows: list[Row], report: Report, count: Count) -> Budget | None:
     """Return the error budget; None, with the reason, where the solid or the rod is not in contact throughout."""
     solid = next((row.response for row in rows if row.label == SOLID.label), None)
     if solid is None or not solid.completed:
         report("budget.json: left out, it takes the solid")
         return None
     try:
-        return error_budget(scene)
+        return error_budget(scene, count)
     except ModelError as error:
         report(f"budget.json: left out, {error}")
         return None
@@ -217,21 +231,26 @@ def _write_all(
     exported: Sequence[Run],
     folder: Path,
     report: Report,
+    count: Count,
 ) -> list[Path]:
     responses = {row.label: row.response for row in rows}
     names = [run.label for run in DRAWN]
     shapes = [folder / "shapes.png", folder / "shapes.svg"]
     plot_shapes(scene, {name: responses[name] for name in names if name in responses}, *shapes)
+    count(1, WRITTEN)
     files = [*shapes, *_write_picture(scene, responses, folder, report)]
+    count(2, WRITTEN)
     if budget is not None:
         files += [folder / name for name in ("budget.png", "budget.svg", "budget.json")]
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
+    count(3, WRITTEN)
     series = {}
     for run in exported:
         if run.label in responses:
             write_series(writable_folder(folder / run.model), responses[run.label], scene)
             series[run.label] = folder / run.model / f"{run.model}.pvd"
+    count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
     files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
     page = write_comparison_page(scene, rows, budget, files, series, folder, reference=ROD.label)

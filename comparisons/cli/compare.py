@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE, STOPPED, exit_status, report
-from comparisons.cli.progress import watching
-from comparisons.models.progress import Watch
+from comparisons.cli.progress import staging, watching
+from comparisons.models.progress import Count, Watch
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -42,7 +42,10 @@ def run(given: "argparse.Namespace") -> int:
     def watch(label: str) -> AbstractContextManager[Watch]:
         return watching(label, quiet=given.quiet)
 
-    found = compare(scene, given.out or Path("out") / scene.name, tell, watch, given.others)
+    def stage(label: str) -> AbstractContextManager[Count]:
+        return staging(label, quiet=given.quiet)
+
+    found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, given.others)
     print(table_text(found.rows, ROD.label))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])

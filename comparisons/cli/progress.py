@@ -1,4 +1,4 @@
-"""A bar on a terminal: how far a solution is."""
+"""Lines and bars: what is being done, and how far it is."""
 
 import sys
 from collections.abc import Iterator
@@ -7,7 +7,10 @@ from shutil import get_terminal_size
 from time import monotonic
 from typing import TextIO
 
-from comparisons.models.progress import REDRAW, Reached, Watch, bar, unwatched
+from comparisons.models.progress import REDRAW, Count, Reached, Watch, bar, uncounted, unwatched
+
+PATIENCE = 2.0
+"""Seconds that a work takes without a bar."""
 
 
 @contextmanager
@@ -34,6 +37,39 @@ def watching(label: str, *, quiet: bool = False, stream: TextIO | None = None) -
         stream.write(f"\r{line[: get_terminal_size().columns - 1]}\x1b[K")
         stream.flush()
 
+    try:
+        yield show
+    finally:
+        stream.write("\r\x1b[K")
+        stream.flush()
+
+
+@contextmanager
+def staging(label: str, *, quiet: bool = False, stream: TextIO | None = None) -> Iterator[Count]:
+    """Write the line of a stage of the work, and yield a `Count`, which draws a bar below on a terminal; the bar is cleared afterwards.
+
+    The bar appears after `PATIENCE` seconds.
+    """
+    stream = stream or sys.stderr
+    if quiet:
+        yield uncounted
+        return
+    stream.write(f"{label}\n")
+    stream.flush()
+    began = drawn = monotonic()
+
+    def show(done: int, parts: int) -> None:
+        nonlocal drawn
+        now = monotonic()
+        if now - began < PATIENCE or now - drawn < REDRAW:
+            return
+        drawn = now
+        stream.write(f"\r{bar(done / parts)} {done} of {parts}\x1b[K")
+        stream.flush()
+
+    if not stream.isatty():
+        yield uncounted
+        return
     try:
         yield show
     finally:

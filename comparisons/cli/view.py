@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, EPILOG, exit_status, report
+from comparisons.cli.progress import staging, watching
 from comparisons.files import OutputError, writable_folder
 from comparisons.models import SOLID, TSM
 from comparisons.models.options import ModelError, Options
@@ -84,8 +85,10 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
         (TSM.label, TSM.name, BEAMS),
         (SOLID.label, SOLID.name, Options(mesh=given.mesh)),
     ):
+        report(f"solving: {title}")
         try:
-            found.append((title, solve(scene, model, options)))
+            with watching(title) as watch:
+                found.append((title, solve(scene, model, options, watch)))
         except ModelError as error:
             if model == TSM.name:
                 raise
@@ -98,10 +101,12 @@ def _present(series: "list[Series]", label: str, out: Path | None) -> int:
 
     shown = film(series, label)
     if out is None:
+        report("opening a window")
         if not show(shown):
             raise OutputError("no window could be opened; --out DIR writes pictures instead")
         return DONE
-    files, sentence = write(shown, out)
+    with staging(f"drawing {len(shown.frames)} pictures") as count:
+        files, sentence = write(shown, out, count)
     if sentence is not None:
         report(sentence)
     print("files:", *(f"  {path}" for path in files), sep="\n")

@@ -27,9 +27,15 @@ class Reached(NamedTuple):
 
 
 Watch = Callable[[Reached], None]
+Count = Callable[[int, int], None]
+"""Receives how many parts of a work are done, and how many there are."""
 
 
 def unwatched(_: Reached) -> None:
+    """Ignore the progress."""
+
+
+def uncounted(_done: int, _parts: int) -> None:
     """Ignore the progress."""
 
 

@@ -8,9 +8,12 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
+from math import inf
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -18,6 +21,7 @@ from numpy.typing import NDArray
 
 from comparisons.extras import install
 from comparisons.files import replacing
+from comparisons.models.progress import REDRAW, Count, uncounted
 from comparisons.show.plot import plot_panels
 from comparisons.show.stress import Panel, Scale
 
@@ -55,8 +59,10 @@ def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | N
     return sentence
 
 
-def render_frames(frames: Sequence[list[Panel]], scale: Scale, folder: Path) -> tuple[list[Path], str | None]:
-    """Write ``frame-0000.png`` and so on to `folder`, every one in the same view and scale.
+def render_frames(
+    frames: Sequence[list[Panel]], scale: Scale, folder: Path, count: Count = uncounted
+) -> tuple[list[Path], str | None]:
+    """Write ``frame-0000.png`` and so on to `folder`, every one in the same view and scale; `count` receives how many there are.
 
     Returns
     -------
@@ -69,10 +75,17 @@ def render_frames(frames: Sequence[list[Panel]], scale: Scale, folder: Path) -> 
     _write(data, frames, scale)
     command, seconds = ["-m", "comparisons.show.render", str(data), str(folder)], TIMEOUT + len(frames)
     installed = find_spec("pyvista") is not None
-    if installed and any(_run(command, extra, seconds) and pictures[-1].is_file() for extra in ENVIRONMENTS):
+
+    def drawn() -> None:
+        count(sum(picture.is_file() for picture in pictures), len(pictures))
+
+    if installed and any(
+        _run(command, extra, seconds, drawn) and pictures[-1].is_file() for extra in ENVIRONMENTS
+    ):
         return pictures, None
     for panels, picture in zip(frames, pictures, strict=True):
         plot_panels(panels, scale, picture)
+        drawn()
     return pictures, INSTEAD if installed else NOT_INSTALLED
 
 
@@ -92,18 +105,29 @@ def renders() -> bool:
     return any(_run(["-c", trial], extra, TIMEOUT) for extra in ENVIRONMENTS)
 
 
-def _run(arguments: list[str], environment: dict[str, str], seconds: float | None) -> bool:
-    """Whether a child process of our own interpreter came to its end."""
-    try:
-        child = subprocess.run(  # noqa: S603 our own interpreter and module
-            [sys.executable, *arguments],
-            env={**os.environ, **environment},
-            capture_output=True,
-            timeout=seconds,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return False
+def _run(
+    arguments: list[str],
+    environment: dict[str, str],
+    seconds: float | None,
+    meanwhile: Callable[[], None] = lambda: None,
+) -> bool:
+    """Whether a child process of our own interpreter came to its end; `meanwhile` is called while it runs."""
+    last = inf if seconds is None else monotonic() + seconds
+    with subprocess.Popen(  # noqa: S603 our own interpreter and module
+        [sys.executable, *arguments],
+        env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    ) as child:
+        try:
+            while child.poll() is None and monotonic() < last:
+                meanwhile()
+                with suppress(subprocess.TimeoutExpired):
+                    child.wait(REDRAW)
+        finally:
+            if child.poll() is None:
+                child.kill()
     return child.returncode == 0
 
 

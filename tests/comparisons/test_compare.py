@@ -40,6 +40,7 @@ def test_compare_writes_every_file_and_the_same_numbers(
     for number, run in enumerate(RUNS, 1):
         assert f"[{number}/{len(RUNS)}] {run.label}: " in progress
         assert f"\n{run.label} " in printed
+    assert progress.endswith("measuring the error budget\ndrawing and writing files\n")
     data = json.loads((out / "summary.json").read_text())
     assert set(data["files"]) == FILES
     assert read_scene(data["scene_file"], "summary") == KS

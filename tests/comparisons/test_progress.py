@@ -10,7 +10,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.cli import progress as shown
-from comparisons.cli.progress import watching
+from comparisons.cli.progress import staging, watching
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.progress import Reached
@@ -76,6 +76,32 @@ def test_nothing_elsewhere_and_where_it_is_quiet(stream: io.StringIO, quiet: boo
     with watching("solid", quiet=quiet, stream=stream) as watch:
         watch(Reached(0.5, 7, ()))
     assert stream.getvalue() == ""
+
+
+@pytest.mark.parametrize("patience", [0.0, 1e9])
+def test_a_stage_is_a_line_and_a_bar_once_it_takes_long(
+    patience: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shown, "REDRAW", 0.0)
+    monkeypatch.setattr(shown, "PATIENCE", patience)
+    stream = Terminal()
+    with staging("drawing 4 pictures", stream=stream) as count:
+        count(1, 4)
+        count(4, 4)
+    pictures = [picture.removesuffix("\x1b[K") for picture in stream.getvalue().split("\r")]
+    bars = ["[#######.......................] 1 of 4", f"[{30 * '#'}] 4 of 4"]
+    assert pictures == ["drawing 4 pictures\n", *(bars if patience == 0.0 else []), ""]
+
+
+@pytest.mark.parametrize(("quiet", "said"), [(False, "drawing\n"), (True, "")])
+def test_a_stage_elsewhere_is_a_line_unless_it_is_quiet(
+    quiet: bool, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shown, "PATIENCE", 0.0)
+    stream = io.StringIO()
+    with staging("drawing", quiet=quiet, stream=stream) as count:
+        count(1, 4)
+    assert stream.getvalue() == said
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])

@@ -112,7 +112,9 @@ def test_picture_and_motion(tmp_path: Path, capsys: Output) -> None:
             motion.seek(k)
             frames.append(np.asarray(motion.convert("RGB"), float))
     assert all(np.abs(a - b).max() > 50 for a, b in pairwise(frames))
-    assert str(out / "view.png") in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert str(out / "view.png") in said.out
+    assert said.err.startswith("solving: TSM\nsolving: solid\ndrawing ")
 
 
 def test_without_opengl_matplotlib_draws(

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.files import OutputError, replacing
+from comparisons.models.progress import Count, uncounted
 from comparisons.show.render import render_frames, show_frames
 from comparisons.show.stress import Panel, Scale
 from comparisons.show.view.bodies import panel
@@ -52,8 +53,8 @@ def _panel(series: Series, t: float) -> Panel:
     return panel(series.body(k), series.pins(k), f"{series.title}, t = {t:.3f}")
 
 
-def write(shown: Film, folder: Path) -> tuple[list[Path], str | None]:
-    """Write ``view.png``, the last state, and ``view.gif``, the motion.
+def write(shown: Film, folder: Path, count: Count = uncounted) -> tuple[list[Path], str | None]:
+    """Write ``view.png``, the last state, and ``view.gif``, the motion; `count` receives the pictures that are drawn.
 
     Returns
     -------
@@ -66,7 +67,7 @@ def write(shown: Film, folder: Path) -> tuple[list[Path], str | None]:
 
     files = [folder / "view.png", folder / "view.gif"]
     with tempfile.TemporaryDirectory() as scratch:
-        pictures, sentence = render_frames(shown.frames, shown.scale, Path(scratch))
+        pictures, sentence = render_frames(shown.frames, shown.scale, Path(scratch), count)
         images = [Image.open(picture).convert("RGB") for picture in pictures]
     with replacing(files[0]) as temporary:
         images[-1].save(temporary)
