@@ -9,7 +9,6 @@ import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
 from comparisons.errors import Errors, error_histories, errors, largest
-from comparisons.extras import install
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -153,7 +152,8 @@ def compare(
         If `folder` cannot be written; nothing is computed.
     """
     folder = writable_folder(folder)
-    exported = _exported(scene, folder, report)
+    for run in (MIXED, SOLID):
+        check_series(folder / run.model, run.model, scene)
     runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
     responses = _solve_all(scene, [*runs, *RUNS], report, watching)
     reference = responses[ROD.label]
@@ -168,19 +168,8 @@ def compare(
     with staging("measuring the error budget") as count:
         budget = _budget(scene, rows, report, count)
     with staging("drawing and writing files") as count, alone_in(folder):
-        files = _write_all(scene, rows, budget, exported, folder, report, count)
+        files = _write_all(scene, rows, budget, folder, report, count)
     return Comparison(rows=rows, files=files)
-
-
-def _exported(scene: Scene, folder: Path, report: Report) -> tuple[Run, ...]:
-    """Return the runs that are written as VTU files; none without the library that writes them."""
-    try:
-        for run in (MIXED, SOLID):
-            check_series(folder / run.model, run.model, scene)
-    except ImportError:
-        report(f"VTU files: left out, meshio cannot be imported, {install('meshio')}")
-        return ()
-    return MIXED, SOLID
 
 
 def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
@@ -228,7 +217,6 @@ def _write_all(
     scene: Scene,
     rows: list[Row],
     budget: Budget | None,
-    exported: Sequence[Run],
     folder: Path,
     report: Report,
     count: Count,
@@ -246,7 +234,7 @@ def _write_all(
         write_budget(budget, files[-1])
     count(3, WRITTEN)
     series = {}
-    for run in exported:
+    for run in (MIXED, SOLID):
         if run.label in responses:
             write_series(writable_folder(folder / run.model), responses[run.label], scene)
             series[run.label] = folder / run.model / f"{run.model}.pvd"
@@ -269,8 +257,8 @@ def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, r
     ks = nearest_steps(both[0].load_parameter[:reached])
     times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
     panels = [
-        beam_panel(both[0], scene, ks, f"{MIXED.label}, t = {times}"),
-        solid_panel(both[1], scene, ks, f"solid, t = {times}"),
+        beam_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),
+        solid_panel(both[1], scene, ks, f"{SOLID.label}\nt = {times}"),
     ]
     force, length = (unit.strip() for unit in scene.units.split(","))
     path = folder / "side-by-side.png"

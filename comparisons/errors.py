@@ -247,7 +247,7 @@ def _face_stress(response: Response, scene: Scene, k: int) -> Array:
     (tx, ty), height = beam.direction, beam.rectangle_height
     from_start = grid.points - np.array(beam.start)
     arc, across = from_start @ (tx, ty), from_start @ (-ty, tx)
-    xx, yy, xy = grid.point_data["cauchy_stress"].T
+    xx, yy, xy = (grid.point_data[name] for name in ("stress_xx", "stress_yy", "stress_xy"))
     stress = (xx + yy) / 2 + np.sign(xx + yy) * np.hypot((xx - yy) / 2, xy)
     at = STATIONS * beam.length
     near = [0.0, beam.length, *(contact.arc_position[k] for contact in response.contacts.values())]

@@ -20,7 +20,7 @@ class Extra(NamedTuple):
 
 EXTRAS = {
     "pyvista": Extra("view", "pictures and windows by VTK; matplotlib draws instead"),
-    "meshio": Extra("io", "VTU files and mesh files"),
+    "meshio": Extra("io", "mesh files of the solid, and crossval view of a folder"),
     "distributed": Extra("cluster", "studies on a Dask cluster (--cluster)"),
     "openseespy": Extra("peers", "--model opensees"),
     "exudyn": Extra("peers", "--model exudyn"),

@@ -20,6 +20,11 @@ def part(text: str) -> float:
     return _checked(lambda value: rules.fraction(float(value)), text)
 
 
+def positive(text: str) -> float:
+    """Read a number above zero."""
+    return _checked(lambda value: rules.positive(float(value)), text)
+
+
 def mesh(text: str) -> tuple[int, int]:
     """Read the numbers of elements along and across, as ``50x2``."""
     return _checked(rules.mesh_text, text)

@@ -28,7 +28,7 @@ def add_to(commands: "Commands") -> None:
     """Add the command to the parser."""
     view = commands.add_parser(
         "view",
-        help="show the motion: beams and solid side by side, with axial stress, pins and contact forces",
+        help="show the motion: beams and solid side by side, with axial stress, supports, and the forces of pins and between beams",
         description="Opens a window with a slider; with --out, or where there is no display, writes view.png and view.gif.",
         epilog=EPILOG,
     )
@@ -39,6 +39,13 @@ def add_to(commands: "Commands") -> None:
     )
     view.add_argument("--out", type=Path, metavar="DIR", help="write into this folder (out/SCENE-view)")
     view.add_argument("--mesh", type=values.mesh, metavar="NXxNY", help="of the solid")
+    view.add_argument(
+        "--scale",
+        type=values.positive,
+        default=1.0,
+        metavar="FACTOR",
+        help="enlarge the deformation, and say so in the picture (1)",
+    )
     view.set_defaults(run=run)
 
 
@@ -51,20 +58,19 @@ def run(given: "argparse.Namespace") -> int:
         out = _target(given.out, folder.resolve().name)
         from comparisons.show.view import read_series
 
-        return _present(read_series(folder), "axial stress", out)
+        return _present(read_series(folder), given.scale, out)
     scene = load_scene(given.what)
     out = _target(given.out, scene.name)
     responses = _solve(scene, given)
     from comparisons.show.view import solved_series
 
-    force, length = (unit.strip() for unit in scene.units.split(","))
     series = [
         solved_series(response, scene, title) for title, response in responses if len(response.load_parameter)
     ]
     status = exit_status(scene, [(f"{title}: ", response) for title, response in responses])
     if not series:
         return status
-    return max(status, _present(series, f"axial stress [{force}/{length}^2]", out))
+    return max(status, _present(series, given.scale, out))
 
 
 def _target(out: Path | None, name: str) -> Path | None:
@@ -96,10 +102,10 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
     return found
 
 
-def _present(series: "list[Series]", label: str, out: Path | None) -> int:
+def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
     from comparisons.show.view import film, show, write
 
-    shown = film(series, label)
+    shown = film(series, factor)
     if out is None:
         report("opening a window")
         if not show(shown):

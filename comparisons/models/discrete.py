@@ -155,12 +155,19 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
     def axis_line(beam: str, k: int) -> tuple[Array, Array]:
         return fem_reference.axis_stations(result, beam), fem_reference.axis_line(result, beam, k)
 
+    beam = np.repeat(np.arange(len(scene.beams)), [part.stop - part.start for part in result.model.parts])
+
     def grid(k: int) -> Grid:
         displacement = result.displacement[k]
+        xx, yy, xy = fem_reference.nodal_stress(result, k).T
         data = {
             "displacement": displacement,
             "deformed": result.mesh_points + displacement,
-            "cauchy_stress": fem_reference.nodal_stress(result, k),
+            "beam": beam,
+            "stress_xx": xx,
+            "stress_yy": yy,
+            "stress_xy": xy,
+            "von_mises": np.sqrt(xx**2 - xx * yy + yy**2 + 3.0 * xy**2),
             "axial_stress": fem_reference.fibre_stress(result, k),
         }
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
@@ -243,7 +250,7 @@ def _response(
 def _beam_grid(scene: Scene, result: Any, k: int) -> Grid:
     """Return the TSM elements as lines. Elements do not share points, because section forces jump at a contact.
 
-    The field `beam` is the number of the beam in the scene, `arc` the distance along the undeformed axis. Axial stresses are given at
+    The field `arc` is the distance along the undeformed axis. Axial stresses are given at
     the right and the left face, seen along the beam. `height` is 0 where the section has no height.
     """
     parts = [_one_beam(scene, number, result, k) for number in range(len(scene.beams))]
@@ -269,7 +276,7 @@ def _one_beam(scene: Scene, number: int, result: Any, k: int) -> dict[str, Array
         "N": N,
         "V": V,
         "M": M,
-        "beam": np.full(len(arc), float(number)),
+        "beam": np.full(len(arc), number),
         "arc": arc,
         "height": height,
         "axial_stress_right": N / area + M * height / (2.0 * inertia),

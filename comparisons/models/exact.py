@@ -142,9 +142,8 @@ def local_response(
         arc, line = axis_line(name, k)
         points = np.outer(1.0 - arc / length, local.beam.start) + np.outer(arc / length, local.beam.end)
         cells = np.stack([np.arange(POINTS - 1), np.arange(1, POINTS)], axis=1)
-        return Grid(
-            points=points, cells={"line": cells}, point_data={"displacement": line - points, "deformed": line}
-        )
+        data = {"displacement": line - points, "deformed": line, "beam": np.zeros(POINTS)}
+        return Grid(points=points, cells={"line": cells}, point_data=data)
 
     support = SupportHistory(
         force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])

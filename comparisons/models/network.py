@@ -155,5 +155,9 @@ def _grid(scene: Scene, state: Equilibrium) -> Grid:
     return Grid(
         points=points,
         cells={"line": np.concatenate(lines)},
-        point_data={"displacement": places - points, "deformed": places},
+        point_data={
+            "displacement": places - points,
+            "deformed": places,
+            "beam": np.repeat(np.arange(len(scene.beams)), POINTS),
+        },
     )

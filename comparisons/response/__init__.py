@@ -2,6 +2,7 @@
 
 from comparisons.response.record import (
     CONTACT_STATES,
+    OPEN,
     SLIPS,
     Array,
     ContactEvent,
@@ -16,6 +17,7 @@ from comparisons.response.record import (
 
 __all__ = [
     "CONTACT_STATES",
+    "OPEN",
     "SLIPS",
     "Array",
     "ContactEvent",

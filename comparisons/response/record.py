@@ -177,7 +177,7 @@ class Grid:
     cells : dict of ndarray, shape (e, k)
         Points of the cells by VTK type, in VTK's order: ``line``, ``quad9``.
     point_data : dict of ndarray, shape (n,) or (n, c)
-        Fields; ``displacement`` (n, 2) is always there.
+        Fields; always there are ``displacement`` and ``deformed`` (n, 2), and ``beam`` (n,), the number of the beam in the scene.
     """
 
     points: Array

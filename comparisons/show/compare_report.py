@@ -77,7 +77,7 @@ def _motion(
         tracks(responses, reference, scene),
         focus=reference,
         vtu={
-            label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtu"
+            label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
             for label, path in series.items()
         },
     )

@@ -1,71 +1,157 @@
-"""VTU files through meshio, and the PVD file of a series."""
+"""The answers of a model as files for ParaView.
 
-from dataclasses import replace
+A load parameter has one VTU file for each beam, one for the contacts, one for the supports, and a VTM file that names these blocks.
+The PVD file lists the load parameters.
+"""
+
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from comparisons.files import alone_in, interrupts_held, replacing, staging, write_text
+from comparisons.files import alone_in, interrupts_held, staging, write_text
 from comparisons.response import Array, Grid, Response
-from comparisons.scene import Scene
+from comparisons.scene import ContactSpec, Scene
+from comparisons.scene.conditions import COMPONENTS
 from comparisons.show.listing import check_free, digest, listed, unchanged, with_digests
+from comparisons.show.symbols import inward
+from comparisons.show.vtu import blocks_text, grid_text, series_text
+
+CONTACTS, SUPPORTS = "contact points", "support points"
+"""Names of the blocks besides the beams; no beam has a name with a space."""
+DIMENSIONS = {
+    "displacement": "L", "deformed": "L", "rotation": "rad", "N": "F", "V": "F", "M": "F L", "arc": "L", "height": "L",
+    "stress_xx": "F/L^2", "stress_yy": "F/L^2", "stress_xy": "F/L^2", "von_mises": "F/L^2", "axial_stress": "F/L^2",
+    "axial_stress_right": "F/L^2", "axial_stress_left": "F/L^2",
+    "beam_displacement": "L", "contact_force": "F", "gap": "L", "radius": "L", "tangential": "F", "normal": "F", "dissipated": "F L",
+    "reaction_force": "F", "reaction_moment": "F L",
+}  # fmt: skip
+"""Dimensions of the fields, in force F and length L; other fields are plain numbers."""
 
 
-def write_vtu(path: Path, grid: Grid) -> None:
-    """Write `grid` with its undeformed points; 2D points and vectors get a zero third component.
-
-    Components of `cauchy_stress` are xx, yy, xy.
-    """
-    import meshio
-
-    data = {
-        name: _three(values) if values.shape[1:] == (2,) else values
-        for name, values in grid.point_data.items()
+def field_units(scene: Scene) -> dict[str, str]:
+    """Return the units of all fields in the scene's units of force and length."""
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    symbols = {"F": force, "L": length}
+    return {
+        name: "".join(symbols.get(letter, letter) for letter in dimension)
+        for name, dimension in DIMENSIONS.items()
     }
-    mesh = meshio.Mesh(_three(grid.points), list(grid.cells.items()), point_data=data)
-    with replacing(path) as temporary:
-        mesh.write(temporary, file_format="vtu")
 
 
-def _three(vectors: Array) -> Array:
-    return np.pad(vectors, ((0, 0), (0, 1)))
+def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
+    """Return the grids of a load parameter by name: every beam with its fields, then `CONTACTS` and `SUPPORTS` where there are any.
 
-
-def body_grid(response: Response, k: int) -> Grid:
-    """Return the body with its fields and, at every point, the index: 0 where the equilibrium is stable, -1 where it is not known."""
-    grid = response.grid(k)
-    if response.index is None:
-        return grid
-    index = np.full(len(grid.points), int(response.index[k]))
-    return replace(grid, point_data={**grid.point_data, "index": index})
-
-
-def pin_grid(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the pins as points: displacement, contact force on the beam, and gap (nan without contact).
-
-    With friction there are `tangential`, `normal`, `slip` and `dissipated` of `FrictionHistory` too, nan at a pin without. A model that states no force vectors has one pair, whose force is the one that the support balances.
+    Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known.
     """
-    t = float(response.load_parameter[k])
-    pins = [(contact, scene.pin(contact.node)) for contact in scene.contacts if "." not in contact.node]
-    start = np.array([pin.points[0] for _, pin in pins]).reshape(-1, 2)
-    deformed = np.array([pin.position(t) for _, pin in pins]).reshape(-1, 2)
+    grid = response.grid(k)
+    found = {beam.name: _part(grid, number) for number, beam in enumerate(scene.beams)}
+    if response.index is not None:
+        for part in found.values():
+            part.point_data["index"] = np.full(len(part.points), int(response.index[k]))
+    return {**found, **nodes(response, scene, k)}
+
+
+def nodes(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
+    """Return the contacts and the supports of a load parameter, as far as the scene has them."""
+    found = {}
+    if scene.contacts:
+        found[CONTACTS] = contact_points(response, scene, k)
+    if scene.all_supports:
+        found[SUPPORTS] = support_points(response, scene, k)
+    return found
+
+
+def _part(grid: Grid, beam: int) -> Grid:
+    """Return the part of a grid that belongs to one beam."""
+    own = grid.point_data["beam"] == beam
+    number = np.cumsum(own) - 1
+    cells = {kind: number[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
+    return Grid(
+        points=grid.points[own],
+        cells=cells,
+        point_data={name: values[own] for name, values in grid.point_data.items() if name != "beam"},
+    )
+
+
+def contact_points(response: Response, scene: Scene, k: int) -> Grid:
+    """Return the nodes of the contacts, in the order of the scene: pins, and ends that touch another beam.
+
+    The fields are the displacement, the radius of a pin, the displacement of the beam where it is touched (of the node where the pair
+    is open), the contact force on the beam, and the gap (nan without contact). With friction there are `tangential`, `normal`,
+    `slip` and `dissipated` of `FrictionHistory` too, nan at a contact without. A model that states no force vectors has one pair,
+    whose force is the one that the supports balance.
+    """
+    start = np.array([_undeformed(scene, contact) for contact in scene.contacts]).reshape(-1, 2)
+    deformed = np.array([_deformed(response, scene, contact, k) for contact in scene.contacts]).reshape(-1, 2)
+    histories = [response.contacts[contact.pair] for contact in scene.contacts]
     force = np.zeros_like(start)
-    for i, (contact, _) in enumerate(pins):
-        history = response.contacts[contact.pair]
+    beside = deformed - start
+    for i, (contact, history) in enumerate(zip(scene.contacts, histories, strict=True)):
         held = sum(support.force[k] for support in response.supports.values())
         force[i] = -held if history.vector is None else history.vector[k]
+        arc = float(history.arc_position[k])
+        if np.isfinite(arc):
+            beside[i] = _moved(response, scene, contact.beam, k, arc)
     data = {
         "displacement": deformed - start,
         "deformed": deformed,
+        "beam_displacement": beside,
+        "radius": np.array([scene.radius(contact) for contact in scene.contacts]),
         "contact_force": force,
-        "gap": np.array([response.contacts[contact.pair].gap[k] for contact, _ in pins]),
+        "gap": np.array([history.gap[k] for history in histories]),
     }
-    rubbed = [response.contacts[contact.pair].friction for contact, _ in pins]
+    rubbed = [history.friction for history in histories]
     if any(rubbed):
         for name in ("tangential", "normal", "slip", "dissipated"):
             data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
-    return Grid(points=start, cells={"vertex": np.arange(len(pins)).reshape(-1, 1)}, point_data=data)
+    return _points(start, data)
+
+
+def support_points(response: Response, scene: Scene, k: int) -> Grid:
+    """Return the supported ends: displacement, force and moment on the beam, and what a picture of the supports needs.
+
+    `held` has 1 for each held component x, y and rotation, `inward` is the unit vector into the beam.
+    """
+    start = np.array([scene.place(support.node) for support in scene.all_supports])
+    displacement = np.array([_end(response, one.beam, one.end, k) for one in scene.all_supports]) - start
+    reactions = [response.supports.get(one.node) for one in scene.all_supports]
+    data = {
+        "displacement": displacement,
+        "deformed": start + displacement,
+        "reaction_force": np.array([(np.nan, np.nan) if one is None else one.force[k] for one in reactions]),
+        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in reactions]),
+        "held": np.array([[int(name in one.held) for name in COMPONENTS] for one in scene.all_supports]),
+        "inward": np.array([inward(scene, one) for one in scene.all_supports]),
+    }
+    return _points(start, data)
+
+
+def _points(points: Array, data: dict[str, Array]) -> Grid:
+    return Grid(points=points, cells={"vertex": np.arange(len(points)).reshape(-1, 1)}, point_data=data)
+
+
+def _undeformed(scene: Scene, contact: ContactSpec) -> tuple[float, float]:
+    return scene.place(contact.node) if "." in contact.node else scene.pin(contact.node).points[0]
+
+
+def _deformed(response: Response, scene: Scene, contact: ContactSpec, k: int) -> Array:
+    name, _, end = contact.node.partition(".")
+    if end:
+        return _end(response, name, end, k)
+    return np.array(scene.pin(name).position(float(response.load_parameter[k])))
+
+
+def _end(response: Response, beam: str, end: str, k: int) -> Array:
+    """Return the deformed position of a beam's end."""
+    return np.asarray(response.axis_line(beam, k)[1][0 if end == "start" else -1])
+
+
+def _moved(response: Response, scene: Scene, beam: str, k: int, arc: float) -> Array:
+    """Return the displacement of a beam's axis at an arc position."""
+    stations, line = response.axis_line(beam, k)
+    place = np.array([np.interp(arc, stations, line[:, i]) for i in (0, 1)])
+    spec = scene.beam(beam)
+    return np.asarray(place - np.array(spec.start) - arc * np.array(spec.direction))
 
 
 def check_series(folder: Path, model: str, scene: Scene) -> None:
@@ -75,17 +161,18 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
     ------
     OutputError
         One line, with the first file in the way.
-    ImportError
-        If meshio is not installed.
     """
-    import meshio  # noqa: F401 - before anything is computed for files that cannot be written
-
-    names = [f"{part}-{k:04d}.vtu" for part in _parts(model) for k in range(1, scene.load_parameters + 1)]
+    count = len(scene.beams) + bool(scene.contacts) + bool(scene.all_supports)
+    names = [
+        name
+        for k in range(scene.load_parameters)
+        for name in (_set(model, k), *(_file(model, k, number) for number in range(count)))
+    ]
     check_free(folder, names, _lists(folder, model))
 
 
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
-    """Write one VTU of the body and one of the pins, if any, per load parameter, and ``MODEL.pvd`` that lists them with their digests.
+    """Write the VTU files of the `blocks` and a VTM that names them, per load parameter, and ``MODEL.pvd`` that lists them with their digests.
 
     Files that the same model wrote here before, as its list gives them, are replaced, and removed where the series is shorter now; a
     file of anybody else's ends it before anything is written. All are written aside first. Of runs that write at the same time one
@@ -94,7 +181,7 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     Returns
     -------
     list of Path
-        The body's files, in the order of the load parameters.
+        The VTM files, in the order of the load parameters.
 
     Raises
     ------
@@ -104,15 +191,21 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     with alone_in(folder):
         check_series(folder, response.model, scene)
         with staging(folder) as aside:
-            entries = _write_grids(aside, response, scene)
-            digests = {name: digest(aside / name) for _, _, name in entries}
+            entries, files = _write_blocks(aside, response, scene)
+            digests = {name: digest(aside / name) for name in files}
             with interrupts_held():
-                _move(aside, folder, response.model, _collection(entries), digests)
-    return [folder / name for _, part, name in entries if part == 0]
+                _move(aside, folder, response.model, series_text(entries), digests)
+    return [folder / name for _, name in entries]
 
 
-def _parts(model: str) -> tuple[str, str]:
-    return model, f"{model}-pin"
+def _set(model: str, k: int) -> str:
+    """Name of the file of all blocks at the load parameter numbered k from 0."""
+    return f"{model}-{k + 1:04d}.vtm"
+
+
+def _file(model: str, k: int, number: int) -> str:
+    """Name of the file of a block, by its number: names of beams may differ in capitals only, which some systems do not tell apart."""
+    return f"{model}-{k + 1:04d}-{number}.vtu"
 
 
 def _lists(folder: Path, model: str) -> tuple[Path, Path]:
@@ -120,22 +213,24 @@ def _lists(folder: Path, model: str) -> tuple[Path, Path]:
     return folder / f"{model}.pvd", folder / f".{model}.pvd"
 
 
-def _write_grids(folder: Path, response: Response, scene: Scene) -> list[tuple[float, int, str]]:
-    """Write every grid; return load parameter, part and name of every file."""
-    entries: list[tuple[float, int, str]] = []
+def _write_blocks(
+    folder: Path, response: Response, scene: Scene
+) -> tuple[list[tuple[float, str]], list[str]]:
+    """Write every block; return load parameter and name of every set of blocks, and the names of all files."""
+    entries, names = [], []
+    units = field_units(scene)
     for k, t in enumerate(response.load_parameter):
-        grids = [body_grid(response, k), *([pin_grid(response, scene, k)] if scene.pins else [])]
-        for part, (name, grid) in enumerate(zip(_parts(response.model), grids, strict=False)):
-            file = f"{name}-{k + 1:04d}.vtu"
-            write_vtu(folder / file, grid)
-            entries.append((float(t), part, file))
-    return entries
-
-
-def _collection(entries: list[tuple[float, int, str]]) -> str:
-    sets = [f'<DataSet timestep="{t!r}" part="{part}" file={quoteattr(name)}/>' for t, part, name in entries]
-    head = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
-    return "\n".join([*head, *sets, "</Collection>", "</VTKFile>\n"])
+        grids = blocks(response, scene, k)
+        files = {name: _file(response.model, k, number) for number, name in enumerate(grids)}
+        for name, grid in grids.items():
+            write_text(folder / files[name], grid_text(grid, units))
+        there = {
+            field: unit for field, unit in units.items() if any(field in g.point_data for g in grids.values())
+        }
+        write_text(folder / _set(response.model, k), blocks_text(files, there))
+        entries.append((float(t), _set(response.model, k)))
+        names += [*files.values(), _set(response.model, k)]
+    return entries, names
 
 
 def _move(aside: Path, folder: Path, model: str, collection: str, digests: dict[str, str]) -> None:

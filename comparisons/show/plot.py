@@ -11,7 +11,7 @@ from comparisons.models import find
 from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.stress import Panel, Scale
+from comparisons.show.panel import COLOURS, Panel, Scale
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
 EXACT = {"linewidth": 1.0}
@@ -143,9 +143,9 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Res
 
 def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
     """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
-    from matplotlib.collections import PolyCollection
+    from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
-    fig = figure(figsize=(7.0 * len(panels), 6.5))
+    fig = figure(figsize=(WIDTH, WIDTH / len(panels) + 1.3))
     frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
     (x, y), reach = scale.centre, 1.12 * scale.half
     for axes, panel in zip(frames, panels, strict=True):
@@ -158,13 +158,39 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
         )
         bodies.set_clim(*scale.stress)
         axes.add_collection(bodies)
-        for colour, numbers in panel.pin_colours().items():
-            axes.plot(*panel.pins[numbers].T, linestyle="none", marker="o", color=colour, markersize=6)
-            for pin, force in zip(panel.pins[numbers], panel.forces[numbers], strict=True):
+        axes.add_collection(LineCollection(list(panel.supports), colors="black", linewidths=0.8))
+        for state, numbers in panel.pins_by_state().items():
+            colour = COLOURS[state]
+            pins, diameters = panel.pins[numbers], 2.0 * panel.radii[numbers]
+            axes.add_collection(
+                EllipseCollection(
+                    diameters, diameters, 0.0 * diameters, units="xy", offsets=pins, offset_transform=axes.transData,
+                    facecolors=colour, alpha=0.5,
+                )
+            )  # fmt: skip
+            axes.plot(*pins.T, linestyle="none", marker="o", color=colour, markersize=4)
+            for pin, radius, force in zip(pins, panel.radii[numbers], panel.forces[numbers], strict=True):
                 if force.any():
-                    tail = pin - scale.force * force
+                    tip = pin + radius * force / np.hypot(*force)
                     arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 2}
-                    axes.annotate("", pin, tail, arrowprops=arrow)
-        axes.set(title=panel.title, aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+                    axes.annotate("", tip, tip - scale.force * force, arrowprops=arrow)
+        axes.set(aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+        axes.set_title(panel.title, fontsize="medium")
+        axes.tick_params(labelsize="small")
     fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)
+    _legend(fig, panels, scale)
     save(fig, path)
+
+
+def _legend(fig: Any, panels: list[Panel], scale: Scale) -> None:
+    """Name the colours of the contacts, and the longest arrow."""
+    from matplotlib.lines import Line2D
+
+    words = list(dict.fromkeys(state for panel in panels for state in panel.pins_by_state()))
+    dots = [Line2D([], [], linestyle="none", marker="o", color=COLOURS[state]) for state in words]
+    if scale.arrow:
+        dots.append(Line2D([], [], color=COLOURS["contact"], marker=">"))
+        words.append(scale.arrow)
+    fig.legend(
+        dots, words, loc="outside lower center", ncols=len(words) or 1, fontsize="small", frameon=False
+    )

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from comparisons.extras import install
 from comparisons.files import replacing
 from comparisons.models.progress import REDRAW, Count, uncounted
+from comparisons.show.panel import COLOURS, Panel, Scale
 from comparisons.show.plot import plot_panels
-from comparisons.show.stress import Panel, Scale
 
 TIMEOUT = 60.0
 """Seconds for a picture; each further frame of a film has a second more."""
@@ -32,17 +32,27 @@ ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "v
 INSTEAD = "off-screen rendering is not available here (no OpenGL, or a broken pyvista), matplotlib drew the picture instead"
 NOT_INSTALLED = f"pyvista is not installed ({install('pyvista')}), matplotlib drew the picture instead"
 
+ROOM = 1.35
+"""Half the height of the view over half the size of what it shows; title, legend and colours lie around it."""
+POINT = 0.014
+"""Radius of the mark of a pin without radius, over half the size of the view."""
+PANEL, LEAST = 900, 1400
+"""Pixels of a panel, and of a picture at least."""
 BAR = {
     "color": "black",
     "fmt": "%.4g",
-    "width": 0.6,
-    "height": 0.07,
-    "position_x": 0.2,
-    "position_y": 0.03,
-    "title_font_size": 18,
-    "label_font_size": 16,
+    "width": 0.7,
+    "height": 0.08,
+    "position_x": 0.15,
+    "position_y": 0.01,
+    "n_labels": 3,
+    "unconstrained_font_size": True,
 }
-ARRAYS = ("points", "quads", "stress", "pins", "forces", "slip")
+TITLE, LABEL = 15, 30
+"""Sizes of the letters of a panel of 900 pixels: of a title in points of VTK, of other words in pixels."""
+LINE, BELOW_TITLE = 0.045, 0.91
+"""Height of a line of the legend, and its upper edge, over the height of a panel."""
+ARRAYS = ("points", "quads", "stress", "pins", "radii", "forces", "states", "supports")
 
 
 def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | None:
@@ -140,7 +150,8 @@ def _write(path: Path, frames: Sequence[list[Panel]], scale: Scale) -> None:
     }
     titles = np.array([[panel.title for panel in panels] for panels in frames])
     numbers = np.array([*scale.centre, scale.half, *scale.stress, scale.force])
-    np.savez(path, allow_pickle=False, titles=titles, label=np.array(scale.label), scale=numbers, **arrays)
+    words = np.array([scale.label, scale.arrow])
+    np.savez(path, allow_pickle=False, titles=titles, words=words, scale=numbers, **arrays)
 
 
 def _read(path: Path) -> tuple[list[list[Panel]], Scale]:
@@ -153,16 +164,17 @@ def _read(path: Path) -> tuple[list[list[Panel]], Scale]:
             for k, titles in enumerate(data["titles"])
         ]
         x, y, half, low, high, force = data["scale"].tolist()
-        label = str(data["label"])
-    return frames, Scale(centre=(x, y), half=half, stress=(low, high), force=force, label=label)
+        label, arrow = map(str, data["words"])
+    return frames, Scale(centre=(x, y), half=half, stress=(low, high), force=force, label=label, arrow=arrow)
 
 
 def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
     """Return a plotter with the panels in one view."""
     import pyvista
 
+    side = _side(panels)
     plotter = pyvista.Plotter(
-        off_screen=off_screen, shape=(1, len(panels)), window_size=(900 * len(panels), 900), border=False
+        off_screen=off_screen, shape=(1, len(panels)), window_size=(side * len(panels), side), border=False
     )
     plotter.set_background("white")
     _draw(plotter, panels, scale)
@@ -172,7 +184,7 @@ def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
         plotter.camera.focal_point = (*scale.centre, 0.0)
         plotter.camera.position = (*scale.centre, 10.0 * scale.half)
         plotter.camera.up = (0.0, 1.0, 0.0)
-        plotter.camera.parallel_scale = 1.12 * scale.half
+        plotter.camera.parallel_scale = ROOM * scale.half
         plotter.camera.clipping_range = (0.1 * scale.half, 100.0 * scale.half)
     plotter.link_views()
     return plotter
@@ -187,7 +199,9 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
         faces = np.insert(panel.quads, 0, 4, axis=1)
         body = pyvista.PolyData(np.pad(panel.points, ((0, 0), (0, 1))), faces.ravel())
         body.point_data["stress"] = panel.stress
-        bar = {**BAR, "title": scale.label + " " * i + "\n"}  # one bar in each panel takes different titles
+        letters = LABEL * _side(panels) // PANEL
+        # one bar in each panel takes different titles
+        bar = {**BAR, "title": scale.label + " " * i, "title_font_size": letters, "label_font_size": letters}
         plotter.add_mesh(
             body,
             name="body",
@@ -197,39 +211,95 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             scalar_bar_args=bar,
             render=False,
         )
-        for colour, numbers in panel.pin_colours().items():
-            plotter.remove_actor(f"pins {i} {colour}", render=False)
-            if len(numbers):
+        there = panel.pins_by_state()
+        for state, colour in COLOURS.items():
+            for kind in ("pins", "discs"):
+                plotter.remove_actor(f"{kind} {i} {state}", render=False)
+            if state in there:
+                discs = _discs(panel, there[state], scale)
+                if discs is not None:
+                    name = f"discs {i} {state}"
+                    plotter.add_mesh(
+                        discs, name=name, color=colour, opacity=0.35, lighting=False, render=False
+                    )
                 plotter.add_mesh(
-                    _pins(panel, numbers, scale),
-                    name=f"pins {i} {colour}",  # a name is removed from all panels
+                    _pins(panel, there[state], scale),
+                    name=f"pins {i} {state}",  # a name is removed from all panels
                     color=colour,
                     lighting=False,
                     render=False,
                 )
+        if len(panel.supports):
+            plotter.add_mesh(
+                _lines(panel, scale),
+                name=f"supports {i}",
+                color="black",
+                line_width=2,
+                lighting=False,
+                render=False,
+            )
         plotter.add_text(
-            panel.title, name="title", position="upper_edge", color="black", font_size=12, render=False
+            panel.title,
+            name="title",
+            position="upper_edge",
+            color="black",
+            font_size=TITLE * _side(panels) // PANEL,
+            render=False,
         )
+        entries = [[state, COLOURS[state]] for state in there]
+        if scale.arrow:
+            entries.append([scale.arrow, "black"])
+        if entries:
+            size = (0.45, LINE * len(entries))
+            legend = plotter.add_legend(entries, name="legend", face="circle", bcolor=None, size=size)
+            legend.SetPosition(0.02, BELOW_TITLE - size[1])
+
+
+def _discs(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
+    """Return the round ones among some pins, in front of the bodies; None if there are none."""
+    import pyvista
+
+    discs = pyvista.MultiBlock()
+    for pin, radius in zip(panel.pins[numbers], panel.radii[numbers], strict=True):
+        if radius:
+            centre = (*pin, 0.01 * scale.half)
+            discs.append(pyvista.Disc(center=centre, inner=0.0, outer=radius, c_res=60))
+    return discs.combine().extract_surface(algorithm=None) if len(discs) else None
 
 
 def _pins(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
-    """Return the surface of some pins, with their forces as arrows."""
+    """Return the marks of some pins, with their forces as arrows that end where a pin touches."""
     import pyvista
 
     height, marks = 0.01 * scale.half, pyvista.MultiBlock()
-    for pin, force in zip(panel.pins[numbers], panel.forces[numbers], strict=True):
-        marks.append(pyvista.Sphere(radius=0.014 * scale.half, center=(*pin, 4.0 * height)))
+    for pin, radius, force in zip(
+        panel.pins[numbers], panel.radii[numbers], panel.forces[numbers], strict=True
+    ):
+        marks.append(pyvista.Sphere(radius=POINT * scale.half, center=(*pin, 4.0 * height)))
         length = float(np.hypot(*force)) * scale.force
         if length > 0.04 * scale.half:
             direction = force / np.hypot(*force)
-            tail = pin - length * direction
+            tail = pin + (radius - length) * direction
             marks.append(
                 pyvista.Arrow(
-                    start=(*tail, 2.0 * height), direction=(*direction, 0.0), scale=length,
+                    start=(*tail, 6.0 * height), direction=(*direction, 0.0), scale=length,
                     tip_length=0.25, tip_radius=0.08, shaft_radius=0.025,
                 )
             )  # fmt: skip
     return marks.combine().extract_surface(algorithm=None)
+
+
+def _lines(panel: Panel, scale: Scale) -> Any:
+    """Return the symbols of the supports as lines in front of the bodies."""
+    import pyvista
+
+    ends = np.pad(panel.supports.reshape(-1, 2), ((0, 0), (0, 1)), constant_values=0.01 * scale.half)
+    return pyvista.line_segments_from_points(ends)
+
+
+def _side(panels: list[Panel]) -> int:
+    """Pixels of a panel's side."""
+    return max(PANEL, LEAST // len(panels))
 
 
 def _draw_files(frames: list[list[Panel]], scale: Scale, folder: Path) -> None:

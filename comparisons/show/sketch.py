@@ -15,7 +15,7 @@ from comparisons.response import Array
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.symbols import arc, support_name, support_symbol, support_symbols
+from comparisons.show.symbols import arc, held_components, support_name, support_symbol, support_symbols
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
 SYMBOL, STROKE, ARROW, TURN, LABEL = 0.025, 0.012, 0.14, 0.05, 0.12
@@ -153,7 +153,9 @@ class _Sketch:
         symbols = support_symbols(self.scene, SYMBOL * self.size)
         for support, segments in zip(self.scene.all_supports, symbols, strict=True):
             self._segments(segments, HELD, 1.1)
-            self.legend.setdefault(support_name(support), _handle(support_symbol(support, UP)))
+            self.legend.setdefault(
+                support_name(support), _handle(support_symbol(held_components(support), UP))
+            )
             if not support.moves:
                 continue
             at = np.array(self.scene.place(support.node))

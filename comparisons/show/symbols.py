@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from comparisons.response import Array
 from comparisons.scene import Scene, SupportSpec
+from comparisons.scene.conditions import COMPONENTS
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
@@ -30,24 +31,24 @@ NAMES = {
 
 def support_name(support: SupportSpec) -> str:
     """Return the name of a support in a legend."""
-    return NAMES[_held(support)]
+    return NAMES[held_components(support)]
 
 
-def _held(support: SupportSpec) -> tuple[str, ...]:
-    return tuple(name for name in ("x", "y", "rotation") if name in support.held)
+def held_components(support: SupportSpec) -> tuple[str, ...]:
+    """Return the components that a support holds, in the order of `NAMES`."""
+    return tuple(name for name in COMPONENTS if name in support.held)
 
 
-def support_symbol(support: SupportSpec, away: Array) -> Segments:
+def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
     """Return the segments of a support's symbol.
 
     Parameters
     ----------
-    support : SupportSpec
-        The support.
+    held : tuple of str
+        The components held, a key of `NAMES`.
     away : ndarray, shape (2,)
         Unit vector from the support into its beam; the ground is on the other side.
     """
-    held = _held(support)
     segments = _SHAPES[len(held), "rotation" in held]()
     return turned(segments, _up(held, away))
 
@@ -73,7 +74,9 @@ def placed(segments: Segments, at: Array, size: float) -> Segments:
 def support_symbols(scene: Scene, size: float) -> list[Segments]:
     """Return the symbols of all supports of a scene at their undeformed nodes, in the order of `Scene.all_supports`."""
     return [
-        placed(support_symbol(one, inward(scene, one)), np.array(scene.place(one.node)), size)
+        placed(
+            support_symbol(held_components(one), inward(scene, one)), np.array(scene.place(one.node)), size
+        )
         for one in scene.all_supports
     ]
 

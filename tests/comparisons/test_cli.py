@@ -73,7 +73,8 @@ def test_solve_writes_json_and_vtk(scene: str, tmp_path: Path, capsys: pytest.Ca
     ]
     assert run(*arguments) == 0
     assert json.loads((tmp_path / "a.json").read_text())["status"] == "COMPLETED"
-    assert len(list((tmp_path / "vtk").glob("*.vtu"))) == 8
+    assert len(list((tmp_path / "vtk").glob("*.vtm"))) == 4
+    assert len(list((tmp_path / "vtk").glob("*.vtu"))) == 12
     assert capsys.readouterr().err == ""
 
 

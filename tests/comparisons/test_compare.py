@@ -32,9 +32,12 @@ def test_compare_writes_every_file_and_the_same_numbers(
     assert main(["compare", str(scene), "--out", str(out)]) == 0
     printed, progress = capsys.readouterr()
     assert {
-        str(path.relative_to(out)) for path in out.rglob("*") if path.suffix != ".vtu" and path.is_file()
+        str(path.relative_to(out))
+        for path in out.rglob("*")
+        if path.suffix not in (".vtu", ".vtm") and path.is_file()
     } == FILES
-    assert len(list(out.rglob("*.vtu"))) == 40
+    assert len(list(out.rglob("*.vtm"))) == 20
+    assert len(list(out.rglob("*.vtu"))) == 60
     for name in FILES:
         assert str(out / name) in printed
     for number, run in enumerate(RUNS, 1):

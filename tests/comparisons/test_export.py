@@ -1,6 +1,7 @@
 """VTU and PVD files: what is read back is what was computed."""
 
 import contextlib
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,12 +17,12 @@ from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import ContactSpec, load_scene
-from comparisons.show.export import pin_grid, write_series, write_vtu
+from comparisons.scene import load_scene
+from comparisons.show.export import CONTACTS, SUPPORTS, blocks, field_units, write_series
 from comparisons.show.listing import digest, with_digests
+from comparisons.show.vtu import grid_text
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
-ROUND_TRIP = {"rtol": 1e-12, "atol": 1e-12}
 
 
 @pytest.fixture(scope="module", params=["tsm", "solid", "rod"])
@@ -30,56 +31,94 @@ def response(request: pytest.FixtureRequest) -> Response:
     return solve(SCENE, request.param, options.get(request.param))
 
 
-def test_vtu_reads_back_in_meshio_and_pyvista(response: Response, tmp_path: Path) -> None:
-    for name, grid in (("body.vtu", response.grid(2)), ("pin.vtu", pin_grid(response, SCENE, 2))):
-        write_vtu(tmp_path / name, grid)
-        back, view = meshio.read(tmp_path / name), pyvista.read(tmp_path / name)
+def test_every_block_reads_back_in_meshio_and_pyvista(response: Response, tmp_path: Path) -> None:
+    for name, grid in blocks(response, SCENE, 2).items():
+        file = tmp_path / "block.vtu"
+        file.write_text(grid_text(grid, field_units(SCENE)))
+        back, view = meshio.read(file), pyvista.read(file)
         for points in (back.points, view.points):
-            np.testing.assert_allclose(points[:, :2], grid.points, **ROUND_TRIP)
+            np.testing.assert_array_equal(points[:, :2], grid.points)
             assert not points[:, 2].any()
         (kind, cells), (block,) = next(iter(grid.cells.items())), back.cells
         assert block.type == kind
         np.testing.assert_array_equal(block.data, cells)
         np.testing.assert_array_equal(view.cells.reshape(len(cells), -1)[:, 1:], cells)
+        assert set(view.point_data) == set(back.point_data) == set(grid.point_data), name
         for field, values in grid.point_data.items():
             for read in (back.point_data[field], view.point_data[field]):
-                columns = read[:, : values.shape[1]] if values.ndim == 2 else read
-                np.testing.assert_allclose(columns, values, **ROUND_TRIP)
+                columns = read.reshape(len(values), -1)
+                np.testing.assert_array_equal(columns[:, : values[0].size].reshape(values.shape), values)
 
 
 def test_fields_of_each_model(response: Response) -> None:
+    always = {"displacement", "deformed", "index"}
     expected = {
-        "tsm": {
-            "displacement",
-            "deformed",
-            "rotation",
-            "N",
-            "V",
-            "M",
-            "beam",
-            "arc",
-            "height",
-            "axial_stress_right",
-            "axial_stress_left",
-        },
-        "solid": {"displacement", "deformed", "cauchy_stress", "axial_stress"},
-        "rod": {"displacement", "deformed"},
+        "tsm": always
+        | {"rotation", "N", "V", "M", "arc", "height", "axial_stress_right", "axial_stress_left"},
+        "solid": always | {"stress_xx", "stress_yy", "stress_xy", "von_mises", "axial_stress"},
+        "rod": always - {"index"},
     }
-    assert set(response.grid(0).point_data) == expected[response.model]
+    found = blocks(response, SCENE, 0)
+    assert set(found["cantilever"].point_data) == expected[response.model]
+    assert list(found) == ["cantilever", CONTACTS, SUPPORTS]
+
+
+def test_the_page_names_the_fields() -> None:
+    """The table of docs/how-to/paraview.md, in a scene with friction."""
+    page = (Path(__file__).parents[2] / "docs/how-to/paraview.md").read_text()
+    rows = re.findall(r"^\| ([^|]+) \|[^|]+\| (`displacement`[^|]+)\|$", page, re.MULTILINE)
+    stated = {name.strip("`"): set(re.findall(r"`(\w+)`", fields)) for name, fields in rows}
+    scene = replace(load_scene("ks-friction"), load_parameters=2)
+    for model in ("tsm", "solid"):
+        found = blocks(solve(scene, model), scene, 0)
+        assert stated[f"a beam's name, model `{model}"] == set(found["cantilever"].point_data)
+        assert all(stated[name] == set(found[name].point_data) for name in (CONTACTS, SUPPORTS))
+
+
+def test_a_load_parameter_has_named_blocks_with_units(tmp_path: Path) -> None:
+    """One block for each beam, with its own points; VTK reads units from every array and from the whole."""
+    frame = load_scene("portal-frame")
+    frame = replace(frame, load_parameters=1, loads=(replace(frame.loads[0], force=(40.0, 0.0)),))
+    (file,) = write_series(tmp_path, solve(frame, "solid", Options(mesh=(6, 1))), frame)
+    found = pyvista.read(file)
+    assert found.keys() == ["left", "girder", "right", SUPPORTS]
+    for beam in frame.beams:
+        points = found[beam.name].points[:, :2]
+        middle = (np.array(beam.start) + beam.end) / 2
+        assert points.mean(axis=0) == pytest.approx(middle)
+        assert np.ptp(points, axis=0).max() == pytest.approx(beam.length)
+    assert "von_mises [N/mm^2]" in found.field_data["units"]
+    assert "reaction_moment [N mm]" in found.field_data["units"]
+    array = found["left"].GetPointData().GetArray("stress_yy")
+    assert array.GetInformation().Get(array.UNITS_LABEL()) == "N/mm^2"
+    reaction = found[SUPPORTS].point_data["reaction_force"].sum(axis=0)
+    assert reaction == pytest.approx([-40.0, 0.0, 0.0], abs=1e-6)
+
+
+def test_stress_has_named_components(tmp_path: Path) -> None:
+    """Bending of a vertical column is stress_yy; the von Mises stress is that of plane stress."""
+    frame = replace(load_scene("portal-frame"), load_parameters=10)
+    data = blocks(solve(frame, "solid", Options(mesh=(20, 2))), frame, 0)["left"].point_data
+    assert np.abs(data["stress_yy"]).max() > 20.0 * np.abs(data["stress_xx"]).max()
+    xx, yy, xy = (data[f"stress_{name}"] for name in ("xx", "yy", "xy"))
+    principal = np.linalg.eigvalsh(np.stack([xx, xy, xy, yy], axis=-1).reshape(-1, 2, 2))
+    a, b = principal.T
+    assert data["von_mises"] == pytest.approx(np.sqrt(((a - b) ** 2 + a**2 + b**2) / 2), rel=1e-12)
 
 
 def test_files_state_the_index(response: Response, tmp_path: Path) -> None:
     unstable = replace(response, index=np.array([0, 0, 2]))
     write_series(tmp_path, unstable, SCENE)
-    found = [pyvista.read(tmp_path / f"{response.model}-000{k}.vtu").point_data["index"] for k in (1, 2, 3)]
+    files = [tmp_path / f"{response.model}-000{k}.vtm" for k in (1, 2, 3)]
+    found = [pyvista.read(file)["cantilever"].point_data["index"] for file in files]
     assert [set(values.tolist()) for values in found] == [{0}, {0}, {2}]
     write_series(tmp_path, replace(response, index=None), SCENE)
-    assert "index" not in pyvista.read(tmp_path / f"{response.model}-0001.vtu").point_data
+    assert "index" not in pyvista.read(files[0])["cantilever"].point_data
 
 
 def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
     solid = solve(SCENE, "solid", Options(mesh=(12, 2)))
-    write_vtu(tmp_path / "solid.vtu", solid.grid(0))
+    (tmp_path / "solid.vtu").write_text(grid_text(solid.grid(0), {}))
     view = pyvista.read(tmp_path / "solid.vtu")
     assert set(view.celltypes) == {pyvista.CellType.BIQUADRATIC_QUAD}
     # VTK integrates its own biquadratic cells: a wrong order of points gives another area
@@ -87,7 +126,7 @@ def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
 
 
 def test_pin_force_balances_the_clamp_and_points_away_from_the_pin(response: Response) -> None:
-    pin = pin_grid(response, SCENE, 0)
+    pin = blocks(response, SCENE, 0)[CONTACTS]
     force = pin.point_data["contact_force"][0]
     assert np.hypot(*force) == pytest.approx(response.contacts["pin->cantilever"].force[0], rel=1e-9)
     assert force[1] > 0.0
@@ -96,32 +135,52 @@ def test_pin_force_balances_the_clamp_and_points_away_from_the_pin(response: Res
     )
 
 
-def test_force_of_one_of_several_pairs_is_normal_to_the_axis() -> None:
-    response = solve(SCENE, "tsm")
-    idle = ContactSpec(node="cantilever.end", beam="other", side="left")
-    other = replace(SCENE.beams[0], name="other", start=(0.0, -1.0), end=(1.0, -1.0))
-    several = replace(SCENE, beams=(*SCENE.beams, other), contacts=(*SCENE.contacts, idle))
-    one, alone = (pin_grid(response, scene, 2).point_data["contact_force"][0] for scene in (several, SCENE))
-    assert one == pytest.approx(alone, abs=1e-3 * np.hypot(*alone))  # chords of the drawn line
+@pytest.mark.parametrize("model", ["tsm", "solid"])
+def test_forces_between_beams_balance_the_supports(model: str) -> None:
+    """Beams that touch: what acts on the lower beam is what its clamp carries, at the tip of the upper beam too."""
+    scene = replace(load_scene("double-beam-friction"), load_parameters=4)
+    found = blocks(solve(scene, model), scene, 3)
+    contacts, supports = found[CONTACTS].point_data, found[SUPPORTS].point_data
+    on_lower = contacts["contact_force"][1:].sum(axis=0)
+    assert contacts["contact_force"][1, 1] < 0.0
+    assert on_lower == pytest.approx(-supports["reaction_force"][1], rel=1e-6)
+    touching = found[CONTACTS].points[1] + contacts["displacement"][1]
+    assert found[CONTACTS].points[1] == pytest.approx((1.0, 0.0))
+    assert touching == pytest.approx(contacts["deformed"][1])
+    assert contacts["slip"][1] == -1.0
+
+
+def test_the_displacement_of_the_touched_beam_keeps_a_contact_closed(response: Response) -> None:
+    """Enlarged deformations: the touched point of the beam is where the pin is, less the pin's own way."""
+    data = blocks(response, SCENE, 2)[CONTACTS].point_data
+    arc = response.contacts["pin->cantilever"].arc_position[2]
+    assert data["beam_displacement"][0] == pytest.approx(data["deformed"][0] - [arc, 0.0], abs=1e-4)
 
 
 def test_series_lists_its_files_and_removes_older_ones(response: Response, tmp_path: Path) -> None:
     longer = replace(SCENE, load_parameters=4)
     write_series(tmp_path, solve(longer, response.model), longer)
     (tmp_path / "other-0009.vtu").write_text("not ours")
-    bodies = write_series(tmp_path, response, SCENE)
+    sets = write_series(tmp_path, response, SCENE)
     entries = listed(tmp_path / f"{response.model}.pvd")
-    assert [t for t, _ in entries] == [t for t in SCENE.times for _ in range(2)]
-    assert {name for _, name in entries} | {"other-0009.vtu", f"{response.model}.pvd"} == {
+    assert [t for t, _ in entries] == list(SCENE.times)
+    assert all_files(tmp_path, response.model) | {"other-0009.vtu"} == {
         path.name for path in tmp_path.iterdir()
     }
-    assert [path.name for path in bodies] == [f"{response.model}-{k:04d}.vtu" for k in (1, 2, 3)]
+    assert [path.name for path in sets] == [f"{response.model}-{k:04d}.vtm" for k in (1, 2, 3)]
     assert pyvista.get_reader(tmp_path / f"{response.model}.pvd").time_values == sorted(SCENE.times)
 
 
 def listed(pvd: Path) -> list[tuple[float, str]]:
     root = ET.parse(pvd).getroot()  # noqa: S314 our own file
     return [(float(item.attrib["timestep"]), item.attrib["file"]) for item in root.iter("DataSet")]
+
+
+def all_files(folder: Path, model: str) -> set[str]:
+    """The list of a series, the sets of blocks in it, and their blocks."""
+    sets = [name for _, name in listed(folder / f"{model}.pvd")]
+    root = [ET.parse(folder / name).getroot() for name in sets]  # noqa: S314 our own files
+    return {f"{model}.pvd", *sets, *(item.attrib["file"] for one in root for item in one.iter("DataSet"))}
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -134,13 +193,13 @@ def test_two_models_share_a_folder(tmp_path: Path) -> None:
     alone = contents(tmp_path)
     write_series(tmp_path, solid, SCENE)
     assert contents(tmp_path).items() > alone.items()
-    both = {name for model in ("tsm", "solid") for _, name in listed(tmp_path / f"{model}.pvd")}
-    assert both == {name for name in contents(tmp_path) if name.endswith(".vtu")}
-    assert len(both) == 12
+    both = all_files(tmp_path, "tsm") | all_files(tmp_path, "solid")
+    assert both == contents(tmp_path).keys()
+    assert len(both) == 2 * (1 + 3 * 4)
 
 
 @pytest.mark.parametrize(
-    "name", ["pin-head.vtu", "tsm-mine.vtu", "pin-0001.vtu", "tsm-0009.vtu", "tsm-pin-0044.vtu"]
+    "name", ["pin-head.vtu", "tsm-mine.vtu", "pin-0001.vtu", "tsm-0009.vtm", "tsm-0009-0.vtu"]
 )
 def test_a_file_beside_the_series_stays(name: str, tmp_path: Path) -> None:
     beams = solve(SCENE, "tsm")
@@ -150,7 +209,7 @@ def test_a_file_beside_the_series_stays(name: str, tmp_path: Path) -> None:
     assert (tmp_path / name).read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["tsm-0002.vtu", "tsm-pin-0003.vtu", "tsm.pvd"])
+@pytest.mark.parametrize("name", ["tsm-0002.vtm", "tsm-0003-1.vtu", "tsm.pvd"])
 @pytest.mark.parametrize("before", [False, True])
 def test_a_file_in_the_way_ends_the_run_before_anything_is_written(
     name: str, before: bool, tmp_path: Path
@@ -168,19 +227,19 @@ def test_a_file_in_the_way_ends_the_run_before_anything_is_written(
 
 def test_a_listed_file_that_was_changed_outlives_a_shorter_series(tmp_path: Path) -> None:
     write_series(tmp_path, solve(SCENE, "tsm"), SCENE)
-    (tmp_path / "tsm-0003.vtu").write_text("mine")
+    (tmp_path / "tsm-0003-0.vtu").write_text("mine")
     shorter = replace(SCENE, load_parameters=2)
     write_series(tmp_path, solve(shorter, "tsm"), shorter)
-    assert (tmp_path / "tsm-0003.vtu").read_text() == "mine"
-    assert not (tmp_path / "tsm-pin-0003.vtu").exists()
+    assert (tmp_path / "tsm-0003-0.vtu").read_text() == "mine"
+    assert not (tmp_path / "tsm-0003-1.vtu").exists()
 
 
 def test_a_list_cannot_reach_outside_its_folder(tmp_path: Path) -> None:
     folder = tmp_path / "d"
     folder.mkdir()
-    outside = tmp_path / "tsm-0003.vtu"
+    outside = tmp_path / "tsm-0003-0.vtu"
     outside.write_text("mine")
-    pvd = with_digests("<a/>", {"../tsm-0003.vtu": digest(outside)})
+    pvd = with_digests("<a/>", {"../tsm-0003-0.vtu": digest(outside)})
     (folder / "tsm.pvd").write_text(pvd)
     write_series(folder, solve(SCENE, "tsm"), SCENE)
     assert outside.read_text() == "mine"
@@ -193,14 +252,18 @@ def test_a_run_goes_on_where_another_was_ended_among_its_files(
     beams, longer = solve(SCENE, "tsm"), replace(SCENE, load_parameters=4)
     more = solve(longer, "tsm")
     move = Path.replace
-    for number in range(11):
+    for number in range(21):
         folder = tmp_path / str(number)
         folder.mkdir()
         write_series(folder, beams, SCENE)
         left = iter([True] * number)
 
         def ended(self: Path, target: Path, left: Iterator[bool] = left, folder: Path = folder) -> Path:
-            if Path(target).parent == folder and self.suffix in (".vtu", ".pvd") and not next(left, False):
+            if (
+                Path(target).parent == folder
+                and self.suffix in (".vtu", ".vtm", ".pvd")
+                and not next(left, False)
+            ):
                 raise MemoryError
             return move(self, target)
 
@@ -208,16 +271,15 @@ def test_a_run_goes_on_where_another_was_ended_among_its_files(
         with contextlib.suppress(MemoryError):
             write_series(folder, more, longer)
         monkeypatch.setattr(Path, "replace", move)
-        assert {name for _, name in listed(folder / "tsm.pvd")} <= contents(folder).keys()
+        assert all_files(folder, "tsm") <= contents(folder).keys()
         write_series(folder, beams, SCENE)
-        names = {"tsm.pvd", *(name for _, name in listed(folder / "tsm.pvd"))}
-        assert contents(folder).keys() == names
-        assert len(names) == 7
+        assert contents(folder).keys() == all_files(folder, "tsm")
+        assert len(contents(folder)) == 1 + 3 * 4
 
 
 def test_the_command_leaves_what_is_in_the_way(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Before anything is computed."""
-    (tmp_path / "tsm-0007.vtu").write_text("mine")
+    (tmp_path / "tsm-0007-1.vtu").write_text("mine")
     assert main(["solve", "ks-cantilever", "--model", "tsm", "--vtk", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.startswith(f"crossval: {tmp_path}/tsm-0007.vtu: is there already")
-    assert contents(tmp_path) == {"tsm-0007.vtu": b"mine"}
+    assert capsys.readouterr().err.startswith(f"crossval: {tmp_path}/tsm-0007-1.vtu: is there already")
+    assert contents(tmp_path) == {"tsm-0007-1.vtu": b"mine"}

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import colormaps
 from matplotlib.image import imread
 
 from comparisons.compare import DRAWN
@@ -13,9 +14,10 @@ from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import load_scene
 from comparisons.show import render
+from comparisons.show.panel import Panel, Scale
 from comparisons.show.plot import nearest_steps, plot_panels, plot_shapes
 from comparisons.show.render import render_panels
-from comparisons.show.stress import LAYERS, Panel, Scale, beam_panel, solid_panel
+from comparisons.show.stress import LAYERS, beam_panel, solid_panel
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=4)
 
@@ -49,6 +51,32 @@ def test_beams_and_solid_show_the_same_stress(panels: list[Panel]) -> None:
         area = 0.5 * (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0])
         assert np.all(area > 0.0)
         assert area.sum() == pytest.approx(2 * 0.02, rel=0.01)
+
+
+def test_a_round_pin_has_its_true_radius_beside_the_beam() -> None:
+    """In the picture of both models the pin touches the face, as far as the solid's penalty lets it through."""
+    pin = replace(SCENE.pins[0], start=(0.6, -0.06), displacement=(0.0, 0.1), radius=0.05)
+    scene = replace(SCENE, pins=(pin,), contacts=(replace(SCENE.contacts[0], surface="face"),))
+    drawn = [
+        beam_panel(solve(scene, "tsm", Options(elements=20)), scene, [3], "beams"),
+        solid_panel(solve(scene, "solid", Options(mesh=(48, 2))), scene, [3], "solid"),
+    ]
+    for panel in drawn:
+        assert panel.radii.tolist() == [0.05]
+        assert not panel.forces.any()
+        nearest = [np.hypot(*(panel.points - centre).T).min() for centre in panel.pins]
+        assert nearest == pytest.approx([0.05], abs=2e-3)
+        scale = Scale.of([panel], "stress")
+        assert scale.centre[1] - scale.half <= -0.05
+
+
+def test_brightness_grows_with_the_stress() -> None:
+    """In grey print, for stress of one sign and of both."""
+    for low in (0.0, -1.0):
+        scale = Scale(centre=(0.0, 0.0), half=1.0, stress=(low, 1.0), force=0.0, label="")
+        grey = colormaps[scale.colours](np.linspace(0.0, 1.0, 50))[:, :3] @ [0.299, 0.587, 0.114]
+        assert np.diff(grey).min() > 0.0
+        assert grey[-1] - grey[0] > 0.5
 
 
 def test_nearest_steps_are_distinct() -> None:

@@ -13,7 +13,7 @@ from comparisons.cli import main
 from comparisons.files import writable_folder
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.response import Grid, Response
+from comparisons.response import OPEN, SLIPS, Grid, Response
 from comparisons.scene import built_in_scenes, load_scene
 from comparisons.show import render
 from comparisons.show.export import write_series
@@ -44,10 +44,10 @@ def face_stress(grid: Grid, face: str | float) -> Any:
 
 
 def test_beams_and_solid_show_the_same_body_and_stress(series: list[Series]) -> None:
-    beams, solid = (panel(one.body(2), one.pins(2), "") for one in series)
+    beams, solid = (panel(one.blocks(2), "") for one in series)
     stresses = []
     for one, faces in zip(series, (("right", "left"), (-0.01, 0.01)), strict=True):
-        right, left = (face_stress(one.body(2), face) for face in faces)
+        right, left = (face_stress(one.blocks(2)["cantilever"], face) for face in faces)
         stresses.append((right - left) / 2)
     assert stresses[0] == pytest.approx(stresses[1], rel=0.02)
     assert beams.pins == pytest.approx(solid.pins)
@@ -63,7 +63,7 @@ def test_beams_and_solid_show_the_same_body_and_stress(series: list[Series]) -> 
 def test_the_ribbon_has_the_height_and_the_bending_stress(
     responses: list[Response], series: list[Series]
 ) -> None:
-    beams = panel(series[0].body(2), series[0].pins(2), "")
+    beams = panel(series[0].blocks(2), "")
     right, left = beams.points[0], beams.points[4]
     assert np.hypot(*(left - right)) == pytest.approx(0.02)
     moment = -responses[0].supports["cantilever.start"].moment[2]
@@ -72,7 +72,7 @@ def test_the_ribbon_has_the_height_and_the_bending_stress(
 
 def test_the_ribbon_follows_the_axis(responses: list[Response], series: list[Series]) -> None:
     """Its middle is the cubic between the nodes: within 3e-4 of the axis with 10 elements."""
-    beams = panel(series[0].body(2), series[0].pins(2), "")
+    beams = panel(series[0].blocks(2), "")
     middle = beams.points.reshape(10, 9, 5, 2)[:, :, 2]
     _, axis = responses[0].axis_line("cantilever", 2)
     for e in range(10):
@@ -81,12 +81,67 @@ def test_the_ribbon_follows_the_axis(responses: list[Response], series: list[Ser
         assert np.abs(middle[e] - exact).max() < 5e-4
 
 
+def test_an_enlarged_deformation_is_drawn_and_said(series: list[Series]) -> None:
+    """At a small load twice the deformation is that of twice the load; a closed contact stays on its beam."""
+    small = replace(
+        SCENE, load_parameters=40, pins=(replace(SCENE.pins[0], start=(0.8, 0.0), displacement=(0.0, 0.04)),)
+    )
+    for model in ("tsm", "solid"):
+        one = solved_series(solve(small, model), small, model)
+        twice, plain = panel(one.blocks(9), "t", 2.0), panel(one.blocks(19), "t")
+        assert twice.title == "t, deformation x 2"
+        assert plain.title == "t"
+        assert (
+            np.abs(twice.points - plain.points).max() < 3e-4
+        )  # the tip moves back by the square of the load
+        assert np.abs(twice.points - panel(one.blocks(9), "t").points).max() > 5e-3
+        assert twice.pins == pytest.approx(plain.pins, abs=1e-4)
+    assert panel(series[0].blocks(2), "", 1.0).points == pytest.approx(panel(series[0].blocks(2), "").points)
+
+
+def test_supports_forces_between_beams_and_their_states_are_drawn() -> None:
+    scene = replace(load_scene("double-beam-friction"), load_parameters=4)
+    response = solve(scene, "tsm")
+    found = panel(solved_series(response, scene, "t").blocks(3), "t")
+    assert found.states.tolist() == [SLIPS[1], SLIPS[-1], OPEN]
+    assert np.hypot(*found.forces.T)[:2] == pytest.approx(
+        [response.contacts[pair].force[3] for pair in ("pin->upper", "upper.end->lower")]
+    )
+    centres = found.supports.reshape(2, -1, 2).mean(axis=1)
+    assert centres == pytest.approx(np.array([[0.0, 0.0], [0.0, -0.2]]), abs=0.03)
+    still = replace(scene.pins[0], start=(0.8, 0.4), displacement=(0.0, 0.1))
+    assert (
+        OPEN
+        in panel(solved_series(solve(replace(scene, pins=(still,)), "tsm"), scene, "t").blocks(0), "t").states
+    )
+
+
+def test_coarse_solids_and_rods_can_be_viewed(tmp_path: Path) -> None:
+    """Bilinear elements have other cells, and a rod's file has neither stress nor height."""
+    scene = replace(SCENE, beams=(replace(SCENE.beams[0], solid_element="Q1", mesh=(24, 2)),))
+    for model in ("solid", "rod"):
+        write_series(writable_folder(tmp_path / model), solve(scene, model), scene)
+    solid, rod = (panel(one.blocks(2), "") for one in read_series(tmp_path))
+    assert len(solid.quads) == 48
+    assert rod.points.max(axis=0) == pytest.approx(solid.points.max(axis=0), abs=0.05)
+
+
+@pytest.mark.parametrize("factor", ["0", "-1", "many", "inf"])
+def test_a_factor_must_be_a_positive_number(factor: str, tmp_path: Path, capsys: Output) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["view", "ks-cantilever", "--scale", factor, "--out", str(tmp_path / "out")])
+    assert "--scale" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_files_give_the_same_film(responses: list[Response], series: list[Series], tmp_path: Path) -> None:
     for response in responses:
         write_series(writable_folder(tmp_path / response.model), response, SCENE)
     read = read_series(tmp_path)
     assert [one.title for one in read] == ["tsm", "solid"]
-    ours, theirs = film(series, "stress"), film(read, "stress")
+    ours, theirs = film(series), film(read)
+    assert ours.scale.label == theirs.scale.label == "axial stress [N/m^2]"
+    assert ours.scale.arrow == theirs.scale.arrow
     assert ours.scale.half == pytest.approx(theirs.scale.half)
     assert ours.scale.stress == pytest.approx(theirs.scale.stress)
     for one, other in zip(ours.frames, theirs.frames, strict=True):
@@ -95,6 +150,8 @@ def test_files_give_the_same_film(responses: list[Response], series: list[Series
             np.testing.assert_allclose(a.points, b.points, atol=1e-9)
             np.testing.assert_allclose(a.stress, b.stress, rtol=1e-9, atol=1e-6)
             np.testing.assert_allclose(a.forces, b.forces, atol=1e-12)
+            np.testing.assert_allclose(a.supports, b.supports, atol=1e-12)
+            assert a.states.tolist() == b.states.tolist()
 
 
 def test_picture_and_motion(tmp_path: Path, capsys: Output) -> None:
@@ -142,7 +199,7 @@ def test_a_window_where_there_is_a_display(
     assert "no window could be opened" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("broken", ["empty", "not a PVD", "not a VTU", "no VTU"])
+@pytest.mark.parametrize("broken", ["empty", "not a PVD", "not a VTM", "not a VTU", "no VTU"])
 def test_a_broken_folder_is_one_line(broken: str, tmp_path: Path, capsys: Output) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
@@ -150,10 +207,12 @@ def test_a_broken_folder_is_one_line(broken: str, tmp_path: Path, capsys: Output
         write_series(folder, solve(SCENE, "tsm"), SCENE)
     if broken == "not a PVD":
         (folder / "tsm.pvd").write_text("<VTKFile>")
+    if broken == "not a VTM":
+        (folder / "tsm-0002.vtm").write_text("<VTKFile><DataSet name='a'/></VTKFile>")
     if broken == "not a VTU":
-        (folder / "tsm-0002.vtu").write_text("nothing")
+        (folder / "tsm-0002-0.vtu").write_text("nothing")
     if broken == "no VTU":
-        (folder / "tsm-0002.vtu").unlink()
+        (folder / "tsm-0002-0.vtu").unlink()
     assert main(["view", str(folder), "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1, error

@@ -63,9 +63,9 @@ def test_a_series_without_unix(tmp_path: Path) -> None:
     scene = tmp_path / "a.toml"
     scene.write_text(re.sub(r"load_parameters = \d+", "load_parameters = 2", text))
     crossval(tmp_path, "solve", "a.toml", "--model", "tsm", "--elements", "4", "--vtk", "vtk")
-    assert sorted(path.name for path in (tmp_path / "vtk").glob("tsm-0*")) == [
-        "tsm-0001.vtu",
-        "tsm-0002.vtu",
+    assert sorted(path.name for path in (tmp_path / "vtk").glob("tsm-0*.vtm")) == [
+        "tsm-0001.vtm",
+        "tsm-0002.vtm",
     ]
 
 

@@ -124,9 +124,10 @@ def silent(
 
 def axis_grid(scene: Scene, axes: SampledAxes, k: int) -> Grid:
     """Return the axes of all beams as lines, with their displacements."""
-    points, deformed, lines, count = [], [], [], 0
+    points, deformed, lines, numbers, count = [], [], [], [], 0
     for name, arc in axes.arc_length.items():
         beam = scene.beam(name)
+        numbers.append(np.full(len(arc), scene.beams.index(beam)))
         points.append(np.array(beam.start) + np.outer(arc, beam.direction))
         deformed.append(axes.position[name][k])
         number = count + np.arange(len(arc) - 1)
@@ -136,7 +137,7 @@ def axis_grid(scene: Scene, axes: SampledAxes, k: int) -> Grid:
     return Grid(
         points=there,
         cells={"line": np.concatenate(lines)},
-        point_data={"displacement": line - there, "deformed": line},
+        point_data={"displacement": line - there, "deformed": line, "beam": np.concatenate(numbers)},
     )
 
 

@@ -1,66 +1,69 @@
-"""A grid as a body of quadrilaterals with its axial stress, and pins with the forces on the beams."""
+"""Blocks of a load parameter as one picture: bodies with their axial stress, contacts with the forces on the beams, supports."""
+
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.response import SLIPS, Array, Grid
-from comparisons.show.stress import QUAD9_QUARTERS, Panel
+from comparisons.response import Array, Grid
+from comparisons.show.export import CONTACTS, SUPPORTS
+from comparisons.show.panel import Body, Panel, joined, marks
+from comparisons.show.stress import QUARTERS, solid_body
 
-Body = tuple[Array, NDArray[np.int64], Array]
 PARTS, LAYERS = 8, 4
 """Quadrilaterals along the line of an element of a beam and over its height."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 
 
-def panel(body: Grid, pins: Grid, title: str) -> Panel:
-    """Return the deformed body, the solid's or the ribbons of beams, and its pins with their contact forces."""
-    points, quads, stress = _solid(body) if "quad9" in body.cells else _ribbons(body)
-    places = pins.point_data.get("deformed", np.zeros((0, 2)))
-    forces = pins.point_data.get("contact_force", np.zeros_like(places))
-    slip = np.where(forces.any(axis=1), pins.point_data.get("slip", np.full(len(places), np.nan)), np.nan)
-    return Panel(
-        title=f"{title}{_states(slip)}",
-        points=points,
-        quads=quads,
-        stress=stress,
-        pins=places,
-        forces=forces,
-        slip=slip,
-    )
+def panel(blocks: Mapping[str, Grid], title: str, factor: float = 1.0) -> Panel:
+    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports.
+
+    Parameters
+    ----------
+    blocks : mapping of Grid
+        As `comparisons.show.export.blocks` gives them.
+    title : str
+        What it shows; the enlargement is added.
+    factor : float
+        Enlargement of the displacements.
+    """
+    bodies = [grid for name, grid in blocks.items() if name not in (CONTACTS, SUPPORTS)]
+    size = float(np.ptp(np.concatenate([grid.points for grid in bodies]), axis=0).max())
+    drawn = marks(blocks, size, factor)
+    shapes = [
+        solid_body(grid, "axial_stress", factor)
+        if QUARTERS.keys() & grid.cells.keys()
+        else _ribbons(grid, size, factor)
+        for grid in bodies
+    ]
+    enlarged = "" if factor == 1.0 else f", deformation x {factor:g}"
+    return joined(f"{title}{enlarged}", shapes, [drawn])
 
 
-def _states(slip: Array) -> str:
-    """Return the states of pins with friction in words."""
-    words = [SLIPS[int(one)] for one in slip[~np.isnan(slip)]]
-    return f", pin {' and '.join(words)}" if words else ""
-
-
-def _solid(grid: Grid) -> Body:
-    quads = grid.cells["quad9"][:, QUAD9_QUARTERS].reshape(-1, 4)
-    return grid.point_data["deformed"], quads, grid.point_data["axial_stress"]
-
-
-def _ribbons(grid: Grid) -> Body:
-    """Ribbons of the beams' heights about the cubics that have the ends and end rotations of the lines."""
+def _ribbons(grid: Grid, size: float, factor: float) -> Body:
+    """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
     data, ends = grid.point_data, grid.cells["line"]
-    place, turn = data["deformed"][ends], data["rotation"][ends]
-    undeformed = np.diff(grid.points[ends], axis=1)[:, 0]
-    angle = turn + np.arctan2(undeformed[:, 1], undeformed[:, 0])[:, None]
-    chord = np.hypot(*np.diff(place, axis=1)[:, 0].T)
-    tangent = np.stack([np.cos(angle), np.sin(angle)], axis=-1) * chord[:, None, None]
+    undeformed = np.diff(grid.points[ends], axis=1)
+    place = (data["deformed"] + (factor - 1.0) * data["displacement"])[ends]
+    chord = np.diff(data["deformed"][ends], axis=1)
+    if "rotation" in data:
+        angle = data["rotation"][ends] + np.arctan2(undeformed[..., 1], undeformed[..., 0])
+        tangent = np.hypot(*chord.T).T[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    else:
+        tangent = np.repeat(chord, 2, axis=1)
+    tangent = tangent + (factor - 1.0) * (tangent - undeformed)
     u = np.linspace(0.0, 1.0, PARTS + 1)
     blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
     line = np.einsum("bu,ebx->eux", blends, np.concatenate([place, tangent], axis=1))
     between = np.stack([1 - u, u])
-    section = np.einsum("bu,eb->eu", between, angle)
+    section = np.einsum("bu,eb->eu", between, _angles(tangent))
     normal = np.stack([-np.sin(section), np.cos(section)], axis=-1)
-    half = data["height"][ends[:, 0]] / 2.0
-    half[half == 0.0] = THIN / 2.0 * float(np.ptp(grid.points, axis=0).max())
+    half = data.get("height", np.zeros(len(grid.points)))[ends[:, 0]] / 2.0
+    half[half == 0.0] = THIN / 2.0 * size
     across = np.linspace(-1.0, 1.0, LAYERS + 1)
     points = line[:, :, None] + half[:, None, None, None] * across[:, None] * normal[:, :, None]
     right, left = (
-        np.einsum("bu,eb->eu", between, data[name][ends])
+        np.einsum("bu,eb->eu", between, data.get(name, np.zeros(len(grid.points)))[ends])
         for name in ("axial_stress_right", "axial_stress_left")
     )
     stress = right[..., None] * (1 - across) / 2 + left[..., None] * (1 + across) / 2
@@ -68,3 +71,11 @@ def _ribbons(grid: Grid) -> Body:
     corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
     quads = np.stack(corners, axis=-1).reshape(-1, 4)
     return points.reshape(-1, 2), quads, stress.ravel()
+
+
+def _angles(tangent: Array) -> Array:
+    """Return the angles of the tangents at both ends of every line, the second within half a turn of the first."""
+    first = np.arctan2(tangent[:, 0, 1], tangent[:, 0, 0])
+    cross = tangent[:, 0, 0] * tangent[:, 1, 1] - tangent[:, 0, 1] * tangent[:, 1, 0]
+    turn = np.arctan2(cross, np.einsum("ex,ex->e", tangent[:, 0], tangent[:, 1]))
+    return np.stack([first, first + turn], axis=1)

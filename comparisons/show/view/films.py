@@ -9,8 +9,8 @@ import numpy as np
 
 from comparisons.files import OutputError, replacing
 from comparisons.models.progress import Count, uncounted
+from comparisons.show.panel import Panel, Scale
 from comparisons.show.render import render_frames, show_frames
-from comparisons.show.stress import Panel, Scale
 from comparisons.show.view.bodies import panel
 from comparisons.show.view.series import Series
 
@@ -30,8 +30,15 @@ class Film:
     scale: Scale
 
 
-def film(series: Sequence[Series], label: str) -> Film:
+def film(series: Sequence[Series], factor: float = 1.0) -> Film:
     """Return the film of the load parameters that all `series` reach, evenly thinned to `FRAMES`, the first and last included.
+
+    Parameters
+    ----------
+    series : sequence of Series
+        One for each panel.
+    factor : float
+        Enlargement of the displacements, which the titles state.
 
     Raises
     ------
@@ -44,13 +51,22 @@ def film(series: Sequence[Series], label: str) -> Film:
             f"{', '.join(one.title for one in series)}: no load parameter was reached, nothing to draw"
         )
     kept = np.unique(np.linspace(0, len(shared) - 1, min(FRAMES, len(shared))).round().astype(int))
-    frames = [[_panel(one, shared[k]) for one in series] for k in kept]
-    return Film(frames=frames, scale=Scale.of([item for panels in frames for item in panels], label))
+    frames = [[_panel(one, shared[k], factor) for one in series] for k in kept]
+    units = series[0].units
+    stress = next(
+        (f" [{units[name]}]" for name in ("axial_stress", "axial_stress_left") if name in units), ""
+    )
+    scale = Scale.of(
+        [item for panels in frames for item in panels],
+        f"axial stress{stress}",
+        units.get("contact_force", ""),
+    )
+    return Film(frames=frames, scale=scale)
 
 
-def _panel(series: Series, t: float) -> Panel:
+def _panel(series: Series, t: float, factor: float) -> Panel:
     k = int(np.flatnonzero(series.load_parameter == t)[0])
-    return panel(series.body(k), series.pins(k), f"{series.title}, t = {t:.3f}")
+    return panel(series.blocks(k), f"{series.title}, t = {t:.3f}", factor)
 
 
 def write(shown: Film, folder: Path, count: Count = uncounted) -> tuple[list[Path], str | None]:

@@ -1,7 +1,7 @@
-"""Grids over the load parameters: of a response, or of the files that one was written to."""
+"""Blocks over the load parameters: of a response, or of the files that one was written to."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -10,12 +10,13 @@ import numpy as np
 from comparisons.files import OutputError
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import Scene
-from comparisons.show.export import pin_grid
+from comparisons.show.export import blocks, field_units
+from comparisons.show.vtu import units_in
 
 
 @dataclass(frozen=True, kw_only=True)
 class Series:
-    """A body and its pins at s load parameters.
+    """The blocks of a model's answer at s load parameters.
 
     Attributes
     ----------
@@ -23,14 +24,16 @@ class Series:
         What it shows.
     load_parameter : ndarray, shape (s,)
         Load parameters.
-    body, pins : callable
-        Their grids at load parameter k.
+    blocks : callable
+        The blocks at load parameter k, as `comparisons.show.export.blocks` gives them.
+    units : mapping of str
+        Units of the fields by name.
     """
 
     title: str
     load_parameter: Array
-    body: Callable[[int], Grid]
-    pins: Callable[[int], Grid]
+    blocks: Callable[[int], Mapping[str, Grid]]
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 def solved_series(response: Response, scene: Scene, title: str) -> Series:
@@ -38,8 +41,8 @@ def solved_series(response: Response, scene: Scene, title: str) -> Series:
     return Series(
         title=title,
         load_parameter=response.load_parameter,
-        body=response.grid,
-        pins=lambda k: pin_grid(response, scene, k),
+        blocks=lambda k: blocks(response, scene, k),
+        units=field_units(scene),
     )
 
 
@@ -60,22 +63,40 @@ def read_series(folder: Path) -> list[Series]:
 
 
 def _read(path: Path) -> Series:
-    parts: dict[int, list[tuple[float, Path]]] = {0: [], 1: []}
-    try:
-        for entry in ET.parse(path).getroot().iter("DataSet"):  # noqa: S314 - a file of our own
-            parts[int(entry.attrib["part"])].append(
-                (float(entry.attrib["timestep"]), path.parent / entry.attrib["file"])
-            )
-    except (OSError, ET.ParseError, KeyError, ValueError) as error:
-        raise OutputError(f"{path}: cannot be read: {error}") from None
-    bodies, pins = parts[0], dict(parts[1])
-    none = Grid(points=np.zeros((0, 2)), cells={}, point_data={})
+    entries = [(float(t), path.parent / file) for t, file in _listed(path, "timestep")]
+    units = _units(entries[0][1]) if entries else {}
     return Series(
         title=path.stem,
-        load_parameter=np.array([t for t, _ in bodies]),
-        body=lambda k: _grid(bodies[k][1]),
-        pins=lambda k: _grid(pins[bodies[k][0]]) if bodies[k][0] in pins else none,
+        load_parameter=np.array([t for t, _ in entries]),
+        blocks=lambda k: _blocks(entries[k][1]),
+        units=units,
     )
+
+
+def _blocks(path: Path) -> dict[str, Grid]:
+    return {name: _grid(path.parent / file) for name, file in _listed(path, "name")}
+
+
+def _listed(path: Path, attribute: str) -> list[tuple[str, str]]:
+    """Return an attribute and the file of every entry of a PVD or VTM file."""
+    found = _parsed(path).iter("DataSet")
+    try:
+        return [(entry.attrib[attribute], entry.attrib["file"]) for entry in found]
+    except KeyError as error:
+        raise OutputError(f"{path}: cannot be read: an entry has no {error}") from None
+
+
+def _units(path: Path) -> dict[str, str]:
+    """Return the units that a set of blocks states."""
+    words = "".join(array.text or "" for array in _parsed(path).iter("Array") if array.get("Name") == "units")
+    return units_in(bytes(map(int, words.split())).decode().split("\0"))
+
+
+def _parsed(path: Path) -> ET.Element:
+    try:
+        return ET.parse(path).getroot()  # noqa: S314 - a file of our own
+    except (OSError, ET.ParseError) as error:
+        raise OutputError(f"{path}: cannot be read: {error}") from None
 
 
 def _grid(path: Path) -> Grid:
@@ -85,9 +106,12 @@ def _grid(path: Path) -> Grid:
         mesh = vtu.read(path)  # meshio.read ends the process where a file is broken
     except (OSError, ReadError, ET.ParseError) as error:
         raise OutputError(f"{path}: cannot be read: {error or 'not a VTU file'}") from None
-    cut = {
-        name: values[:, :2] if values.shape[1:] == (3,) else values
+    data = {
+        name: values[:, :2]
+        if values.shape[1:] == (3,) and name != "held"
+        else values[:, 0]
+        if values.shape[1:] == (1,)
+        else values
         for name, values in mesh.point_data.items()
     }
-    cut["cauchy_stress"] = mesh.point_data.get("cauchy_stress", np.zeros((len(mesh.points), 3)))
-    return Grid(points=mesh.points[:, :2], cells=dict(mesh.cells_dict), point_data=cut)
+    return Grid(points=mesh.points[:, :2], cells=dict(mesh.cells_dict), point_data=data)

@@ -285,7 +285,7 @@ def test_solve_and_gate_have_it(
     assert "tsm against liar" in capsys.readouterr().out
     data = json.loads((tmp_path / "a.json").read_text())
     assert (data["model"], data["status"], data["reported_success"]) == ("liar", "COMPLETED", True)
-    assert (tmp_path / "vtk" / "liar-0005.vtu").is_file()
+    assert (tmp_path / "vtk" / "liar-0005.vtm").is_file()
     program("support['moment'] = [2 * m for m in support['moment']]")
     assert main(["solve", "ks.toml", "--model", "liar.toml", "--json", "a.json"]) == 3
     data = json.loads((tmp_path / "a.json").read_text())

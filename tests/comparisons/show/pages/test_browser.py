@@ -47,7 +47,7 @@ def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Pa
     for name in ("zoom", "star", "cursor"):
         assert end[name] != fourth[name]
     assert all(a != b for a, b in zip(end["shapes"], fourth["shapes"], strict=True))
-    assert fourth["vtu"] == ["tsm/tsm-0004.vtu", "solid/solid-0004.vtu"]
+    assert fourth["vtu"] == ["tsm/tsm-0004.vtm", "solid/solid-0004.vtm"]
     assert all((compared / name).is_file() for name in fourth["vtu"])
     runs = {run["label"]: run for run in json.loads((compared / "summary.json").read_text())["runs"]}
     assert {row[0] for row in fourth["table"]} == set(runs)
