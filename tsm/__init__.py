@@ -8,7 +8,18 @@ from tsm.result import ContactHistory, FrictionHistory, Result, SupportHistory
 from tsm.settings import Settings
 from tsm.solve import SolveError, march, solve
 from tsm.status import Status
-from tsm.structure import Beam, ContactPair, LineLoad, Load, Pin, Section, Structure, Support
+from tsm.structure import (
+    Beam,
+    ContactPair,
+    Hinge,
+    LineLoad,
+    Load,
+    Pin,
+    Section,
+    Spring,
+    Structure,
+    Support,
+)
 
 __all__ = [
     "ELEMENTS",
@@ -19,6 +30,7 @@ __all__ = [
     "Event",
     "EventKind",
     "FrictionHistory",
+    "Hinge",
     "LineLoad",
     "Load",
     "Pin",
@@ -26,6 +38,7 @@ __all__ = [
     "Section",
     "Settings",
     "SolveError",
+    "Spring",
     "Status",
     "Structure",
     "Support",

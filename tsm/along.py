@@ -9,9 +9,11 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from tsm.beam import Beam, LineLoad
+from tsm.elements import ELEMENTS
 from tsm.elements.properties import Array
 from tsm.elements.rod import Flexibility
 from tsm.elements.varying import Course
+from tsm.stages import Increments
 
 
 class Along:
@@ -23,6 +25,8 @@ class Along:
         The beams.
     loads : sequence of LineLoad
         Loads along them.
+    stages : int
+        Number of stages of the load.
 
     Attributes
     ----------
@@ -38,12 +42,11 @@ class Along:
         ``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at both ends; both are linear between them.
     ratio : ndarray, shape (e,)
         GA/EA.
-    shed : ndarray, shape (loads, 2, d, e)
-        Integrals of the loads at load parameter 1 from the start of an element: coefficients of the powers 1 to d of the part of its
-        length.
+    shed : Increments of arrays, shape (stages, 2, d, e)
+        Integrals of the loads from the start of an element: coefficients of the powers 1 to d of the part of its length.
     """
 
-    def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad]) -> None:
+    def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad], stages: int = 1) -> None:
         self.loaded = bool(loads)
         laden = {load.beam for load in loads}
         spans = [(beam, *part) for beam in beams for part in pairwise(beam.parts)]
@@ -55,26 +58,24 @@ class Along:
         self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
         self.ratio = np.array([beam.section.GA / beam.section.EA for beam, _, _ in spans])
         degree = max((len(load.force) for load in loads), default=0)
-        self.shed = np.zeros((len(loads), 2, degree, len(spans)))
+        shed = np.zeros((stages, 2, degree, len(spans)))
         first: dict[str, int] = {}
         for number, (beam, _, _) in enumerate(spans):
             first.setdefault(beam.name, number)
-        for row, load in zip(self.shed, loads, strict=True):
+        for load in loads:
             beam = next(beam for beam in beams if beam.name == load.beam)
             for element in load.elements(beam):
                 place = first[beam.name] + element
-                row[:, : len(load.force), place] = _integral(load, *spans[place])
-
-        self._total: Array = self.shed.sum(axis=0)
+                shed[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
+        self.shed = Increments(shed)
 
     def shed_at(self, load_parameter: float) -> Array:
         """Integrals (2, d, e) of all loads together at a load parameter."""
-        shed: Array = load_parameter * self._total
-        return shed
+        return self.shed.at(load_parameter)
 
-    def shed_rate(self, _load_parameter: float) -> Array:
-        """Derivative of `shed_at` in the load parameter."""
-        return self._total
+    def shed_rate(self, load_parameter: float) -> Array:
+        """Derivative of `shed_at` in the load parameter; where a stage ends, during that stage."""
+        return self.shed.rate(load_parameter)
 
     def total(self, load_parameter: float) -> Array:
         """Sum (2,) of all loads along the beams at a load parameter."""
@@ -111,6 +112,25 @@ class Along:
             *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
                 (shed, powers[1:]), (shed, risen), (shed_rate, powers[1:]))),
         )  # fmt: skip
+
+
+def refuse(beams: Sequence[Beam], loads: Sequence[LineLoad]) -> None:
+    """Raise ValueError where a beam has what its elements cannot state."""
+    laden = {load.beam for load in loads}
+    for beam in beams:
+        if ELEMENTS[beam.element].varies:
+            continue
+        for field, there in (
+            ("turn", beam.turn),
+            ("end_section", beam.end_section),
+            ("load", beam.name in laden),
+        ):
+            if there:
+                able = ", ".join(name for name, kind in ELEMENTS.items() if kind.varies)
+                raise ValueError(
+                    f'Beam({beam.name}).{field}: elements "{beam.element}" are straight and uniform, '
+                    f"without loads along them; use {able}"
+                )
 
 
 def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:

@@ -73,12 +73,14 @@ def trace(
     SolveError
         Where the path cannot be followed; carries the partial result.
     ValueError
-        If `arc_length` or `steps` is not positive.
+        If `arc_length` or `steps` is not positive, or the load has stages.
     """
     if not (np.isfinite(arc_length) and arc_length > 0):
         raise ValueError(f"arc_length = {arc_length!r}: must be positive and finite")
     if steps < 1:
         raise ValueError(f"steps = {steps!r}: must be at least 1")
+    if structure.stages > 1:
+        raise ValueError(f"stages = {structure.stages}: arc-length control follows a single stage, use solve")
     begin = time.perf_counter()
     model = Model(structure)
     path = _Path(model, settings or Settings())
@@ -147,8 +149,8 @@ class _Path:
         return self._record(there, cutbacks, events), Status.CONVERGED
 
     def _margins(self, equilibrium: Equilibrium, direction: _Direction) -> list[Margin]:
-        velocities = self.newton.assembler.velocities(equilibrium.state.load_parameter)
-        rates = slip_rates(self.newton, equilibrium, velocities)
+        drive = self.newton.assembler.drive(equilibrium.state.load_parameter)
+        rates = slip_rates(self.newton, equilibrium, drive)
         ahead = {k: math.copysign(rate, rate * direction.load) for k, rate in rates.items()}
         return margins(self.model, equilibrium, self.newton.tolerance, ahead)
 
@@ -157,7 +159,7 @@ class _Path:
         start = self.newton.solve(initial_state(self.model))
         if not self.model.rubbed:
             return start
-        state = regripped(self.newton, start.state, self.newton.assembler.velocities(0.0))
+        state = regripped(self.newton, start.state, self.newton.assembler.drive(0.0))
         if isinstance(state, Status):
             return replace(start, status=state)
         return replace(start, state=state, system=self.newton.assembler.linearise(state))

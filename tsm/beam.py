@@ -12,6 +12,8 @@ Point = tuple[float, float]
 
 LARGEST = 1e50
 """Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
+MOST_STAGES = 10_000
+"""Largest number of stages."""
 MOST = 1_000_000
 """Elements of a structure at most."""
 _ALIKE = 1e-12
@@ -226,7 +228,7 @@ class Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class LineLoad:
-    """Dead force per undeformed length along a beam or a part of it, at load parameter 1; it keeps its direction.
+    """Dead force per undeformed length along a beam or a part of it, applied in one stage; it keeps its direction.
 
     Parameters
     ----------
@@ -237,15 +239,25 @@ class LineLoad:
         one first. The weight of a tapered beam has three.
     start, end : float
         Arc positions between which the load acts [length], nodes of the beam; by default the whole beam.
+    stage : int
+        Number of the stage, from 0, in which the load grows with the load parameter; it stays after the stage.
     """
 
     beam: str
     force: tuple[Point, ...]
     start: float = 0.0
     end: float = math.inf
+    stage: int = 0
 
     def __post_init__(self) -> None:
         owner = f"LineLoad({self.beam})"
+        check(
+            0 <= self.stage <= MOST_STAGES,
+            owner,
+            "stage",
+            self.stage,
+            f"must lie between 0 and {MOST_STAGES}",
+        )
         check(
             len(self.force) > 0 and all(len(part) == 2 and finite(*part) for part in self.force),
             owner, "force", self.force, f"must hold pairs of finite numbers, of at most {LARGEST:g}",

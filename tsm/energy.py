@@ -16,7 +16,7 @@ from tsm.newton import Equilibrium, Newton
 from tsm.predictor import extrapolate
 from tsm.state import State
 from tsm.status import Status
-from tsm.structure import Point
+from tsm.system import Drive
 
 _PLACES = (0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5)
 """Inner points of Lobatto's rule of order 8 in the unit interval."""
@@ -39,7 +39,7 @@ class _Span(NamedTuple):
     last: Array
 
 
-def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...]) -> Array | None:
+def power(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> Array | None:
     """Work and dissipation for a unit of the load parameter.
 
     Returns
@@ -48,14 +48,14 @@ def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...
         Work of pins, supports and loads, then the dissipation of every pair; None where the tangent is singular.
     """
     model, state, system = newton.model, equilibrium.state, equilibrium.system
-    by = rates(newton, state, system, velocities)
+    by = rates(newton, state, system, drive)
     if by is None:
         return None
     spent = np.zeros(1 + len(model.pairs))
-    q = newton.assembler.prescribed_rate()
+    q = newton.assembler.prescribed_rate(drive.stage)
     spent[0] = system.nodal[model.fixed] @ q[model.fixed]
     q[model.free] = by.unknowns[: model.equations]
-    spent[0] += state.load_parameter * float(model.load @ q)
+    spent[0] += model.loads.dot(state.load_parameter, q)
     if model.along.loaded:
         contacts = by.unknowns[model.equations :]
         spent[0] += sum(
@@ -64,7 +64,7 @@ def power(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...
         )
     for k, (fx, fy) in system.forces.items():
         if model.pairs[k].pin is not None:
-            spent[0] += fx * velocities[k][0] + fy * velocities[k][1]
+            spent[0] += fx * drive.velocities[k][0] + fy * drive.velocities[k][1]
     for k, grip in grips(state):
         if grip.slip:
             spent[1 + k] = traction(model, state, system, k).tangential * slip_rate(newton, state, by, k)
@@ -87,7 +87,7 @@ class Spent(NamedTuple):
 
 
 def spent(
-    newton: Newton, history: list[State], ends: tuple[Equilibrium, Equilibrium], velocities: tuple[Point, ...]
+    newton: Newton, history: list[State], ends: tuple[Equilibrium, Equilibrium], drive: Drive
 ) -> Spent | None:
     """Work and dissipation between two equilibria on a smooth part of the path.
 
@@ -99,8 +99,8 @@ def spent(
         Earlier states with the same closed contacts, oldest first, from which the states between are predicted.
     ends : tuple of Equilibrium
         Where the interval begins and ends.
-    velocities : tuple of Point
-        Velocities of the pairs' pins, constant in between.
+    drive : Drive
+        What changes in proportion to the load parameter in between.
 
     Returns
     -------
@@ -118,9 +118,9 @@ def spent(
         if reached.status is not Status.CONVERGED:
             return None
         between.append(reached)
-        return power(newton, reached, velocities)
+        return power(newton, reached, drive)
 
-    first, last = (power(newton, end, velocities) for end in ends)
+    first, last = (power(newton, end, drive) for end in ends)
     if first is None or last is None:
         return None
     times = [end.state.load_parameter for end in ends]

@@ -84,6 +84,9 @@ class Event:
         Contact force, before the event.
     released : float
         Potential energy (strain energy less the work of the loads) that is released in the jump after a slip-off.
+    stage : int
+        Number of the stage of the load, from 1. An event at the load parameter at which a stage begins belongs to that stage if it
+        happens because the load goes on.
     """
 
     kind: EventKind
@@ -93,6 +96,7 @@ class Event:
     arc_position: float = math.nan
     force: float = 0.0
     released: float = 0.0
+    stage: int = 1
 
 
 @dataclass(frozen=True, kw_only=True)

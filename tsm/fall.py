@@ -11,8 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tsm.critical import mode_shape
 from tsm.elements.properties import Array
 from tsm.events import ROUND_OFF, EventKind, Margin
+from tsm.friction import grips
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import PathTangent
@@ -26,6 +28,8 @@ _FIRST_PACE = 1e-1
 """First time step of a fall, in the units of `_resistance`."""
 _LEVEL = 1e-9
 """Largest rise of the energy that counts as round-off, over the energy and over ``EI/L``."""
+_PUSH = 0.006
+"""Displacement along the mode of a critical point at which a fall starts, over the longest beam."""
 _TRIALS = 200
 """Largest number of steps of a fall, with refused ones; a structure without supports and contacts never comes to rest."""
 
@@ -50,6 +54,37 @@ class Fall:
     measure: Callable[[Equilibrium], list[Margin]]
     close: Callable[[State, Margin], State]
     iterations: int = 0
+
+    def beside(self, critical: Equilibrium, ahead: float) -> tuple[Equilibrium, float] | Status:
+        """Return the equilibrium of least potential beside a critical point, and the potential that the fall there releases.
+
+        Parameters
+        ----------
+        critical : Equilibrium
+            Equilibrium at the point; the structure is pushed along its mode, one way and the other.
+        ahead : float
+            Load parameter of the fall, just beyond the point.
+
+        Returns
+        -------
+        tuple or Status
+            FALLING if the structure finds no rest, REST_UNKNOWN if it falls onto contacts with friction.
+        """
+        mode = mode_shape(self.newton, critical)
+        if mode is None:
+            return Status.FALLING
+        held = self.newton.prescribed(critical.state, ahead)
+        push = mode[0] * (_PUSH * self.newton.model.length)
+        rests = [
+            (self.newton.potential(rest.state), rest)
+            for rest in self.rests_beside(held, push, critical.system)
+        ]
+        if not rests:
+            return Status.FALLING
+        if any(grips(rest.state) for _, rest in rests):
+            return Status.REST_UNKNOWN
+        least, rest = min(rests, key=lambda pair: pair[0])
+        return rest, self.newton.potential(held) - least
 
     def rests_beside(self, state: State, push: Array, system: Linearisation) -> Iterator[Equilibrium]:
         """Yield the stable equilibria at which falls end that begin at a state pushed one way and the other."""
@@ -131,4 +166,6 @@ def _resistance(model: Model) -> Array:
     per_way = np.zeros(model.dof_count)
     unit = model.force_scale * np.array([1 / model.length, 1 / model.length, model.length])
     per_way[: 3 * len(share)] = (share[:, None] / model.length * unit).ravel()
+    np.add.at(per_way, model.masters, per_way[model.slaves])
+    per_way[model.slaves] = 0.0
     return per_way

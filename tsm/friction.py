@@ -18,8 +18,7 @@ from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.state import UNDECIDED, Grip, State, Traction
 from tsm.status import Status
-from tsm.structure import Point
-from tsm.system import Linearisation
+from tsm.system import Drive, Linearisation
 
 _EDGE = 1e-9
 """Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
@@ -41,10 +40,13 @@ class Rates(NamedTuple):
         The configuration.
     unknowns : ndarray, shape (equations + contact unknowns,)
         Derivatives of the unknowns.
+    stage : int
+        Number of the stage, from 0.
     """
 
     system: Linearisation
     unknowns: Array
+    stage: int
 
 
 def traction(model: Model, state: State, system: Linearisation, k: int) -> Traction:
@@ -59,31 +61,31 @@ def cone(model: Model, state: State, system: Linearisation, k: int) -> float:
     return model.pairs[k].pair.friction * here.normal - abs(here.tangential)
 
 
-def rates(newton: Newton, state: State, system: Linearisation, velocities: tuple[Point, ...]) -> Rates | None:
-    """Derivatives in the load parameter while the pins have given velocities, None where the tangent is singular."""
-    solved = newton.assembler.solve(system, -newton.assembler.rate(state, velocities))
-    return None if solved is None else Rates(system, solved[:, 1])
+def rates(newton: Newton, state: State, system: Linearisation, drive: Drive) -> Rates | None:
+    """Derivatives in the load parameter under a drive, None where the tangent is singular."""
+    solved = newton.assembler.solve(system, -newton.assembler.rate(state, drive))
+    return None if solved is None else Rates(system, solved[:, 1], drive.stage)
 
 
 def slip_rate(newton: Newton, state: State, by: Rates, k: int) -> float:
     """Slip rate of closed pair k."""
     model = newton.model
     pair = model.pairs[k]
-    dofs = newton.assembler.prescribed_rate()
+    dofs = newton.assembler.prescribed_rate(by.stage)
     dofs[model.free] = by.unknowns[: model.equations]
     tangent = by.system.tangent.groups[pair.group.number]
     return pair.group.slip_rate(k, state, tangent, dofs, by.unknowns[model.equations :])
 
 
-def slip_rates(newton: Newton, equilibrium: Equilibrium, velocities: tuple[Point, ...]) -> dict[int, float]:
+def slip_rates(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> dict[int, float]:
     """Rates of all pairs that slip, positive the way they slip; none where the tangent is singular."""
     state = equilibrium.state
     slipping = [(k, grip.slip) for k, grip in grips(state) if grip.slip]
-    by = rates(newton, state, equilibrium.system, velocities) if slipping else None
+    by = rates(newton, state, equilibrium.system, drive) if slipping else None
     return {} if by is None else {k: slip * slip_rate(newton, state, by, k) for k, slip in slipping}
 
 
-def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> State | Status:
+def regripped(newton: Newton, state: State, drive: Drive) -> State | Status:
     """State in equilibrium whose contacts with friction slip or stick as the load parameter grows.
 
     Parameters
@@ -92,8 +94,8 @@ def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> St
         Solver of the structure.
     state : State
         Configuration in equilibrium.
-    velocities : tuple of Point
-        Velocities of the pairs' pins.
+    drive : Drive
+        What changes.
 
     Returns
     -------
@@ -108,10 +110,10 @@ def regripped(newton: Newton, state: State, velocities: tuple[Point, ...]) -> St
     flat = _FLAT * newton.model.force_scale
     for least in (flat, flat + _STILL * stiff):
         for chosen in islice(product(*choices), _MOST):
-            if not _admissible(newton, _with(state, chosen), velocities, here, least):
+            if not _admissible(newton, _with(state, chosen), drive, here, least):
                 continue
             for other in _reversed(newton.model, chosen, here):
-                if _admissible(newton, _with(state, other), velocities, here, least):
+                if _admissible(newton, _with(state, other), drive, here, least):
                     return Status.TWO_SLIPS
             return _with(state, chosen)
     return Status.JAMMED
@@ -173,12 +175,10 @@ def _reversed(
             yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
 
 
-def _admissible(
-    newton: Newton, state: State, velocities: tuple[Point, ...], here: dict[int, Traction], flat: float
-) -> bool:
+def _admissible(newton: Newton, state: State, drive: Drive, here: dict[int, Traction], flat: float) -> bool:
     """Whether the structure can go on with its contacts as they are stated; a force may leave its cone at the rate `flat`."""
     model = newton.model
-    by = rates(newton, state, newton.assembler.linearise(state), velocities)
+    by = rates(newton, state, newton.assembler.linearise(state), drive)
     if by is None:
         return not here
     for k, grip in grips(state):

@@ -11,14 +11,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsm.along import Along
+from tsm.along import Along, refuse
 from tsm.elements import ELEMENTS, ClosedForm
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
+from tsm.ordering import block_order
 from tsm.pairs import BeamModel, PairModel
 from tsm.rods.assembly import Rods
 from tsm.sizes import Sizes, joined_extents, sizes_of
+from tsm.springs import Springs
+from tsm.stages import Increments
 from tsm.structure import Beam, Structure
 
 _CONTACT_KINDS = np.arange(6, 10)
@@ -50,21 +53,37 @@ class Model:
         Number of border unknowns: border equations, then the contacts' own unknowns.
     rubbed : bool
         Whether a contact has friction.
+    stages : int
+        Number of stages of the load.
     turns : tuple of float
-        Load parameters at which the paths of the pins turn; with friction, every corner, since each may reverse a slip.
+        Load parameters at which a stage ends and another follows, and at which the paths of the pins turn; with friction, every corner,
+        since each may reverse a slip.
     along : Along
         What varies along the elements.
+    loads : Increments
+        Dead loads on all degrees of freedom.
+    motions : Increments
+        Prescribed values of the degrees of freedom `fixed`.
+    moves : bool
+        Whether a prescribed value is not zero in some stage.
+    springs : Springs or None
+        Springs to the ground and in hinges, None without.
+    joints : dict
+        Node of the joint by node of the beam's end behind a hinge. The two share their displacements.
+    slaves, masters : ndarray of int
+        Displacements of the ends behind hinges, which are no unknowns, and of their joints.
     sizes : Sizes
         Length, extent, force_scale and least_force; they are attributes too, as plain numbers.
     """
 
     def __init__(self, structure: Structure) -> None:
-        self.structure = structure
-        _refuse(structure)
-        self.along = Along(structure.beams, structure.line_loads)
+        self.structure, self.stages = structure, structure.stages
+        refuse(structure.beams, structure.line_loads)
+        self.along = Along(structure.beams, structure.line_loads, self.stages)
         self._place_beams(structure.beams)
         self._sort_elements(structure.beams)
         self._prescribe(structure)
+        self.springs = self._place_springs(structure)
         self._place_pairs(structure)
         self._number_equations()
         sections = np.array(
@@ -76,20 +95,23 @@ class Model:
         self.sizes = self.sizes_of(self.coordinates, lengths, sections[2])
         self.length, self.extent, self.force_scale, self.least_force = map(float, self.sizes)
         self.rubbed = any(pair.rubs for pair in self.pairs)
-        self.turns = tuple(
-            sorted({turn for pin in structure.pins for turn in (pin.corners if self.rubbed else pin.turns)})
-        )
+        turns = {turn for pin in structure.pins for turn in (pin.corners if self.rubbed else pin.turns)}
+        self.turns = tuple(sorted(turns.union(map(float, range(1, self.stages)))))
 
     def _place_beams(self, beams: tuple[Beam, ...]) -> None:
         self.beams: dict[str, BeamModel] = {}
         coordinates: list[tuple[float, float]] = []
         ends: dict[tuple[float, float], int] = {}
+        hinged = {(hinge.beam, hinge.end) for hinge in self.structure.hinges}
+        behind: dict[int, tuple[float, float]] = {}
         elements = 0
         for beam in beams:
             nodes = []
             for k, part in enumerate(beam.parts):
                 x, y = beam.point(part)
                 at_end = k in {0, beam.elements}
+                if at_end and (beam.name, "end" if k else "start") in hinged:
+                    at_end, behind[len(coordinates)] = False, (x, y)
                 node = ends.get((x, y), len(coordinates)) if at_end else len(coordinates)
                 if at_end:
                     ends[x, y] = node
@@ -101,13 +123,61 @@ class Model:
                 beam=beam, first=elements, nodes=np.array(nodes), lengths=_lengths(beam, arcs), arcs=arcs
             )
             elements += beam.elements
+        self._place_joints(behind, ends, coordinates)
         self.coordinates = np.array(coordinates)
         self.element_nodes = np.concatenate(
             [np.stack([beam.nodes[:-1], beam.nodes[1:]], axis=1) for beam in self.beams.values()]
         )
-        self.joined = len(coordinates) < elements + len(beams)
+        self.joined = len(coordinates) < elements + len(beams) or bool(behind)
         self.dofs = (3 * self.element_nodes[:, :, None] + np.arange(3)).reshape(-1, 6).T.copy()
+        if behind:
+            shared = np.arange(3 * len(coordinates))
+            shared[self.slaves] = self.masters
+            self.dofs = shared[self.dofs]
         self.element_start = self.coordinates[self.element_nodes[:, 0]].tolist()
+
+    def _place_joints(
+        self,
+        behind: dict[int, tuple[float, float]],
+        ends: dict[tuple[float, float], int],
+        coordinates: list[tuple[float, float]],
+    ) -> None:
+        """Number the joints of the ends behind hinges; a joint that has no other beam is a node of its own."""
+        self.joints: dict[int, int] = {}
+        for node, place in behind.items():
+            if place not in ends:
+                ends[place] = len(coordinates)
+                coordinates.append(place)
+            self.joints[node] = ends[place]
+        pairs = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
+        self.slaves, self.masters = (3 * pairs[:, :, None] + np.arange(2)).transpose(1, 0, 2).reshape(2, -1)
+
+    def _place_springs(self, structure: Structure) -> Springs | None:
+        """Springs in the numbering of the model, None without.
+
+        Raises
+        ------
+        ValueError
+            If all beams of a joint are hinged to it and nothing else holds its rotation.
+        """
+        ground = [
+            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, stiffness)
+            for spring in structure.springs
+            for k, stiffness in enumerate((spring.x, spring.y, spring.rotation))
+            if stiffness
+        ]
+        between = [
+            (3 * self.joints[node] + 2, 3 * node + 2, hinge.stiffness)
+            for hinge in structure.hinges
+            if hinge.stiffness
+            for node in [self._own_end(f"{hinge.beam}.{hinge.end}")]
+        ]
+        held = {*self.prescribed, *(dof for dof, _ in ground), *(dof for dof, _, _ in between)}
+        for hinge in structure.hinges:
+            turn = 3 * self.end_node(f"{hinge.beam}.{hinge.end}") + 2
+            if turn not in held and not (self.dofs == turn).any():
+                raise ValueError(f"Hinge({hinge.beam}.{hinge.end}): the joint turns freely")
+        return Springs(ground, between) if ground or between else None
 
     def _sort_elements(self, beams: tuple[Beam, ...]) -> None:
         counts = [beam.elements for beam in beams]
@@ -136,7 +206,9 @@ class Model:
         if not self.joined:
             return sizes_of(lengths, lengths, EI)
         starts = np.array([beam.nodes[0] for beam in self.beams.values()])
-        return sizes_of(lengths, joined_extents(self.element_nodes, starts, coordinates, lengths), EI)
+        links = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
+        nodes = np.concatenate([self.element_nodes, links])
+        return sizes_of(lengths, joined_extents(nodes, starts, coordinates, lengths), EI)
 
     def _prescribe(self, structure: Structure) -> None:
         self.supports: dict[str, tuple[int, Array]] = {}
@@ -155,14 +227,22 @@ class Model:
                         )
                     self.prescribed[3 * node + k] = value
         self.fixed = np.array(sorted(self.prescribed), dtype=int)
-        self.fixed_values = np.array([self.prescribed[dof] for dof in self.fixed])
-        self.load = np.zeros(self.dof_count)
+        motions = np.zeros((self.stages, self.dof_count))
+        motions[0, self.fixed] = [self.prescribed[dof] for dof in self.fixed]
+        for support in structure.supports:
+            node = 3 * self.end_node(f"{support.beam}.{support.end}")
+            held = self.supports[f"{support.beam}.{support.end}"][1]
+            for stage, motion in enumerate(support.onward, 1):
+                motions[stage, node : node + 3] += np.where(held, motion, 0.0)
+        self.motions, self.moves = Increments(motions[:, self.fixed]), bool(motions.any())
+        loads = np.zeros((self.stages, self.dof_count))
         for load in structure.loads:
             place = self.beams[load.beam]
             node = self.end_node(f"{load.beam}.{load.end}")
             if load.arc is not None:
                 node = int(place.nodes[place.beam.node(load.arc) or 0])
-            self.load[3 * node : 3 * node + 3] += (*load.force, load.moment)
+            loads[load.stage, 3 * node : 3 * node + 3] += (*load.force, load.moment)
+        self.loads = Increments(loads)
 
     @cached_property
     def kind(self) -> Array:
@@ -232,7 +312,12 @@ class Model:
         return next((group.rods for group in self.groups if isinstance(group, ExactGroup)), None)
 
     def end_node(self, name: str) -> int:
-        """Global number of the node at ``"beam.start"`` or ``"beam.end"``."""
+        """Global number of the node at ``"beam.start"`` or ``"beam.end"``, of the joint where a hinge is between."""
+        node = self._own_end(name)
+        return self.joints.get(node, node)
+
+    def _own_end(self, name: str) -> int:
+        """Global number of the node of a beam's end, behind its hinge."""
         beam, _, end = name.rpartition(".")
         return int(self.beams[beam].nodes[0 if end == "start" else -1])
 
@@ -269,8 +354,10 @@ class Model:
             3 * pair.node + k for pair in self.pairs if pair.node >= 0 and pair.slot < 0 for k in range(2)
         ]
         border_dofs = [dof for dof in dict.fromkeys(bordered) if dof not in self.prescribed]
-        aside = {*self.prescribed, *border_dofs}
-        band_dofs = [3 * block + k for block in self._order() for k in range(3) if 3 * block + k not in aside]
+        aside = {*self.prescribed, *border_dofs, *self.slaves.tolist()}
+        band_dofs = [
+            3 * block + k for block in block_order(self) for k in range(3) if 3 * block + k not in aside
+        ]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
         self.border_dofs = len(border_dofs)
@@ -281,26 +368,6 @@ class Model:
         self.equation[self.free] = np.arange(self.equations)
         self.element_equations = self.equation[self.dofs]
 
-    def _order(self) -> list[int]:
-        """Order of the nodes and exact elements with a small bandwidth; along the beams where none are joined."""
-        if not self.joined:
-            along = []
-            for beam in self.beams.values():
-                own = np.append(self.block[beam.first : beam.last + 1], -1)
-                along.append(np.stack([beam.nodes, own], axis=1).ravel())
-            return [block for block in np.concatenate(along).tolist() if block >= 0]
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-        i, j = self.element_nodes.T
-        internal = np.flatnonzero(self.block >= 0)
-        own = self.block[internal]
-        pairs = np.concatenate([[i, j], [i[internal], own], [own, j[internal]]], axis=1)
-        shape = (self.dof_count // 3,) * 2
-        near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=shape)
-        order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
-        return order
-
     @property
     def unknowns(self) -> int:
         """Number of unknowns with every contact closed."""
@@ -310,7 +377,8 @@ class Model:
     def bandwidth(self) -> int:
         """Largest distance of two coupled banded equations."""
         widest = 0
-        for equations in (self.equation[group.dofs] for group in self.groups):
+        springs = self.springs.dofs if self.springs else []
+        for equations in (self.equation[dofs] for dofs in (*(group.dofs for group in self.groups), *springs)):
             rows = np.where(equations < self.banded, equations, -1)
             least = np.where(rows < 0, self.banded, rows).min(axis=0)
             widest = max(widest, int((rows.max(axis=0) - least).max(initial=0)))
@@ -359,25 +427,6 @@ class Model:
         return [
             Properties(*row) for row in zip(*(column.tolist() for column in self.properties), strict=True)
         ]
-
-
-def _refuse(structure: Structure) -> None:
-    """Raise ValueError where a beam has what its elements cannot state."""
-    laden = {load.beam for load in structure.line_loads}
-    for beam in structure.beams:
-        if ELEMENTS[beam.element].varies:
-            continue
-        for field, there in (
-            ("turn", beam.turn),
-            ("end_section", beam.end_section),
-            ("load", beam.name in laden),
-        ):
-            if there:
-                able = ", ".join(name for name, kind in ELEMENTS.items() if kind.varies)
-                raise ValueError(
-                    f'Beam({beam.name}).{field}: elements "{beam.element}" are straight and uniform, '
-                    f"without loads along them; use {able}"
-                )
 
 
 def _lengths(beam: Beam, arcs: list[float]) -> list[float]:

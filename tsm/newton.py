@@ -97,6 +97,8 @@ class Newton:
         self.tolerance = settings.tolerance
         scales = scales_of(model, model.coordinates, model.properties, model.sizes)
         self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
+        if model.springs is not None:
+            self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
         self.longest = _LONGEST_WHOLE if model.whole else LONGEST
 
     def apart(self, one: State, other: State) -> float:
@@ -105,7 +107,7 @@ class Newton:
 
     def potential(self, state: State) -> float:
         """Strain energy less the work of the dead loads."""
-        work = state.load_parameter * float(self.model.load @ state.q)
+        work = self.model.loads.dot(state.load_parameter, state.q)
         if self.model.along.loaded:
             work += sum(group.load_work(state) for group in self.model.groups)
         return self.assembler.energy(state) - work
@@ -116,10 +118,12 @@ class Newton:
         held = np.zeros(model.dof_count)
         held[model.fixed] = system.nodal[model.fixed]
         pushed = [force for k, force in system.forces.items() if model.pairs[k].pin is not None]
-        loads = equilibrium.state.load_parameter * model.load
+        loads = model.loads.at(equilibrium.state.load_parameter)
         total = (held + loads).reshape(-1, 3)[:, :2].sum(axis=0) + np.sum(pushed, axis=0, initial=0.0)
         along = model.along.total(equilibrium.state.load_parameter)
         total = total + along
+        if model.springs is not None:
+            total = total + model.springs.pull(equilibrium.state.q)
         largest = max((float(np.hypot(*force)) for force in pushed), default=0.0) + float(np.abs(loads).max())
         largest += float(np.abs(along).max())
         noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
@@ -239,10 +243,11 @@ class Newton:
 
     def prescribed(self, state: State, t: float) -> State:
         """State at a load parameter, its supports where they are prescribed."""
-        if not self.model.fixed_values.any():
+        if not self.model.moves:
             return replace(state, load_parameter=t)
         q = state.q.copy()
-        q[self.model.fixed] = t * self.model.fixed_values
+        q[self.model.fixed] = self.model.motions.at(t)
+        self._share(q)
         return replace(state, load_parameter=t, q=q)
 
     def update(
@@ -276,16 +281,17 @@ class Newton:
         dq, dz = step[: model.equations], step[model.equations :]
         size = float(largest(step, self.per_step))
         factor = part * (self.longest / size if size > self.longest else 1.0)
-        along = 0.0 if t is None else t - state.load_parameter
-        if t is not None and along:
-            state = self.prescribed(state, t)
+        begin, end = state.load_parameter, state.load_parameter if t is None else t
+        if end != begin:
+            state = self.prescribed(state, end)
         q = state.q.copy()
         q[model.free] += factor * dq
+        self._share(q)
         if not np.isfinite(size):
             return replace(state, q=q)
         dofs = np.zeros(model.dof_count)
-        dofs[model.free], dofs[model.fixed] = dq, along * model.fixed_values
-        change = Change(dofs, dz, float(residual), factor, along)
+        dofs[model.free], dofs[model.fixed] = dq, model.motions.change(begin, end)
+        change = Change(dofs, dz, float(residual), factor, end - begin)
         moved = State(
             load_parameter=state.load_parameter,
             q=q,
@@ -303,6 +309,11 @@ class Newton:
             for k, touch in enumerate(state.touches)
         )
         return handed_over(model, moved, touches)
+
+    def _share(self, q: Array) -> None:
+        """Give the ends behind hinges the displacements of their joints."""
+        if self.model.joints:
+            q[self.model.slaves] = q[self.model.masters]
 
     def _moved(self, k: int, state: State, touch: Touch, dz: list[float]) -> Touch:
         pair = self.model.pairs[k]

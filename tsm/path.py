@@ -20,6 +20,7 @@ from tsm.elements.properties import Array
 from tsm.newton import Equilibrium, Newton
 from tsm.stability import index
 from tsm.state import State
+from tsm.system import Drive
 
 FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
@@ -42,7 +43,7 @@ class PathTangent:
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.state, self.system = newton, equilibrium.state, equilibrium.system
-        self._known: dict[tuple[tuple[float, float], ...], Array | None] = {}
+        self._known: dict[Drive, Array | None] = {}
 
     @cached_property
     def index(self) -> int:
@@ -59,13 +60,13 @@ class PathTangent:
             Derivatives in the load parameter; None where the tangent is singular.
         """
         assembler = self.newton.assembler
-        velocities = assembler.velocities(begin, end)
-        if velocities not in self._known:
-            solved = assembler.solve(self.system, -assembler.rate(self.state, velocities))
+        drive = assembler.drive(begin, end)
+        if drive not in self._known:
+            solved = assembler.solve(self.system, -assembler.rate(self.state, drive))
             rates = None if solved is None else solved[:, 1]
             finite = rates is not None and bool(np.isfinite(rates).all())
-            self._known[velocities] = rates if finite else None
-        return self._known[velocities]
+            self._known[drive] = rates if finite else None
+        return self._known[drive]
 
     def speed(self) -> float:
         """Largest rate of a displacement or rotation in largest Newton steps per whole load; infinite at a limit point."""

@@ -45,7 +45,8 @@ def arrays(result: Result) -> dict[str, Array]:
     """Return the histories by name, each with the s load parameters first: what ``numpy.savez`` and data frames take.
 
     ``load_parameter``, ``newton_iterations``, ``{node->beam}.force``, ``.arc_position``, ``.gap``, ``{beam}.tip`` (s, 2),
-    ``{beam}.start.support_force`` (s, 2) and ``{beam}.start.support_moment`` for each supported end.
+    ``{beam}.start.support_force`` (s, 2) and ``{beam}.start.support_moment`` for each supported end, ``{beam}.start.spring_force`` (s, 2)
+    and ``{beam}.start.spring_moment`` for each end with springs.
     """
     named = {"load_parameter": result.load_parameter, "newton_iterations": result.newton_iterations}
     for pair, contact in result.contacts.items():
@@ -60,6 +61,9 @@ def arrays(result: Result) -> dict[str, Array]:
     for node, support in result.supports.items():
         named[f"{node}.support_force"] = support.force
         named[f"{node}.support_moment"] = support.moment
+    for end, spring in result.springs.items():
+        named[f"{end}.spring_force"] = spring.force
+        named[f"{end}.spring_moment"] = spring.moment
     return named
 
 
@@ -96,7 +100,7 @@ def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:
                 *result.shape(beam.name, k)[:, :2].T, ".", color=f"C{number}", alpha=faint, markersize=4
             )
     for pin in structure.pins:
-        axes.plot(*np.array(pin.path).T, color="0.5", linewidth=0.8, linestyle=":")
+        axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":")
         places = np.array([pin.position(float(result.load_parameter[k])) for k in ks]).reshape(-1, 2)
         axes.plot(*places.T, "*", color="black", markersize=8, label=pin.name)
     axes.set_aspect("equal", adjustable="datalim")

@@ -98,6 +98,8 @@ class Result:
         By pair name, ``node->beam``.
     supports : dict of SupportHistory
         By supported end, ``beam.start``.
+    springs : dict of SupportHistory
+        Force and moment of the springs to the ground on the structure, by beam's end, ``beam.end``.
     tips : dict of ndarray, shape (s, 2)
         Position of the beam's end, by beam.
     newton_iterations : ndarray of int, shape (s,)
@@ -126,6 +128,7 @@ class Result:
     load_parameter: Array
     contacts: dict[str, ContactHistory]
     supports: dict[str, SupportHistory]
+    springs: dict[str, SupportHistory]
     tips: dict[str, Array]
     newton_iterations: Array
     cutbacks: int
@@ -245,6 +248,7 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         load_parameter=np.array([e.state.load_parameter for e in equilibria]),
         contacts={pair.pair.name: _contact(model, requested, k) for k, pair in enumerate(model.pairs)},
         supports=_supports(model, equilibria),
+        springs=_springs(model, equilibria),
         tips={
             name: np.array([_position(model, e, place.nodes[-1]) for e in equilibria]).reshape(-1, 2)
             for name, place in model.beams.items()
@@ -302,6 +306,17 @@ def _contact_at(model: Model, equilibrium: Equilibrium, k: int) -> tuple[float, 
     seen = pair.group.project(pair, state)
     over = state.armed[k] and seen.overshoot <= 0
     return 0.0, np.nan, seen.gap if over else np.nan
+
+
+def _springs(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:
+    """Forces of the springs to the ground, ``-k u``."""
+    histories = {}
+    for spring in model.structure.springs:
+        name = f"{spring.beam}.{spring.end}"
+        node, stiffness = 3 * model.end_node(name), np.array([spring.x, spring.y, spring.rotation])
+        rows = np.array([-stiffness * e.state.q[node : node + 3] for e in equilibria]).reshape(-1, 3)
+        histories[name] = SupportHistory(force=rows[:, :2], moment=rows[:, 2])
+    return histories
 
 
 def _supports(model: Model, equilibria: tuple[Equilibrium, ...]) -> dict[str, SupportHistory]:

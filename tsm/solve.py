@@ -40,16 +40,17 @@ def march(structure: Structure, load_parameters: Array, settings: Settings | Non
     structure : Structure
         What to solve.
     load_parameters : array_like
-        Increasing values in (0, 1].
+        Increasing values in (0, 1]; with stages, up to their number.
     settings : Settings, optional
         Numerical settings.
 
     Raises
     ------
     ValueError
-        If the load parameters are not increasing in (0, 1], or a node starts behind the surface it touches.
+        If the load parameters do not increase in this range, or a node starts behind the surface it touches.
     """
-    yield from Stepper(Model(structure), settings or Settings()).march(checked(load_parameters))
+    targets = checked(load_parameters, structure.stages)
+    yield from Stepper(Model(structure), settings or Settings()).march(targets)
 
 
 def solve(
@@ -97,7 +98,7 @@ def solve(
     >>> f"{result.contacts['pin->cantilever'].force[-1]:.6f} N"
     '0.002288 N'
     """
-    targets = checked(load_parameters)
+    targets = checked(load_parameters, structure.stages)
     check_memory(structure, len(targets))
     begin = time.perf_counter()
     model = Model(structure)
@@ -115,10 +116,10 @@ def solve(
     return result
 
 
-def checked(load_parameters: Array) -> Array:
-    """Load parameters as an array, if they increase within (0, 1]."""
+def checked(load_parameters: Array, stages: int) -> Array:
+    """Load parameters as an array, if they increase within (0, number of stages]."""
     targets = np.asarray(load_parameters, dtype=float)
     ok = targets.ndim == 1 and targets.size > 0 and bool(np.isfinite(targets).all())
-    if not (ok and targets[0] > 0 and targets[-1] <= 1 and bool((np.diff(targets) > 0).all())):
-        raise ValueError(f"load_parameters = {load_parameters!r}: must increase within (0, 1]")
+    if not (ok and targets[0] > 0 and targets[-1] <= stages and bool((np.diff(targets) > 0).all())):
+        raise ValueError(f"load_parameters = {load_parameters!r}: must increase within (0, {stages}]")
     return targets

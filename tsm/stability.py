@@ -27,6 +27,8 @@ from tsm.system import Assembler, Linearisation
 
 _IDLE = 1e-9
 """Largest force of a closed contact, over ``EI/L^2``, that counts as zero."""
+_LOOSE = 100.0
+"""Largest singular value of the tangent of a mechanism, in round-offs of its largest entry."""
 _TURNS = 4
 """Number of iterations for the null vectors."""
 UNDEFINED = -1
@@ -163,6 +165,16 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
     return Mode(x=x / largest * columns, softness=abs(float(soft)), driven=driven)
 
 
+def loose(assembler: Assembler, state: State, system: Linearisation) -> bool:
+    """Whether the structure can move without strain: the tangent has an eigenvalue that is zero but for round-off."""
+    soft = mode(assembler, state, system)
+    if soft is None:
+        return True
+    plain = assembler.whole(system.tangent)
+    plain = plain.multiply(1 / assembler.model.row_units[:, None]).multiply(assembler.model.units)
+    return soft.softness <= _LOOSE * float(np.finfo(float).eps) * float(abs(plain).max())
+
+
 def _bordered(plain: Any, column: Array, row: Array) -> Any:
     from scipy.sparse import block_array, coo_array
 
@@ -225,13 +237,13 @@ def _with_variation(
         values = values - tangent.groups[group.number].tangent
         right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
     flat = values.ravel()
-    band = np.bincount(assembler.scatter[before:], flat, assembler.band_size + 1)[:-1].reshape(
-        model.banded, -1
-    )
+    there = slice(before, before + len(flat) if mixed else None)
+    flat = flat if mixed else np.append(flat, assembler.spring_values)
+    band = np.bincount(assembler.scatter[there], flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
     if mixed:
         band = band + system.tangent.band
     if aside:
-        added = np.bincount(assembler.scatter_right[before:], flat, assembler.size + 1)[:-1]
+        added = np.bincount(assembler.scatter_right[there], flat, assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)
     spare = border
     for part in second.bordered:

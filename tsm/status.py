@@ -13,6 +13,7 @@ class Status(Enum):
     ITERATION_LIMIT = "Newton's iteration did not converge within its limit"
     NOT_FINITE = "a residual or an update was not finite"
     SINGULAR_TANGENT = "the tangent is singular"
+    MECHANISM = "the structure is a mechanism: its hinges let it move without strain"
     CUTBACK_FLOOR = "the load step was cut back to its floor"
     STEP_LIMIT = (
         "the load steps stayed so short that the next load parameter was not reached within their limit"

@@ -82,8 +82,12 @@ class StepLog:
         n = max(n for n, event in enumerate(self.events) if event.kind is EventKind.SLIP_OFF)
         self.events[n] = replace(self.events[n], released=released)
 
-    def hand_on(self, equilibrium: Equilibrium, requested: bool, status: Status, index: int) -> Step:
-        """Return the step that ends here, and start anew."""
+    def hand_on(
+        self, equilibrium: Equilibrium, requested: bool, status: Status, index: int, stage: int
+    ) -> Step:
+        """Return the step of a stage that ends here, and start anew."""
+        if stage > 1:
+            self.events = [replace(event, stage=stage) for event in self.events]
         step = Step(
             equilibrium=equilibrium,
             requested=requested,

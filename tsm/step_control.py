@@ -26,11 +26,15 @@ _NAMED = {
 
 
 def ends(load_parameters: list[float], turns: tuple[float, ...], begin: float) -> list[float]:
-    """Load parameters at which a step must end: the prescribed ones, and the turns of pin paths after `begin` before the last of them."""
+    """Load parameters at which a step must end: the prescribed ones, and the turns of pin paths after `begin` before the last of them.
+
+    A turn near a prescribed one is left out, unless a stage begins there.
+    """
     ahead = turns[bisect_right(turns, begin + NEAR) : bisect_left(turns, load_parameters[-1])]
     places = [bisect_left(load_parameters, turn - NEAR) for turn in ahead]
     apart = [t for t, n in zip(ahead, places, strict=True) if load_parameters[n] > t + NEAR]
-    return sorted([*load_parameters, *apart])
+    begins = [t for t in ahead if t == round(t) and t not in load_parameters]
+    return sorted({*load_parameters, *apart, *begins})
 
 
 def allowed(unexplained: float) -> float:

@@ -7,6 +7,7 @@ goes on from there.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,12 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from tsm.contact_set import changed, closed_at, crowded, forbidden, initial_state, rearm
-from tsm.critical import (
-    CriticalKind,
-    critical_point,
-    locate_bifurcation,
-    mode_shape,
-)
+from tsm.critical import CriticalKind, critical_point, locate_bifurcation
 from tsm.crossing import crossing
 from tsm.elements.properties import Array
 from tsm.energy import spent
@@ -42,17 +38,19 @@ from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
 from tsm.settings import Settings
+from tsm.stability import loose
+from tsm.stages import stage_of
 from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step, StepLog
 from tsm.step_control import NEAR, StepControl, allowed, ends
-from tsm.structure import Point
+from tsm.system import Drive
 from tsm.track import FAR, Track
 
 _STRAIGHT = 0.02
 """Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
-_AHEAD, _PUSH = 1e-4, 0.006
-"""Start of a fall at a critical point: load parameter beyond the point, and displacement along its mode over the longest beam."""
+_AHEAD = 1e-4
+"""Load parameter beyond a critical point at which a fall starts."""
 _PROBE = 1e-3
 """Part of a step after which a margin that is zero at its start shows whether its event is there."""
 _COINCIDENT = 1e-6
@@ -85,6 +83,8 @@ class Stepper:
         self.settings = settings
         self.newton = Newton(model, settings)
         start = self.newton.solve(initial_state(model))
+        if model.joints and loose(self.newton.assembler, start.state, start.system):
+            start = replace(start, status=Status.MECHANISM)
         self.track, self.log = Track(self.newton, start), StepLog()
         if model.rubbed:
             self.log.spent = np.zeros(1 + len(model.pairs))
@@ -113,13 +113,13 @@ class Stepper:
         self.control.step = step
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
-        rates = slip_rates(self.newton, equilibrium, self._velocities(equilibrium.state.load_parameter))
+        rates = slip_rates(self.newton, equilibrium, self._drive(equilibrium.state.load_parameter))
         return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise), rates)
 
-    def _velocities(self, t: float) -> tuple[Point, ...]:
-        """Mean velocities of the pins on the way to t; at the last equilibrium, on the way ahead."""
+    def _drive(self, t: float) -> Drive:
+        """What changes on the way to t; at the last equilibrium, on the way ahead."""
         begin = self.accepted.state.load_parameter
-        return self.newton.assembler.velocities(*((begin, t) if t > begin else (t, max(t, self.target))))
+        return self.newton.assembler.drive(*((begin, t) if t > begin else (t, max(t, self.target))))
 
     def march(self, load_parameters: Array) -> Iterator[Step]:
         """Yield accepted steps up to the last load parameter or the first failure."""
@@ -157,14 +157,22 @@ class Stepper:
                             return
 
     def _turn_corner(self) -> Status:
-        """Let contacts with friction go on as the pins do, at the start and where a path has a corner."""
+        """Go on as the load does, at the start, where a path has a corner and where a stage begins.
+
+        Contacts with friction may slip or stick from there. A stage begins just after the load parameter at which the last one ends, so
+        that all rates are its own. The path has a kink there, and no state before it serves for an extrapolation.
+        """
         t = self.accepted.state.load_parameter
-        if not self.model.rubbed or t == self.turned:
+        if t == self.turned or not (self.model.rubbed or self.model.stages > 1):
             return Status.CONVERGED
         if t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns):
             return Status.CONVERGED
-        self.turned = t
-        gripped = self._gripped(self.accepted)
+        here = self.accepted
+        if 0 < t < self.model.stages and t == round(t):
+            state = self.newton.prescribed(here.state, math.nextafter(t, math.inf))
+            here = replace(here, state=state, system=self.newton.assembler.linearise(state))
+        self.turned = here.state.load_parameter
+        gripped = self._gripped(here) if self.model.rubbed else here
         if isinstance(gripped, Status):
             return gripped
         self.track.history = []
@@ -175,7 +183,7 @@ class Stepper:
     def _gripped(self, equilibrium: Equilibrium) -> Equilibrium | Status:
         """Equilibrium whose contacts with friction slip or stick from here; a change is an event."""
         before = dict(grips(equilibrium.state))
-        state = regripped(self.newton, equilibrium.state, self._velocities(equilibrium.state.load_parameter))
+        state = regripped(self.newton, equilibrium.state, self._drive(equilibrium.state.load_parameter))
         if isinstance(state, Status):
             return state
         if state.touches == equilibrium.state.touches:
@@ -191,7 +199,8 @@ class Stepper:
         return gripped
 
     def _record(self, requested: bool, status: Status) -> Step:
-        return self.log.hand_on(self.accepted, requested, status, self.track.tangent.index)
+        stage = 1 + stage_of(self.target, self.model.stages)
+        return self.log.hand_on(self.accepted, requested, status, self.track.tangent.index, stage)
 
     def _attempt(self, goal: float) -> Status:
         """Go to a load parameter or to the first event before it, past a corner where one is."""
@@ -230,8 +239,8 @@ class Stepper:
                 return self.control.refuse()
             return self._meet_bifurcation(reached, tangent)
         if self.model.rubbed:
-            velocities = self._velocities(reached.state.load_parameter)
-            more = spent(self.newton, self.track.history, (self.accepted, reached), velocities)
+            drive = self._drive(reached.state.load_parameter)
+            more = spent(self.newton, self.track.history, (self.accepted, reached), drive)
             part = 1 / 2 if more is None else self._dips(more.between, reached)
             if more is None or part is not None:
                 return self.control.refuse(part or 1 / 2)
@@ -270,25 +279,14 @@ class Stepper:
 
     def _turn(self, critical: Equilibrium) -> Status:
         """Let the structure fall from a critical point, pushed along its mode in both directions; accept the equilibrium of less energy."""
-        t, model = critical.state.load_parameter, self.model
-        ahead = t + min(_AHEAD, (self.target - t) / 2)
-        mode = mode_shape(self.newton, critical)
-        if mode is None:
-            return Status.FALLING
-        push = mode[0] * (_PUSH * model.length)
-        held = self.newton.prescribed(critical.state, ahead)
+        t = critical.state.load_parameter
         fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
-        rests = [
-            (self.newton.potential(rest.state), rest)
-            for rest in fall.rests_beside(held, push, critical.system)
-        ]
+        found = fall.beside(critical, t + min(_AHEAD, (self.target - t) / 2))
         self.log.iterations += fall.iterations
-        if not rests:
-            return Status.FALLING
-        if any(grips(rest.state) for _, rest in rests):
-            return Status.REST_UNKNOWN
-        least, rest = min(rests, key=lambda pair: pair[0])
-        self.log.events[-1] = replace(self.log.events[-1], released=self.newton.potential(held) - least)
+        if isinstance(found, Status):
+            return found
+        rest, released = found
+        self.log.events[-1] = replace(self.log.events[-1], released=released)
         self.track.history = []
         self._accept(rest)
         self.control.step = 1.0

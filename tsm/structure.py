@@ -5,18 +5,15 @@ Everything here is immutable, holds plain numbers and checks itself; nothing is 
 
 from __future__ import annotations
 
-import math
-from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fractions import Fraction
-from functools import cached_property
-from itertools import accumulate, pairwise
 from typing import Literal
 
-from tsm.beam import LARGEST, MOST, Beam, LineLoad, Point, Section
+from tsm.beam import LARGEST, MOST, MOST_STAGES, Beam, LineLoad, Point, Section
 from tsm.beam import check as _check
 from tsm.beam import finite as _finite
+from tsm.pin import Pin
+from tsm.springs import Hinge, Spring
 
 End = Literal["start", "end"]
 Side = Literal["left", "right"]
@@ -26,23 +23,17 @@ __all__ = [
     "Beam",
     "ContactPair",
     "End",
+    "Hinge",
     "LineLoad",
     "Load",
     "Pin",
     "Point",
     "Section",
     "Side",
+    "Spring",
     "Structure",
     "Support",
 ]
-
-
-def _between(a: Point, b: Point, part: float) -> Point:
-    return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
-
-
-def _direction(a: Point, b: Point) -> float:
-    return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
 MOST_FRICTION = 100.0
@@ -51,7 +42,7 @@ MOST_FRICTION = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class Support:
-    """Prescribed displacement of a beam end at load parameter 1; ``None`` leaves the component free.
+    """Prescribed displacement of a beam end; ``None`` leaves the component free.
 
     Parameters
     ----------
@@ -60,9 +51,11 @@ class Support:
     end : {"start", "end"}
         Which end.
     ux, uy : float or None
-        Prescribed displacement [length].
+        Prescribed displacement at load parameter 1 [length].
     rotation : float or None
-        Prescribed rotation, anticlockwise [rad].
+        Prescribed rotation at load parameter 1, anticlockwise [rad].
+    onward : sequence of tuple of float
+        Displacement x, y and rotation by which the end moves on in each of the stages after the first one; zero where free.
     """
 
     beam: str
@@ -70,9 +63,15 @@ class Support:
     ux: float | None = 0.0
     uy: float | None = 0.0
     rotation: float | None = 0.0
+    onward: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
         owner = f"Support({self.beam}.{self.end})"
+        free = [value is None for value in (self.ux, self.uy, self.rotation)]
+        for motion in self.onward:
+            _check(_finite(*motion), owner, "onward", motion, f"must be finite, of at most {LARGEST:g}")
+            still = not any(value for value, loose in zip(motion, free, strict=True) if loose)
+            _check(still, owner, "onward", motion, "must be zero where the component is free")
         _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
         for field in ("ux", "uy", "rotation"):
             value = getattr(self, field)
@@ -87,7 +86,7 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
-    """Dead force and moment on a node of a beam at load parameter 1; both keep their direction.
+    """Dead force and moment on a node of a beam, applied in one stage; both keep their direction and stay after the stage.
 
     Parameters
     ----------
@@ -101,6 +100,8 @@ class Load:
         Force (x, y).
     moment : float
         Moment, anticlockwise.
+    stage : int
+        Number of the stage, from 0, in which the load grows with the load parameter.
     """
 
     beam: str
@@ -108,6 +109,7 @@ class Load:
     arc: float | None = None
     force: Point = (0.0, 0.0)
     moment: float = 0.0
+    stage: int = 0
 
     def __post_init__(self) -> None:
         owner = f"Load({self.beam}.{self.arc if self.end is None else self.end})"
@@ -123,102 +125,13 @@ class Load:
             f"must be two finite numbers, of at most {LARGEST:g}",
         )
         _check(_finite(self.moment), owner, "moment", self.moment, f"must be finite, of at most {LARGEST:g}")
-
-
-TURN = 0.5
-"""Angle in radians that the path of a pin may turn by within a load step."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Pin:
-    """A control node: a point that follows a prescribed path and does not turn.
-
-    Parameters
-    ----------
-    name : str
-        Unique name.
-    path : sequence of tuple of float
-        Corners of a polyline [length], traversed at constant speed while the load parameter goes from 0 to 1.
-    """
-
-    name: str
-    path: tuple[Point, ...]
-
-    def __post_init__(self) -> None:
-        owner = f"Pin({self.name})"
-        _check(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
         _check(
-            all(len(point) == 2 and _finite(*point) for point in self.path),
-            owner, "path", self.path, f"must hold pairs of finite numbers, of at most {LARGEST:g}",
-        )  # fmt: skip
-        _check(
-            all(a != b for a, b in zip(self.path, self.path[1:], strict=False)),
-            owner, "path", self.path, "must not repeat a point at once",
-        )  # fmt: skip
-
-    @cached_property
-    def _reached(self) -> list[float]:
-        """Distance along the path at every corner, each rounded once."""
-        legs = [math.dist(a, b) for a, b in pairwise(self.path)]
-        if not math.isfinite(sum(legs)):
-            return list(accumulate(legs, initial=0.0))
-        return [float(reached) for reached in accumulate(map(Fraction, legs), initial=Fraction(0))]
-
-    @property
-    def length(self) -> float:
-        """Length of the path."""
-        return self._reached[-1]
-
-    def _leg(self, load_parameter: float) -> int:
-        """Number of the leg at a load parameter; at a corner, the leg before it."""
-        at = bisect_left(self._reached, load_parameter * self.length)
-        return min(max(at, 1), len(self.path) - 1) - 1
-
-    def velocity(self, begin: float, end: float) -> Point:
-        """Mean derivative of the position between two load parameters; at one of them the derivative, at a corner of the leg before.
-
-        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
-        (1.0, 1.0)
-        """
-        k = self._leg(end)
-        if begin != end and self._reached[k] > min(begin, end) * self.length:
-            (x0, y0), (x1, y1) = self.position(begin), self.position(end)
-            return ((x1 - x0) / (end - begin), (y1 - y0) / (end - begin))
-        a, b = self.path[k : k + 2]
-        speed = self.length / math.dist(a, b)
-        return (speed * (b[0] - a[0]), speed * (b[1] - a[1]))
-
-    @property
-    def corners(self) -> tuple[float, ...]:
-        """Load parameters of the path's inner points."""
-        return tuple(done / self.length for done in self._reached[1:-1])
-
-    @property
-    def turns(self) -> tuple[float, ...]:
-        """Load parameters of the corners at which the path has turned by `TURN` since the last of them.
-
-        >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
-        (0.5,)
-        """
-        found, turned = [], 0.0
-        legs = pairwise(self.path)
-        for done, ((a, b), (_, c)) in zip(self._reached[1:], pairwise(legs), strict=False):
-            turned += abs(math.remainder(_direction(b, c) - _direction(a, b), math.tau))
-            if turned >= TURN:
-                found.append(done / self.length)
-                turned = 0.0
-        return tuple(found)
-
-    def position(self, load_parameter: float) -> Point:
-        """Position at a load parameter in [0, 1].
-
-        >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
-        (2.0, 1.0)
-        """
-        k = self._leg(load_parameter)
-        a, b = self.path[k : k + 2]
-        left = load_parameter * self.length - self._reached[k]
-        return _between(a, b, left / math.dist(a, b))
+            0 <= self.stage <= MOST_STAGES,
+            owner,
+            "stage",
+            self.stage,
+            f"must lie between 0 and {MOST_STAGES}",
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,7 +192,7 @@ class ContactPair:
 class Structure:
     """Beams with their supports and loads, the pins that push them and the contacts that may close.
 
-    Beams whose ends have the same coordinates are rigidly joined there.
+    Beams whose ends have the same coordinates are rigidly joined there, unless a hinge is between an end and the joint.
 
     Raises
     ------
@@ -294,6 +207,8 @@ class Structure:
     contacts: tuple[ContactPair, ...] = ()
     loads: tuple[Load, ...] = ()
     line_loads: tuple[LineLoad, ...] = ()
+    hinges: tuple[Hinge, ...] = ()
+    springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
         _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
@@ -303,11 +218,17 @@ class Structure:
         _unique(names, "a beam or pin")
         _unique([pair.name for pair in self.contacts], "a contact")
         _unique([f"{support.beam}.{support.end}" for support in self.supports], "a support")
+        _unique([f"{hinge.beam}.{hinge.end}" for hinge in self.hinges], "a hinge")
+        _unique([f"{spring.beam}.{spring.end}" for spring in self.springs], "a spring")
         beams = {beam.name for beam in self.beams}
         ends = {f"{beam}.{end}" for beam in beams for end in ("start", "end")}
         nodes = {pin.name for pin in self.pins} | ends
         for support in self.supports:
             _check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
+        owners = [("Hinge", hinge.beam) for hinge in self.hinges]
+        owners += [("Spring", spring.beam) for spring in self.springs]
+        for owner, beam in owners:
+            _check(beam in beams, owner, "beam", beam, "names no beam")
         for load in self.loads:
             _check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
             if load.arc is not None:
@@ -321,6 +242,13 @@ class Structure:
             _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
             own = pair.node.rpartition(".")[0] == pair.beam
             _check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
+
+    @property
+    def stages(self) -> int:
+        """Number of stages; the load parameter goes from 0 to this number."""
+        onward = (len(item.onward) for items in (self.pins, self.supports) for item in items)
+        loads = [*(load.stage for load in self.loads), *(load.stage for load in self.line_loads)]
+        return 1 + max([*onward, *loads], default=0)
 
     def beam(self, name: str) -> Beam:
         """Beam of that name."""

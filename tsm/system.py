@@ -23,6 +23,7 @@ from tsm.elements.properties import Array
 from tsm.groups import GroupForces
 from tsm.lapack import lapack
 from tsm.model import Model
+from tsm.stages import stage_of
 from tsm.state import State
 from tsm.structure import Point
 
@@ -82,6 +83,21 @@ class Drag(NamedTuple):
     start: Array
 
 
+class Drive(NamedTuple):
+    """What changes in proportion to the load parameter.
+
+    Attributes
+    ----------
+    velocities : tuple of Point
+        Velocities of the pairs' pins, zero for beam ends.
+    stage : int
+        Number, from 0, of the stage, which has the rates of loads and prescribed displacements.
+    """
+
+    velocities: tuple[Point, ...]
+    stage: int
+
+
 class Assembler:
     """Scatter maps of a model, made once."""
 
@@ -92,12 +108,14 @@ class Assembler:
         self.internal = any(group.internal for group in model.groups)
         self.units = Units(model, self.k) if self.internal else None
         banded, last = model.banded, model.equations
-        maps = [_pairs(model.equation[group.dofs]) for group in model.groups]
+        springs = model.springs.dofs if model.springs else []
+        maps = [_pairs(model.equation[dofs]) for dofs in (*(group.dofs for group in model.groups), *springs)]
         rows, columns = (np.concatenate(part) for part in zip(*maps, strict=True))
         self.band_size = banded * self.ldab
         flat = columns * self.ldab + 2 * self.k + rows - columns
         self.scatter = np.where((rows < banded) & (columns < banded), flat, self.band_size)
         self.dofs = [group.dofs.ravel() for group in model.groups]
+        self.spring_values = model.springs.values if model.springs else np.zeros(0)
         width, height = model.border, last + 1
         self.size = width * height
         if model.border_dofs:
@@ -114,10 +132,12 @@ class Assembler:
         nodal = self._gather([forces.nodal for forces in groups])
         for dof, reaction in contacts.pushed:
             nodal[dof : dof + 2] += reaction
+        if model.springs is not None:
+            nodal = nodal + model.springs.forces(state.q)
         if drag is not None:
             nodal = nodal + drag.per_way * (state.q - drag.start)
         if len(model.structure.loads):
-            nodal = nodal - state.load_parameter * model.load
+            nodal = nodal - model.loads.at(state.load_parameter)
         return Linearisation(
             nodal=nodal,
             residual=np.concatenate([nodal[model.free], contacts.residual]),
@@ -135,7 +155,7 @@ class Assembler:
         tangents = tuple(
             group.tangent(state, forces, contacts) for group, forces in zip(model.groups, groups, strict=True)
         )
-        values = np.concatenate([tangent.tangent.ravel() for tangent in tangents])
+        values = np.concatenate([*(tangent.tangent.ravel() for tangent in tangents), self.spring_values])
         condensed: Array | float = 0.0
         if self.internal:
             nodal = self._gather([tangent.condensed_residual for tangent in tangents])
@@ -167,17 +187,18 @@ class Assembler:
         ]
         return reduce(np.add, sums)
 
-    def velocities(self, begin: float, end: float | None = None) -> tuple[Point, ...]:
-        """Velocities of the pairs' pins at a load parameter, or their means up to another one."""
+    def drive(self, begin: float, end: float | None = None) -> Drive:
+        """What changes at a load parameter, or between it and another one in the same stage."""
         end, still = begin if end is None else end, (0.0, 0.0)
-        return tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
+        velocities = tuple(pair.pin.velocity(begin, end) if pair.pin else still for pair in self.model.pairs)
+        return Drive(velocities, stage_of(max(begin, end), self.model.stages))
 
-    def rate(self, state: State, velocities: tuple[Point, ...] | None = None) -> Array:
+    def rate(self, state: State, drive: Drive | None = None) -> Array:
         """Derivative of the residual in the load parameter, from loads, prescribed displacements and pin velocities (by default at the state)."""
         model = self.model
-        velocities = self.velocities(state.load_parameter) if velocities is None else velocities
-        nodal, contacts = -model.load, np.zeros(model.contact_unknowns)
-        for pair, touch, velocity in zip(model.pairs, state.touches, velocities, strict=True):
+        drive = self.drive(state.load_parameter) if drive is None else drive
+        nodal, contacts = -model.loads.rows[drive.stage], np.zeros(model.contact_unknowns)
+        for pair, touch, velocity in zip(model.pairs, state.touches, drive.velocities, strict=True):
             if touch is not None and pair.pin is not None:
                 forces, rows = pair.group.pin_rate(pair, touch, state, velocity)
                 nodal[model.dofs[:, touch.element]] += forces
@@ -185,20 +206,23 @@ class Assembler:
                     contacts[pair.slots] = rows
         if model.along.loaded:
             nodal = nodal + self._gather([group.load_rate(state, contacts) for group in model.groups])
-        if model.fixed_values.any():
-            q = self.prescribed_rate()
+        if model.moves:
+            q = self.prescribed_rate(drive.stage)
             nodal = nodal + self._gather([group.rate(state, q, contacts) for group in model.groups])
+            if model.springs is not None:
+                nodal = nodal + model.springs.forces(q)
         return np.concatenate([nodal[model.free], contacts])
 
-    def prescribed_rate(self) -> Array:
-        """Derivative of the prescribed displacements in the load parameter, over all degrees of freedom."""
+    def prescribed_rate(self, stage: int) -> Array:
+        """Derivative of the prescribed displacements in the load parameter during a stage, over all degrees of freedom."""
         q = np.zeros(self.model.dof_count)
-        q[self.model.fixed] = self.model.fixed_values
+        q[self.model.fixed] = self.model.motions.rows[stage]
         return q
 
     def energy(self, state: State) -> float:
-        """Strain energy of a state in equilibrium."""
-        return sum(group.energy(state) for group in self.model.groups)
+        """Strain energy of a state in equilibrium, springs included."""
+        springs = self.model.springs.energy(state.q) if self.model.springs else 0.0
+        return sum(group.energy(state) for group in self.model.groups) + springs
 
     def _cross(self, values: Array, contacts: ContactBlock) -> None:
         """Couple beam ends that touch chord elements, whose equations lie in the border."""

@@ -1,7 +1,6 @@
 """The balance of forces and moments on the whole structure, from a response and its scene alone."""
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +8,6 @@ from numpy.typing import NDArray
 
 from comparisons.response import Array, ContactHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
-from comparisons.scene.rules import Point
 
 BALANCE = 1e-6
 """Largest unbalanced force, relative to the largest force that acts. Newton's tolerances are far below."""
@@ -36,7 +34,7 @@ class Action(NamedTuple):
 def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
     """Yield a sentence for forces that do not balance, and one for moments; contacts between beams are internal forces.
 
-    ``sum R + sum F + t P = 0`` and ``sum (M + x_R x R) + sum x_F x F + t (m + x_P x P) = 0`` with the supports' R and M,
+    ``sum R + sum F + sum P = 0`` and ``sum (M + x_R x R) + sum x_F x F + sum (m + x_P x P) = 0`` with the supports' and springs' R and M,
     the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, the force that balances all other forces
     is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
     ``-side (R + g) F_t`` of a stated tangential force about the centre of a pin of radius R at the gap g, side = 1 for a pin on the right.
@@ -81,9 +79,9 @@ def _place(response: Response, scene: Scene, node: str) -> Array:
     """Deformed position (s, 2) of a beam's end: prescribed if its support holds it, else as the response states it."""
     beam, end = node.split(".")
     for support in scene.supports_of(beam):
-        ux, uy, _ = support.motion
-        if support.end == end and ux is not None and uy is not None:
-            return np.asarray(np.array(scene.place(node)) + np.outer(response.load_parameter, [ux, uy]))
+        if support.end == end and {"x", "y"}.issubset(support.held):
+            moved = [support.motion_at(t)[:2] for t in response.load_parameter.tolist()]
+            return np.asarray(np.array(scene.place(node)) + np.array(moved, dtype=np.float64).reshape(-1, 2))
     if end == scene.tip(beam):
         return response.tips[beam]
     lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
@@ -93,35 +91,24 @@ def _place(response: Response, scene: Scene, node: str) -> Array:
 def _supports(response: Response, scene: Scene) -> list[Action]:
     return [
         _action(scene, history.force, _place(response, scene, node), history.moment)
-        for node, history in response.supports.items()
+        for node, history in (*response.supports.items(), *response.springs.items())
     ]
 
 
 def _loads(response: Response, scene: Scene) -> list[Action]:
     """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
-    t, actions = response.load_parameter, []
-    for load in scene.loads:
+    times, actions = response.load_parameter.tolist(), []
+    for history in scene.load_histories:
+        load, acting = history.load, np.array([history.at(t) for t in times]).reshape(-1, 3)
         if load.force_per_length is not None:
-            actions.append(
-                _along(response, scene, load.beam, load.span, partial(_even, load.force_per_length))
-            )
+            actions.append(_along(response, scene.beam(load.beam), load.span, acting[:, :2], scene))
             continue
         place = _inside(response, scene, load) if load.at is not None else _place(response, scene, load.node)
-        actions.append(_action(scene, np.outer(t, load.force), place, load.moment * t))
-    for beam in scene.beams:
-        if beam.density is not None and scene.gravity is not None:
-            weight = partial(_weight, beam, scene.gravity)
-            actions.append(_along(response, scene, beam.name, (0.0, 1.0), weight))
+        actions.append(_action(scene, acting[:, :2], place, acting[:, 2]))
+    gravity = np.array([scene.gravity_at(t) for t in times]).reshape(-1, 2)
+    heavy = (beam for beam in scene.beams if beam.density is not None)
+    actions += [_along(response, beam, (0.0, 1.0), gravity, scene, beam.mass_per_length) for beam in heavy]
     return actions
-
-
-def _even(force_per_length: Point, parts: Array) -> Array:
-    return np.broadcast_to(np.array(force_per_length), (len(parts), 2))
-
-
-def _weight(beam: BeamSpec, gravity: Point, parts: Array) -> Array:
-    """Weight per length (m, 2) at parts of the length, at load parameter 1."""
-    return np.outer([beam.mass_per_length(part) for part in parts], gravity)
 
 
 def _inside(response: Response, scene: Scene, load: LoadSpec) -> Array:
@@ -139,18 +126,22 @@ def _axis_at(response: Response, beam: str, arcs: Array) -> Array:
 
 
 def _along(
-    response: Response, scene: Scene, name: str, span: tuple[float, float], density: Callable[[Array], Array]
+    response: Response,
+    beam: BeamSpec,
+    span: tuple[float, float],
+    vector: Array,
+    scene: Scene,
+    factor: Callable[[float], float] = lambda _: 1.0,
 ) -> Action:
-    """Action of a load per length, ``density(parts)`` (m, 2) at parts of the length, by Gauss's rule in `_PANELS` panels."""
-    length, t = scene.beam(name).length, response.load_parameter
+    """Action of a load per length, a vector (s, 2) times a factor at parts of the length, by Gauss's rule in `_PANELS` panels."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     ends = np.linspace(*span, _PANELS + 1)
     parts = (ends[:-1, None] + np.diff(ends)[:, None] * (nodes + 1.0) / 2.0).ravel()
-    weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * length / _PANELS
-    force = density(parts) * weights[:, None]
-    arm = _axis_at(response, name, parts * length) - np.array(scene.beams[0].start)
-    moment = (arm[:, :, 0] * force[:, 1] - arm[:, :, 1] * force[:, 0]).sum(axis=1)
-    return Action(np.outer(t, force.sum(axis=0)), t * moment)
+    weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * beam.length / _PANELS
+    weights = weights * [factor(part) for part in parts]
+    arm = _axis_at(response, beam.name, parts * beam.length) - np.array(scene.beams[0].start)
+    x, y = (arm * weights[:, None]).sum(axis=1).T
+    return Action(vector * weights.sum(), x * vector[:, 1] - y * vector[:, 0])
 
 
 def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:

@@ -62,6 +62,9 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     return replace(
         response,
         tips=_tips(scene, response, lambda beam, k: result.shape(beam, k)[:, :2]),
+        springs={
+            end: SupportHistory(force=item.force, moment=item.moment) for end, item in result.springs.items()
+        },
         contacts=_beam_contacts(response, result),
         events=tuple(_event(event) for event in result.events),
         integration_error=result.integration_error,
@@ -98,6 +101,7 @@ def _event(event: Any) -> ContactEvent:
         arc_position=event.arc_position,
         force=event.force,
         released=event.released,
+        stage=event.stage,
     )
 
 

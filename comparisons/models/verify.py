@@ -116,6 +116,9 @@ def _numbers(response: Response) -> Iterator[tuple[str, Array]]:
     for node, support in response.supports.items():
         yield f"support force of {node}", support.force
         yield f"support moment of {node}", support.moment
+    for end, spring in response.springs.items():
+        yield f"spring force of {end}", spring.force
+        yield f"spring moment of {end}", spring.moment
     for beam, tip in response.tips.items():
         yield f"tip of {beam}", tip
 

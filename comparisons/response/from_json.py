@@ -63,6 +63,10 @@ def restated(data: Any) -> Response:
         pair: _contact(item, f"contacts.{pair}.", steps) for pair, item in _tables(data, "contacts").items()
     }
     supports = {node: _support(node, item, steps) for node, item in _tables(data, "supports").items()}
+    springs = {
+        end: _support(end, item, steps, "springs")
+        for end, item in _tables({"springs": {}, **data}, "springs").items()
+    }
     tips = _table(data, "tips")
     material = _table({"material_force": {}, **data}, "material_force")
     iterations = _given(data, "newton_iterations", (steps,))
@@ -78,6 +82,7 @@ def restated(data: Any) -> Response:
         load_parameter=load_parameter,
         contacts=contacts,
         supports=supports,
+        springs=springs,
         material_force={beam: _numbers(material, beam, (steps,), "material_force.") for beam in material},
         tips={beam: _numbers(tips, beam, (steps, 2), "tips.") for beam in tips},
         newton_iterations=np.zeros(steps, dtype=np.int64) if iterations is None else iterations,
@@ -216,13 +221,13 @@ def _friction(data: Any, prefix: str, steps: int) -> FrictionHistory:
     )
 
 
-def _support(node: str, data: dict[str, Any], steps: int) -> SupportHistory:
+def _support(node: str, data: dict[str, Any], steps: int, table: str = "supports") -> SupportHistory:
     if "." not in node:
         rule = (
             f"must be by the supported end, as {node}.start; versions up to 0.5 wrote the beam: solve again"
         )
-        raise FieldError(f"supports.{node}", MISSING, rule)
-    prefix = f"supports.{node}."
+        raise FieldError(f"{table}.{node}", MISSING, rule)
+    prefix = f"{table}.{node}."
     force, moment = _numbers(data, "force", (steps, 2), prefix), _numbers(data, "moment", (steps,), prefix)
     return SupportHistory(force=force, moment=moment)
 
@@ -240,5 +245,9 @@ def _event(data: Any) -> ContactEvent:
         for key in ("load_parameter", "arc_position", "force", "released")
     }
     return ContactEvent(
-        kind=_text(event, "kind"), pair=_text(event, "pair"), element=_whole(event, "element"), **numbers
+        kind=_text(event, "kind"),
+        pair=_text(event, "pair"),
+        element=_whole(event, "element"),
+        stage=_whole({"stage": 1, **event}, "stage"),
+        **numbers,
     )

@@ -112,6 +112,9 @@ class ContactEvent:
         Contact force before the event.
     released : float
         Potential energy (strain energy less the work of the loads) that is released in the jump after a slip-off.
+    stage : int
+        Number of the stage, from 1. An event at the load parameter at which a stage begins belongs to that stage if it happens because
+        the load goes on.
     """
 
     kind: str
@@ -121,6 +124,7 @@ class ContactEvent:
     arc_position: float
     force: float
     released: float
+    stage: int = 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -209,6 +213,8 @@ class Response:
         Contact events in their order; None for a model that does not locate events.
     supports : dict of SupportHistory
         By supported end, ``beam.start``, in the order of `Scene.all_supports`.
+    springs : dict of SupportHistory
+        Force and moment of the springs to the ground on the structure, by the end that a ``[[spring]]`` names, ``beam.end``.
     tips : dict of ndarray, shape (s, 2)
         Position of the tip of each beam, the end with fewer held components. At equality the tip is the beam's ``end``.
     newton_iterations : ndarray of int, shape (s,)
@@ -269,11 +275,17 @@ class Response:
     certificate: "Certificate | None" = None
     material_force: dict[str, Array] = field(default_factory=dict)
     reported_success: bool = False
+    springs: dict[str, SupportHistory] = field(default_factory=dict)
 
     @property
     def false_success(self) -> bool:
         """Whether the model reported a complete solution that a check or the referee refused: it said success and was wrong."""
         return self.reported_success and not self.completed
+
+    @property
+    def stage(self) -> NDArray[np.int64]:
+        """Number of the stage, from 1, at every load parameter (s,); at a boundary, the stage that ends there."""
+        return np.maximum(np.ceil(self.load_parameter), 1.0).astype(np.int64)
 
     @property
     def iterations(self) -> int:

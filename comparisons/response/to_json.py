@@ -13,6 +13,7 @@ from comparisons.response import (
     ContactHistory,
     FrictionHistory,
     Response,
+    SupportHistory,
 )
 from comparisons.response.axis import sampled_axes
 from comparisons.version import versions
@@ -43,6 +44,7 @@ def as_dict(response: Response) -> dict[str, Any]:
         "outside": response.outside,
         "scene": response.scene,
         "load_parameter": response.load_parameter,
+        "stage": response.stage,
         "contacts": {
             pair: {
                 "force": contact.force,
@@ -54,10 +56,8 @@ def as_dict(response: Response) -> dict[str, Any]:
             }
             for pair, contact in response.contacts.items()
         },
-        "supports": {
-            node: {"moment": support.moment, "force": support.force}
-            for node, support in response.supports.items()
-        },
+        "supports": _holds(response.supports),
+        **({"springs": _holds(response.springs)} if response.springs else {}),
         "material_force": response.material_force,
         "tips": response.tips,
         "axes": {
@@ -79,22 +79,28 @@ def as_dict(response: Response) -> dict[str, Any]:
     }
 
 
+def _holds(holds: dict[str, SupportHistory]) -> dict[str, Any]:
+    return {node: {"moment": hold.moment, "force": hold.force} for node, hold in holds.items()}
+
+
 def summary(response: Response, units: str, more: Sequence[tuple[str, str]] = ()) -> str:
     """Return a few lines for a reader: the status, the last state reached, and the lines `more`."""
     force, length = (unit.strip() for unit in units.split(","))
     rows = [("status", f"{response.status}: {response.message}")]
     if len(response.load_parameter):
-        rows.append(("load parameter", f"{response.load_parameter[-1]:.6g}"))
+        stage = f", stage {response.stage[-1]}" if response.stage[-1] > 1 else ""
+        rows.append(("load parameter", f"{response.load_parameter[-1]:.6g}{stage}"))
         for pair, contact in response.contacts.items():
             rows.append((f"{pair} force", f"{contact.force[-1]:.9g} {force}"))
             if np.isfinite(contact.arc_position[-1]):
                 rows.append((f"{pair} arc position", f"{contact.arc_position[-1]:.9g} {length}"))
             if contact.friction is not None:
                 rows += _friction_rows(pair, contact, contact.friction, (force, length))
-        for node, support in response.supports.items():
-            x, y = support.force[-1]
-            rows.append((f"{node} support force", f"({x:.9g}, {y:.9g}) {force}"))
-            rows.append((f"{node} support moment", f"{support.moment[-1]:.9g} {force} {length}"))
+        for what, holds in (("support", response.supports), ("spring", response.springs)):
+            for node, hold in holds.items():
+                x, y = hold.force[-1]
+                rows.append((f"{node} {what} force", f"({x:.9g}, {y:.9g}) {force}"))
+                rows.append((f"{node} {what} moment", f"{hold.moment[-1]:.9g} {force} {length}"))
         rows += [
             (f"{beam} tip", f"({tip[-1, 0]:.9g}, {tip[-1, 1]:.9g}) {length}")
             for beam, tip in response.tips.items()
@@ -149,13 +155,13 @@ def _event_rows(events: Sequence[ContactEvent], force: str, length: str) -> list
     counts = Counter(event.kind for event in events)
     rows = [("events", ", ".join(f"{kind} {count}" for kind, count in counts.items()))] if counts else []
     for event in events:
+        stage = f" in stage {event.stage}" if event.stage > 1 else ""
         if event.kind in CRITICAL:
             jump = f", {event.released:.6g} {force} {length} released" if event.released else ""
-            rows.append((f"  {event.kind}", f"at {event.load_parameter:.9g}{jump}"))
+            rows.append((f"  {event.kind}", f"at {event.load_parameter:.9g}{stage}{jump}"))
         elif event.kind != "pass-through":
-            text = (
-                f"{event.pair} at {event.load_parameter:.6g}: arc position {event.arc_position:.6g} {length}"
-            )
+            place = f"arc position {event.arc_position:.6g} {length}"
+            text = f"{event.pair} at {event.load_parameter:.6g}{stage}: {place}"
             jump = f", {event.released:.6g} {force} {length} released" if event.released else ""
             rows.append((f"  {event.kind}", f"{text}, {event.force:.6g} {force}{jump}"))
     return rows

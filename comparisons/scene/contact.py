@@ -107,6 +107,11 @@ class PinSpec:
         return tuple(paths)
 
     @cached_property
+    def stage_points(self) -> tuple[tuple[Point, ...], ...]:
+        """The points of the path in every stage, from where the stage begins; one point where the pin rests."""
+        return tuple(path.points[:1] if len(set(path.points)) == 1 else path.points for path in self._paths)
+
+    @cached_property
     def points(self) -> tuple[Point, ...]:
         """The points of the path through all stages."""
         ways = (pair for path in self._paths for pair in pairwise(path.points))

@@ -17,7 +17,7 @@ SPECIAL: Final = {
 }
 """The keys and what each states, in the order in which they are refused."""
 
-BEAMS: Final = frozenset({"turn", "taper", "density", "force_per_length", "at"})
+BEAMS: Final = frozenset(SPECIAL)
 """Keys that the tangent stiffness method states."""
 STRIPS: Final[frozenset[str]] = frozenset()
 """Keys that the solid states."""

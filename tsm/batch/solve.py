@@ -63,7 +63,7 @@ def solve_batch(
     """
     structures = tuple(structures)
     check_alike(structures)
-    targets, settings = checked(load_parameters), settings or Settings()
+    targets, settings = checked(load_parameters, structures[0].stages), settings or Settings()
     begin = time.perf_counter()
     with _named(0):
         model = Model(structures[0])

@@ -46,6 +46,9 @@ def topology(structure: Structure) -> dict[str, Any]:
         ],
         "pins": [pin.name for pin in structure.pins],
         "contacts": [(pair.node, pair.beam) for pair in structure.contacts],
+        "hinges": [(hinge.beam, hinge.end) for hinge in structure.hinges],
+        "springs": [(spring.beam, spring.end) for spring in structure.springs],
+        "stages": structure.stages,
         "loads": [(load.beam, load.end or "inside") for load in structure.loads],
         "line_loads": [load.beam for load in structure.line_loads],
     }
@@ -54,10 +57,15 @@ def topology(structure: Structure) -> dict[str, Any]:
 def covered(structures: Sequence[Structure], model: Model) -> bool:
     """Whether the structures can be solved at once: pins without friction drive them, and every contact has its force as unknown.
 
-    Their beams are straight and uniform.
+    Their beams are straight and uniform, without hinges and springs, and their load has one stage.
     """
     driven = any(
-        structure.loads or structure.line_loads or any(s.ux or s.uy or s.rotation for s in structure.supports)
+        structure.loads
+        or structure.line_loads
+        or structure.hinges
+        or structure.springs
+        or structure.stages > 1
+        or any(s.ux or s.uy or s.rotation for s in structure.supports)
         for structure in structures
     )
     mixed = all(pair.slot >= 0 and not pair.cuts for pair in model.pairs)

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
-    from tsm import Beam, LineLoad, Load, Section, Structure, Support
+    from tsm import Beam, LineLoad, Load, Section, Spring, Structure, Support
     from tsm.elements import ElementType
     from tsm.structure import End
 
@@ -30,7 +30,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     ModelError
         If there is no such element, or the scene uses a key that the beams do not state.
     """
-    from tsm import ContactPair, Pin, Structure
+    from tsm import ContactPair, Hinge, Pin, Structure
     from tsm.elements import ELEMENTS, MIXED
 
     unknown = unstated(scene, "the tangent stiffness method", BEAMS)
@@ -50,7 +50,14 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         supports=tuple(_support(support) for support in scene.all_supports),
         loads=tuple(_loads(scene)),
         line_loads=(*_line_loads(scene), *_weights(scene)),
-        pins=tuple(Pin(name=pin.name, path=pin.points) for pin in scene.pins),
+        hinges=tuple(
+            Hinge(beam=item.beam, end=_end(item.end), stiffness=item.stiffness) for item in scene.hinges
+        ),
+        springs=tuple(_spring(spring) for spring in scene.springs),
+        pins=tuple(
+            Pin(name=pin.name, path=pin.stage_points[0], onward=tuple(p[1:] for p in pin.stage_points[1:]))
+            for pin in scene.pins
+        ),
         contacts=tuple(
             ContactPair(
                 node=contact.node,
@@ -71,7 +78,12 @@ def _support(spec: SupportSpec) -> "Support":
 
     ux, uy, rotation = spec.motion
     return Support(
-        beam=spec.beam, end="start" if spec.end == "start" else "end", ux=ux, uy=uy, rotation=rotation
+        beam=spec.beam,
+        end=_end(spec.end),
+        ux=ux,
+        uy=uy,
+        rotation=rotation,
+        onward=spec.onward,
     )
 
 
@@ -81,7 +93,7 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: "ElementType
 
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
-    own = [load for load in scene.loads if load.beam == spec.name]
+    own = [load for _, load in _staged(scene) if load.beam == spec.name]
     ends = [part for load in own if load.force_per_length is not None for part in load.span]
     places = [load.at for load in own if load.at is not None]
     return Beam(
@@ -104,36 +116,54 @@ def _section(spec: BeamSpec, fraction: float) -> "Section":
     return Section(EA=EA, GA=GA, EI=EI)
 
 
+def _end(end: str | None) -> "End":
+    return "start" if end == "start" else "end"
+
+
+def _spring(spec: SpringSpec) -> "Spring":
+    from tsm import Spring
+
+    x, y = spec.stiffness
+    return Spring(beam=spec.beam, end=_end(spec.end), x=x, y=y, rotation=spec.rotation)
+
+
+def _staged(scene: Scene) -> Iterator[tuple[int, LoadSpec]]:
+    """Yield the number of the stage, from 0, of every load, and the load."""
+    for stage, loads in enumerate((scene.loads, *(stage.load for stage in scene.stages))):
+        yield from ((stage, load) for load in loads)
+
+
 def _loads(scene: Scene) -> Iterator["Load"]:
     """Yield the forces and moments at points."""
     from tsm import Load
 
-    for load in scene.loads:
+    for stage, load in _staged(scene):
+        force, moment = load.force, load.moment
         if load.at is not None:
             arc = load.at * scene.beam(load.beam).length
-            yield Load(beam=load.beam, arc=arc, force=load.force, moment=load.moment)
+            yield Load(beam=load.beam, arc=arc, force=force, moment=moment, stage=stage)
         elif load.end is not None:
-            end: End = "start" if load.end == "start" else "end"
-            yield Load(beam=load.beam, end=end, force=load.force, moment=load.moment)
+            yield Load(beam=load.beam, end=_end(load.end), force=force, moment=moment, stage=stage)
 
 
 def _line_loads(scene: Scene) -> Iterator["LineLoad"]:
     """Yield the forces per length."""
     from tsm import LineLoad
 
-    for load in scene.loads:
+    for stage, load in _staged(scene):
         if load.force_per_length is not None:
             start, end = (part * scene.beam(load.beam).length for part in load.span)
-            yield LineLoad(beam=load.beam, force=(load.force_per_length,), start=start, end=end)
+            force = (load.force_per_length,)
+            yield LineLoad(beam=load.beam, force=force, start=start, end=end, stage=stage)
 
 
 def _weights(scene: Scene) -> Iterator["LineLoad"]:
     """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
     from tsm import LineLoad
 
-    gx, gy = scene.gravity or (0.0, 0.0)
+    gravities = (scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages))
     for beam in scene.beams:
-        if beam.density is None or not (gx or gy):
+        if beam.density is None:
             continue
         start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
         mass = (
@@ -141,4 +171,6 @@ def _weights(scene: Scene) -> Iterator["LineLoad"]:
             if beam.tapers
             else (middle,)
         )
-        yield LineLoad(beam=beam.name, force=tuple((gx * m, gy * m) for m in mass))
+        for stage, (gx, gy) in enumerate(gravities):
+            if gx or gy:
+                yield LineLoad(beam=beam.name, force=tuple((gx * m, gy * m) for m in mass), stage=stage)

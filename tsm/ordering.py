@@ -1,0 +1,46 @@
+"""Order of the unknowns with a small bandwidth."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tsm.elements.properties import Array
+
+if TYPE_CHECKING:
+    from tsm.model import Model
+
+
+def block_order(model: Model) -> list[int]:
+    """Order of the nodes and exact elements with a small bandwidth; along the beams where none are joined."""
+    if not model.joined:
+        along = []
+        for beam in model.beams.values():
+            own = np.append(model.block[beam.first : beam.last + 1], -1)
+            along.append(np.stack([beam.nodes, own], axis=1).ravel())
+        return [block for block in np.concatenate(along).tolist() if block >= 0]
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+    pairs = _pairs_with_hinges(model) if model.joints else _pairs(model)
+    near = coo_array((np.ones(pairs.shape[1]), tuple(pairs)), shape=(model.dof_count // 3,) * 2)
+    order: list[int] = reverse_cuthill_mckee((near + near.T).tocsr(), symmetric_mode=True).tolist()
+    return order
+
+
+def _pairs(model: Model) -> Array:
+    """Pairs of nodes and exact elements that are coupled, shape (2, pairs)."""
+    i, j = model.element_nodes.T
+    internal = np.flatnonzero(model.block >= 0)
+    own = model.block[internal]
+    return np.concatenate([[i, j], [i[internal], own], [own, j[internal]]], axis=1)
+
+
+def _pairs_with_hinges(model: Model) -> Array:
+    """The same where an element couples a joint and the rotation of a node behind a hinge with its other degrees of freedom."""
+    nodes = model.dofs[[0, 2, 3, 5]] // 3
+    blocks = [*nodes, np.where(model.block < 0, nodes[0], model.block)]
+    links = np.array(list(model.joints.items()), dtype=int).T
+    return np.concatenate([*(np.stack(pair) for pair in combinations(blocks, 2)), links], axis=1)
