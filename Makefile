@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 WAITING = $(PYTHON) .ci/waiting.py "installing the libraries of .constraints.txt, which takes minutes" $(VENV)
-PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto -q
+PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto --dist worksteal -q
 
 .PHONY: run test test-all results coverage mutation docs bench fuzz platforms peers lint format setup clean
 

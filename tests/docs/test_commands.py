@@ -29,7 +29,13 @@ COMMANDS = list(dict.fromkeys(LINES))
 
 ELSEWHERE = ("crossval trade", "crossval manual", "crossval extremes", "crossval league")
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
-LONG = ("crossval view", "crossval compare", "crossval reproduce")
+LONG = (
+    "crossval view",
+    "crossval compare",
+    "crossval reproduce",
+    "crossval study",
+    "crossval solve double-beam --model solid",
+)
 """Commands of many seconds, left to the slow tests; the fast tests of the commands run them on smaller scenes."""
 
 SAID = {
@@ -117,6 +123,7 @@ def test_python_snippet(tmp_path):
     assert float(printed[1]) == pytest.approx(2.288274307175e-03, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "runs"), [("stiffness", 14), ("friction", 12)])
 def test_study_snippet(tmp_path, capsys, name, runs):
     page = PAGES[FOLDER / "how-to" / "study.md"]

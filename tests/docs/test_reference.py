@@ -65,7 +65,7 @@ def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
         jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
 
 
-@pytest.mark.parametrize("model", ["tsm", "rod", "solid"])
+@pytest.mark.parametrize("model", ["tsm", pytest.param("rod", marks=pytest.mark.slow), "solid"])
 def test_json_output_with_friction_obeys_its_schema(
     model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

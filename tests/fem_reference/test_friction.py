@@ -332,7 +332,7 @@ def test_strip_with_friction_is_the_rod_at_every_load_parameter(mu):
     assert np.all(result.index == -1)
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.05])
+@pytest.mark.parametrize("radius", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
 def test_friction_on_a_face_has_the_lever_of_half_the_height(radius):
     """The rod with the moment ``T h / 2`` at the contact: forces within 2e-3 in both slips, positions within 3e-4; 1.5e-3 measured."""
     result = rounded(20, radius, mesh=(50, 2))
@@ -394,7 +394,7 @@ def rounded(n, radius, settings=None, mesh=(30, 1), mu=0.3):
     return fr.solve(scene, load_parameters, settings)
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.05])
+@pytest.mark.parametrize("radius", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
 def test_answer_does_not_depend_on_the_load_steps(radius):
     """Force and position within 1e-10; dissipated energy within 1e-4 of 80 load parameters; even with steps of .5 at most."""
     many = rounded(80, radius).contacts[PAIR]

@@ -144,6 +144,7 @@ def solve_each(
     return [tsm.solve(structure, t, settings, throw=False) for structure in structures]
 
 
+@pytest.mark.slow
 def test_any_cantilever_ends_as_it_does_alone() -> None:
     rng = np.random.default_rng(2)
     structures = [pushed(rng) for _ in range(40)]
@@ -162,7 +163,7 @@ def test_any_cantilever_ends_as_it_does_alone() -> None:
     assert batch.cutbacks.any()
 
 
-@pytest.mark.parametrize("element", ["mixed", "mixed-no-bow"])
+@pytest.mark.parametrize("element", ["mixed", pytest.param("mixed-no-bow", marks=pytest.mark.slow)])
 def test_default_tolerance_bounds_the_difference(element: str) -> None:
     rng = np.random.default_rng(5)
     structures = [pushed(rng, element) for _ in range(10)]
@@ -172,6 +173,7 @@ def test_default_tolerance_bounds_the_difference(element: str) -> None:
         assert_same(one, other, settings.tolerance)
 
 
+@pytest.mark.slow
 def test_two_beams_in_contact_with_each_other() -> None:
     rng = np.random.default_rng(3)
     structures = [double(rng) for _ in range(4)]
@@ -183,6 +185,7 @@ def test_two_beams_in_contact_with_each_other() -> None:
     assert all((batch.force[pair.name] > 0).any() for pair in structures[0].contacts)
 
 
+@pytest.mark.slow
 def test_parts_of_a_batch_do_not_know_of_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(7)
     structures = [pushed(rng) for _ in range(9)]

@@ -65,6 +65,7 @@ def test_one_exact_element_is_the_rod_with_friction(face: float, radius: float) 
     assert found == pytest.approx(times, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_pin_on_the_left_is_the_mirror_image() -> None:
     scene = ks(0.3, face=0.01, radius=0.03)
     right, left = (scene.solve(10, left=left).contacts[PAIR] for left in (False, True))
@@ -73,7 +74,9 @@ def test_a_pin_on_the_left_is_the_mirror_image() -> None:
     assert left.arc_position == pytest.approx(right.arc_position, rel=1e-10)
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
+@pytest.mark.parametrize(
+    "friction", [pytest.param(0.1, marks=pytest.mark.slow), 0.3, pytest.param(0.5, marks=pytest.mark.slow)]
+)
 def test_mixed_elements_converge_with_the_fourth_order(friction: float) -> None:
     exact = ks(friction).solve(10).contacts[PAIR].force
     errors = [
@@ -84,7 +87,14 @@ def test_mixed_elements_converge_with_the_fourth_order(friction: float) -> None:
     assert np.diff(np.log2(errors)).max() <= -3.5
 
 
-@pytest.mark.parametrize(("face", "radius"), [(0.0, 0.0), (0.01, 0.0), (0.01, 0.03)])
+@pytest.mark.parametrize(
+    ("face", "radius"),
+    [
+        (0.0, 0.0),
+        pytest.param(0.01, 0.0, marks=pytest.mark.slow),
+        pytest.param(0.01, 0.03, marks=pytest.mark.slow),
+    ],
+)
 def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float) -> None:
     results = [ks(0.3, face=face, radius=radius).solve(steps) for steps in (1, 5, 50)]
     for result in results:
@@ -96,6 +106,7 @@ def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float
         assert [event.load_parameter for event in result.events] == pytest.approx(times, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_slip_that_has_come_and_gone_within_a_step_is_found() -> None:
     """A slip between two sticks, whose margins are positive at the end of the step."""
     scene = drawn(14)
@@ -112,7 +123,7 @@ def test_five_hundred_load_steps_give_the_same_answer() -> None:
     assert [event.kind for event in many.events] == [event.kind for event in one.events]
 
 
-@pytest.mark.parametrize("steps", [1, 40])
+@pytest.mark.parametrize("steps", [pytest.param(1, marks=pytest.mark.slow), 40])
 def test_work_is_stored_or_dissipated(steps: int) -> None:
     for scene in (ks(0.1), ks(0.5), ks(0.3, face=0.01), drawn(13), drawn(4)):
         result = scene.solve(steps)
@@ -129,9 +140,9 @@ def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() 
     ("seed", "stated", "defect"),
     [
         (32, (3976, 1478, 0.32, 0, 0.048), 4.0e-8),
-        (8, (1523, 755, 0.79, 0, 0.022), 1.7e-5),
-        (26, (590, 160, 0.71, 0.027, 0.032), 7.9e-5),
-        (9, (67, 19, 0.78, 0, 0.043), 8.6e-4),
+        pytest.param(8, (1523, 755, 0.79, 0, 0.022), 1.7e-5, marks=pytest.mark.slow),
+        pytest.param(26, (590, 160, 0.71, 0.027, 0.032), 7.9e-5, marks=pytest.mark.slow),
+        pytest.param(9, (67, 19, 0.78, 0, 0.043), 8.6e-4, marks=pytest.mark.slow),
     ],
 )
 def test_a_long_roll_of_a_thick_rod_shows_in_the_work(
@@ -159,6 +170,7 @@ def cycles(count: int) -> Cantilever:
     return Cantilever(section=STRIP, friction=0.3, path=path)
 
 
+@pytest.mark.slow
 def test_a_loop_closes_after_one_cycle() -> None:
     result = cycles(5).solve(59)
     (pin,) = result.model.structure.pins
@@ -194,7 +206,10 @@ def test_no_friction_is_the_frictionless_contact(element: str, elements: int) ->
     assert np.abs(little.contacts[PAIR].force / result.contacts[PAIR].force - 1).max() > 1e-9
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1, 0.2, 0.3])
+@pytest.mark.parametrize(
+    "friction",
+    [0.0, pytest.param(0.1, marks=pytest.mark.slow), 0.2, pytest.param(0.3, marks=pytest.mark.slow)],
+)
 def test_limit_loads_of_three_point_bending(friction: float) -> None:
     """A half of the beam, its middle held, on a support that rises and goes back."""
     limit = frictional_three_point_limit(friction)
@@ -255,6 +270,7 @@ def test_a_wrong_coefficient_is_refused(friction: float) -> None:
         tsm.ContactPair(node="pin", beam="beam", friction=friction)
 
 
+@pytest.mark.slow
 def test_a_batch_with_friction_is_solved_one_by_one() -> None:
     scenes = [ks(0.0).structure("mixed", 8), ks(0.3).structure("mixed", 8)]
     batch = tsm.solve_batch(scenes, np.array([0.5, 1.0]))

@@ -116,7 +116,7 @@ def test_the_primary_branch_is_labelled_unstable() -> None:
     assert 5 * result.critical[1].load_parameter == pytest.approx(4.0, rel=5e-3)
 
 
-@pytest.mark.parametrize("elements", [1, 20])
+@pytest.mark.parametrize("elements", [pytest.param(1, marks=pytest.mark.slow), 20])
 def test_an_imperfect_column_bends_with_any_number_of_load_parameters(elements: int) -> None:
     ends = []
     for count in (1, 2, 5, 8, 12, 40, 200):
@@ -127,7 +127,7 @@ def test_an_imperfect_column_bends_with_any_number_of_load_parameters(elements: 
     assert ends[0][0] > 0.4
 
 
-@pytest.mark.parametrize("elements", [1, 10])
+@pytest.mark.parametrize("elements", [pytest.param(1, marks=pytest.mark.slow), 10])
 def test_a_moved_tip_goes_to_its_own_side(elements: int) -> None:
     """A slender rod pushed in by .5 and moved aside by .02: it buckles to the side that it is moved to."""
     element = "exact" if elements == 1 else "mixed"

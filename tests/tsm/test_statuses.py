@@ -126,7 +126,7 @@ def test_unreachable():
     assert np.degrees(np.arctan2(y, x)) == pytest.approx(99.57, abs=0.05)
 
 
-@pytest.mark.parametrize("element", ["mixed", "exact"])
+@pytest.mark.parametrize("element", ["mixed", pytest.param("exact", marks=pytest.mark.slow)])
 def test_falling(element):
     """A clamp that slides along y and a load along -y: a pin carries both until the beam slips off it, at a third of its way."""
     slider = replace(
@@ -203,7 +203,7 @@ def test_unbalanced():
     assert list(stepper.march(TENTHS))[-1].status is Status.UNBALANCED
 
 
-@pytest.mark.parametrize("element", ["mixed", "exact"])
+@pytest.mark.parametrize("element", [pytest.param("mixed", marks=pytest.mark.slow), "exact"])
 def test_jammed(element):
     """The stick is released at the edge of the cone, where the forces of the slip would push the pin the other way."""
     path = ((0.681, -0.019), (0.291, 0.559), (0.735, 0.173))

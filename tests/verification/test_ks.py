@@ -29,7 +29,8 @@ def errors_of(scene_and_rod, elements):
 
 
 @pytest.mark.parametrize(
-    ("elements", "bound"), [(5, 2.6e-4), (10, 1.8e-5), (20, 1.2e-6), (40, 7e-8), (200, 3e-9)]
+    ("elements", "bound"),
+    [(5, 2.6e-4), (10, 1.8e-5), (20, 1.2e-6), (40, 7e-8), pytest.param(200, 3e-9, marks=pytest.mark.slow)],
 )
 def test_mixed(scene_and_rod, elements, bound, stated):
     """Within these bounds and without a floor."""

@@ -68,7 +68,7 @@ def kept_promises(count, element):
     return kept
 
 
-@pytest.mark.parametrize("element", [None, "mixed"])
+@pytest.mark.parametrize("element", [None, pytest.param("mixed", marks=pytest.mark.slow)])
 def test_the_promise_is_kept(element):
     assert all(kept_promises(5, element))
 
@@ -137,6 +137,7 @@ def test_a_tail_without_load_takes_few_elements():
     assert difference(answer.response, exact, scene, "force") < difference(equal, exact, scene, "force") / 10
 
 
+@pytest.mark.slow
 def test_what_a_scene_requires():
     (beam,) = KS.beams
     stocky = replace(KS, beams=(replace(beam, height=0.2),), load_parameters=2)
@@ -180,6 +181,7 @@ def test_bodies_without_a_load_path_are_left_out():
     assert without_idle(double) == (double, ())
 
 
+@pytest.mark.slow
 def test_the_solids_estimate():
     coarse = solve_to(KS, 1e-3, model="solid")
     fine = solve(replace(KS, load_parameters=10), "solid", Options(mesh=(200, 4)))

@@ -78,6 +78,7 @@ def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(
     assert done(path, CASES).statuses == {"COMPLETED": 6}
 
 
+@pytest.mark.slow
 def test_a_killed_worker_costs_one_retry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     marker = tmp_path / "killed"
     monkeypatch.setenv("CROSSVAL_TEST_MARKER", str(marker))

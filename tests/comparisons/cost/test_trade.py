@@ -87,6 +87,7 @@ def test_the_rod_is_the_reference_and_exact_elements_agree(trade: Trade) -> None
     assert 1e-4 < elastica.errors["path"]["force"] < 2e-3
 
 
+@pytest.mark.slow
 def test_two_beams_have_the_exact_rods_as_reference_and_none_if_these_stop() -> None:
     scene = replace(load_scene("double-beam"), load_parameters=4)
     mixed = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=10))
@@ -166,6 +167,7 @@ def test_order_of_mixed_elements(trade: Trade) -> None:
     assert rows["TSM mixed"]["order_points"] >= 3
 
 
+@pytest.mark.slow
 def test_files_hold_every_setting(trade: Trade, tmp_path: Path) -> None:
     files = write_trade(trade, tmp_path)
     assert all(file.stat().st_size for file in files)

@@ -29,6 +29,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(league_entries, "MODELS", models)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few")
 def test_programs_are_measured_and_a_false_success_is_named(
     tmp_path: Path,
@@ -73,6 +74,7 @@ def test_programs_are_measured_and_a_false_success_is_named(
     assert "said success and was wrong" in (out / "report.html").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few")
 def test_a_second_run_measures_nothing_again(tmp_path: Path) -> None:
     scene = replace(load_scene("ks-cantilever"), load_parameters=2)

@@ -67,7 +67,7 @@ def test_twenty_mixed_elements_are_certified_all_along(name: str, friction: floa
     assert found.certified, found.line()
 
 
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
+@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
 def test_the_rod_of_quadrature_is_certified(name: str) -> None:
     scene = rough(name, 0.3)
     found = all_along(scene, solve(scene, "rod"))
@@ -92,7 +92,7 @@ def test_the_solid_is_certified_all_along(name: str) -> None:
     "name",
     [
         "two-pins",
-        "three-point-bending",
+        pytest.param("three-point-bending", marks=pytest.mark.slow),
         *(pytest.param(name, marks=pytest.mark.slow) for name in ("double-beam", "touch-again")),
     ],
 )
@@ -170,6 +170,7 @@ def test_without_events_the_referee_finds_them_itself() -> None:
     assert all_along(scene, replace(response, events=None)).certified
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "load_parameters"), [("hysteresis", 5), ("three-point-friction", 12)])
 def test_a_load_parameter_at_the_turn_of_a_pin_is_certified(name: str, load_parameters: int) -> None:
     """There an answer states the slip before the turn, and the event behind it; without events its slip turns with no stick in between."""
@@ -181,6 +182,7 @@ def test_a_load_parameter_at_the_turn_of_a_pin_is_certified(name: str, load_para
         assert found.certified, found.line()
 
 
+@pytest.mark.slow
 def test_slips_and_sticks_between_two_load_parameters_are_found() -> None:
     """The sign of a slip that no load parameter shows is the sign of the force at the end of the stick before it."""
     scene = replace(load_scene("hysteresis"), load_parameters=1)
@@ -200,7 +202,7 @@ def test_a_model_without_states_of_friction_is_judged_by_its_forces() -> None:
     assert f"friction of {PAIR} taken from the direction of its force" in found.line()
 
 
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
+@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
 def test_the_dissipation_is_that_of_the_exact_elements(name: str) -> None:
     """Two quadratures of different programs; work less dissipation is the strain energy."""
     scene = rough(name, 0.3)
@@ -212,6 +214,7 @@ def test_the_dissipation_is_that_of_the_exact_elements(name: str) -> None:
     np.testing.assert_allclose(stored + own, response.work, rtol=2e-11)
 
 
+@pytest.mark.slow
 def test_the_exact_rods_of_any_scene_state_their_friction() -> None:
     scene = rough("three-point-bending", 0.2, 6)
     rods, elements = solve_network(scene, "rod"), answer(scene)
@@ -225,6 +228,7 @@ def test_the_exact_rods_of_any_scene_state_their_friction() -> None:
         np.testing.assert_array_equal(mine.slip, other.slip)
 
 
+@pytest.mark.slow
 def test_a_strut_buckles_in_stick_whatever_the_steps() -> None:
     """The strut of the crossed beams sticks on the lower beam; on the straight branch its force would be 5130 N instead of 2905 N."""
     for steps in (6, 12, 24):
@@ -484,7 +488,8 @@ def completed_and_certified(seeds: range) -> int:
     return completed
 
 
-@pytest.mark.parametrize("first", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(20, 220, 20))])
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 220, 20))
 def test_drawn_cantilevers_are_certified(first: int) -> None:
     """Two hundred and twenty scenes, twenty in a test."""
     assert completed_and_certified(range(first, first + 20)) >= 16

@@ -274,9 +274,11 @@ BUILT_IN = (
     two_pins,
     crossed_beams,
     touch_again,
-    hysteresis,
     sleeve,
-    *(pytest.param(state, marks=pytest.mark.slow) for state in (ks_friction, three_point_friction)),
+    *(
+        pytest.param(state, marks=pytest.mark.slow)
+        for state in (hysteresis, ks_friction, three_point_friction)
+    ),
 )
 """Problems of the built-in scenes without a test of their own in `tests/verification`."""
 

@@ -141,6 +141,7 @@ def test_fig8(tmp_path):
     assert runs["ks-tied-tip", "TSM mixed, 20 elements"]["error_path_shape"] < 1e-5
 
 
+@pytest.mark.slow
 def test_fig9(tmp_path, stated):
     """Exact depths of the coupled rods and, for the last, of the elastica (theory sections 7 and 8)."""
     found = run("fig9", tmp_path)

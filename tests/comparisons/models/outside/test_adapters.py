@@ -73,6 +73,7 @@ def certified_error(response: Response) -> float:
 
 
 @needs("opensees")
+@pytest.mark.slow
 def test_opensees_has_its_known_error_under_the_pin() -> None:
     """9.9e-3 at 20 elements and 1,000 steps; the tangential force is 3.8e-3 of the contact force."""
     response = answered("opensees", KS, 20)
@@ -90,6 +91,7 @@ def test_opensees_loses_the_contact_in_long_steps_and_reports_success(tmp_path: 
 
 
 @needs("exudyn")
+@pytest.mark.slow
 def test_exudyn_has_its_known_error_under_the_pin() -> None:
     """1.4e-2 at 10 elements."""
     response = answered("exudyn", KS, 10)
@@ -107,6 +109,7 @@ def test_felupe_under_the_pin_with_twenty_elements() -> None:
 
 
 @needs("calculix")
+@pytest.mark.slow
 def test_calculix_under_a_pin_on_the_face_up_to_a_tenth(tmp_path: Path) -> None:
     pin = FACE.pins[0]
     (x, y), (u, v) = pin.points
@@ -146,6 +149,7 @@ def test_scenes_without_contact(name: str, scene: str) -> None:
 
 
 @needs("exudyn")
+@pytest.mark.slow
 def test_exudyn_is_off_in_the_middle_of_a_path_and_reports_success() -> None:
     """Ten elements: right at the end to 5e-3, and off by more than 5 % of the largest reaction after the strip has buckled, which is why every load parameter is judged."""
     response = answered("exudyn", STATED["tied"], 10)
@@ -163,6 +167,7 @@ def rough(scene: Scene) -> Scene:
 
 
 @needs("opensees")
+@pytest.mark.slow
 def test_opensees_with_friction_has_a_known_error_under_the_pin() -> None:
     """6.1e-3 of the force at the end with 20 elements and 1,000 steps, and 1.3e-3 L of the arc position."""
     response = answered("opensees", load_scene("ks-friction"), 20)

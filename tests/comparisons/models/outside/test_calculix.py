@@ -155,6 +155,7 @@ def test_tip_load(clamp: str, bar: float) -> None:
 
 
 @needs_ccx
+@pytest.mark.slow
 def test_pin_on_the_face_up_to_a_tenth() -> None:
     """5e-5 of the force, whatever the step; 1e-5 with the same contact stiffness."""
     start, end = PROBLEM.pins[0].path

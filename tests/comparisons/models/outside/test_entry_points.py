@@ -80,6 +80,7 @@ def crossval(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_commands_have_it(place: Path) -> None:
     solved = crossval(place, "solve", "ks-cantilever", "--model", "borrowed", "--quiet")
     assert "ks-cantilever, model borrowed" in solved.stdout, solved.stderr
