@@ -12,7 +12,14 @@ from pathlib import Path
 from comparisons.cli import main
 
 ROOT = Path(__file__).parents[2]
-SLOW = ("crossval trade", "crossval compare", "crossval study", "crossval reproduce", "crossval league")
+SLOW = (
+    "crossval trade",
+    "crossval compare",
+    "crossval study",
+    "crossval reproduce",
+    "crossval league",
+    "crossval view",
+)
 """Commands of many seconds, left to the slow tests."""
 
 
