@@ -4,11 +4,17 @@ import math
 from typing import Any
 
 from comparisons.scene import rules
-from comparisons.scene.rules import FieldError, RuleError
-from comparisons.scene.tables import check_keys
+from comparisons.scene.rules import FieldError, RecordError, Rule
+from comparisons.scene.tables import table_values
 
 LARGEST_COUNT = 10_000
-SPACING = rules.choice("linear", "log")
+RULES: dict[str, Rule] = {
+    "from": rules.number,
+    "to": rules.number,
+    "count": lambda value: rules.whole_number(value, LARGEST_COUNT),
+    "spacing": rules.choice("linear", "log"),
+}
+"""The keys of a range with the rules of their values."""
 
 
 def values(key: str, given: object) -> tuple[object, ...]:
@@ -40,18 +46,9 @@ def values(key: str, given: object) -> tuple[object, ...]:
 
 
 def _range(given: dict[str, Any]) -> tuple[float, ...]:
-    check_keys(given, ("from", "to", "count", "spacing"), required=("from", "to", "count"))
-    checks: dict[str, rules.Rule] = {
-        "from": rules.number,
-        "to": rules.number,
-        "count": lambda value: rules.whole_number(value, LARGEST_COUNT),
-        "spacing": SPACING,
-    }
-    for name, value in given.items():
-        try:
-            checks[name](value)
-        except RuleError as error:
-            raise FieldError(name, value, str(error)) from None
+    mistakes = table_values(given, RULES, required=("from", "to", "count"))[1]
+    if mistakes:
+        raise RecordError(mistakes)
     first, last, count = given["from"], given["to"], given["count"]
     logarithmic = given.get("spacing") == "log"
     if count < 2:

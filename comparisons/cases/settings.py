@@ -8,7 +8,7 @@ from typing import Any
 
 from comparisons.scene import Scene
 from comparisons.scene.read import LISTS
-from comparisons.scene.rules import FieldError
+from comparisons.scene.rules import FieldError, RecordError
 
 Path = tuple[str, ...]
 """Where a setting stands: ``("scene", "load_parameters")``, ``("beam", "height")`` for every beam, ``("beam", "upper", "height")``."""
@@ -30,28 +30,37 @@ def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
     Raises
     ------
     FieldError
-        If a rule of the scene is broken; its key is the setting's.
+        With all rules of the scene that are broken; their keys are the settings'.
     """
     own: dict[str, Any] = {path[1]: value for path, value in changes.items() if path[0] == "scene"}
+    mistakes: list[FieldError] = []
     for kind in LISTS:
         varied = {path: value for path, value in changes.items() if path[0] == kind}
         if varied:
             records = getattr(scene, f"{kind}s")
-            own[f"{kind}s"] = tuple(_changed_record(kind, record, varied) for record in records)
+            own[f"{kind}s"] = tuple(_changed_record(kind, record, varied, mistakes) for record in records)
+    if mistakes:
+        raise RecordError(mistakes)
     try:
         return replace(scene, **own)
     except FieldError as error:
-        raise (error.within("scene.") if error.key in OWN else error) from None
+        raise RecordError(
+            [item.within("scene.") if item.key in OWN else item for item in error.mistakes]
+        ) from None
 
 
-def _changed_record(kind: str, record: Any, changes: Mapping[Path, object]) -> Any:
+def _changed_record(
+    kind: str, record: Any, changes: Mapping[Path, object], mistakes: list[FieldError]
+) -> Any:
+    """Return a record with changed settings. Mistakes are added to `mistakes`, and the record is then left as it is."""
     name = record_name(kind, vars(record))
     own = {path: changes[path] for path in sorted(changes, key=len) if len(path) == 2 or path[1] == name}
     places = {path[-1]: ".".join(path[:-1]) for path in own}
     try:
         return replace(record, **{path[-1]: value for path, value in own.items()})
     except FieldError as error:
-        raise error.within(f"{places.get(error.key, kind)}.") from None
+        mistakes += (item.within(f"{places.get(item.key, kind)}.") for item in error.mistakes)
+        return record
 
 
 def settings(definition: str, options: str) -> dict[str, object]:

@@ -1,6 +1,5 @@
 """Study files: a scene, and what is varied in it, as TOML."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from itertools import product
 from math import prod
@@ -14,8 +13,20 @@ from comparisons.models import find
 from comparisons.models.options import BRANCHES, ModelError, Options
 from comparisons.scene import Scene, built_in_scenes, load_scene, rules
 from comparisons.scene.read import LISTS
-from comparisons.scene.rules import FieldError, Rule, RuleError
-from comparisons.scene.tables import InputError, check_keys, read_tables, read_text
+from comparisons.scene.rules import FieldError, RecordError, Rule, RuleError
+from comparisons.scene.tables import (
+    InputError,
+    check_keys,
+    check_tables,
+    head_values,
+    in_order,
+    read_tables,
+    read_text,
+    table_values,
+)
+
+Axes = dict[settings.Path, tuple[object, ...]]
+"""The values of every setting that a run varies, by its place."""
 
 LARGEST = 100_000
 """Cases of a study."""
@@ -54,39 +65,21 @@ def read_study(path: Path) -> Study:
     Raises
     ------
     StudyError, SceneError
-        One line: file, key, value and rule. Nothing has been computed.
+        All mistakes in the order of the file, each in one line: file, key, value and rule. Nothing has been computed.
     """
     source = str(path)
-    tables = read_tables(read_text(source, "no such file", StudyError), source, StudyError)
-    try:
-        head = _head(tables)
-    except FieldError as error:
-        raise StudyError(source, str(error)) from None
-    scene = load_scene(
-        head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
-    )
-    try:
-        cases = tuple(dict.fromkeys(_cases(scene, tables["run"], path.parent)))
-    except FieldError as error:
-        raise StudyError(source, str(error)) from None
-    return Study(name=head["name"], repeats=head["repeats"], cases=cases)
-
-
-def _head(tables: dict[str, Any]) -> dict[str, Any]:
-    check_keys(tables, ("study", "run"), required=("study", "run"))
-    if not isinstance(tables["study"], dict):
-        raise FieldError("study", tables["study"], "must be a table, [study]")
-    runs = tables["run"]
-    if not isinstance(runs, list) or not runs or not all(isinstance(run, dict) for run in runs):
-        raise FieldError("run", runs, "must be a list of tables, [[run]]")
-    checks: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
-    try:
-        check_keys(tables["study"], checks, required=("name", "scene"))
-        return {"repeats": 3} | {
-            key: _checked(key, value, checks[key]) for key, value in tables["study"].items()
-        }
-    except FieldError as error:
-        raise error.within("study.") from None
+    text = read_text(source, "no such file", StudyError)
+    tables = read_tables(text, source, StudyError)
+    head, mistakes = head_values(tables, "study", HEAD_RULES, required=("name", "scene"))
+    mistakes += check_keys(tables, ("study", "run"), required=("study", "run"))
+    mistakes += check_tables(tables, "run")
+    cases = list[Case]()
+    if "scene" in head and not list(check_tables(tables, "run")):
+        name = head["scene"] if head["scene"] in built_in_scenes() else str(path.parent / head["scene"])
+        cases = _cases(load_scene(name), tables.get("run", []), path.parent, mistakes)
+    if mistakes:
+        raise StudyError(source, RecordError(in_order(mistakes, text, tables)))
+    return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 
 def _checked(key: str, value: object, rule: Rule) -> Any:
@@ -96,68 +89,72 @@ def _checked(key: str, value: object, rule: Rule) -> Any:
         raise FieldError(key, value, str(error)) from None
 
 
-def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path) -> Iterator[Case]:
-    axes: list[dict[settings.Path, tuple[object, ...]]] = []
+def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
+    """Return the cases of the runs; what is wrong is added to `mistakes`."""
+    axes: list[Axes] = []
     for i, run in enumerate(runs):
-        try:
-            axes.append(dict(_axes(scene, run)))
-        except FieldError as error:
-            raise error.within(f"run[{i}].") from None
+        varied, wrong = _axes(scene, run)
+        mistakes += (mistake.within(f"run[{i}].") for mistake in wrong)
+        axes.append({} if wrong else varied)
     total = sum(prod(map(len, varied.values())) for varied in axes)
     if total > LARGEST:
-        raise FieldError("run", total, f"must be at most {LARGEST} cases")
+        mistakes.append(FieldError("run", total, f"must be at most {LARGEST} cases"))
+        return []
+    cases: list[Case] = []
     for i, varied in enumerate(axes):
-        for chosen in product(*varied.values()):
+        for chosen in product(*varied.values()) if varied else ():
             try:
-                yield _case(scene, dict(zip(varied, chosen, strict=True)), folder)
+                cases.append(_case(scene, dict(zip(varied, chosen, strict=True)), folder))
             except FieldError as error:
-                raise error.within(f"run[{i}].") from None
+                mistakes += error.within(f"run[{i}].").mistakes
+    return cases
 
 
-def _axes(scene: Scene, run: dict[str, Any]) -> Iterator[tuple[settings.Path, tuple[object, ...]]]:
-    """Yield what a run varies: where a setting stands, and its values."""
-    check_keys(run, ("model", *OPTION_RULES, "scene", *LISTS), required=("model",))
-    for key, given in run.items():
-        if key in LISTS or key == "scene":
-            yield from _scene_axes(scene, key, given)
-        else:
-            yield (key,), values(key, given)
+def _axes(scene: Scene, run: dict[str, Any]) -> tuple[Axes, list[FieldError]]:
+    """Return what a run varies, the values of every setting by its place, and the mistakes in it."""
+    axes: Axes = {}
+    mistakes = list(check_keys(run, RUN_KEYS, required=("model",)))
+    for key, given in ((key, given) for key, given in run.items() if key in RUN_KEYS):
+        places = _places(scene, key, given, mistakes) if key in LISTS or key == "scene" else {(key,): given}
+        for place, value in places.items():
+            try:
+                axes[place] = values(".".join(place), value)
+            except FieldError as error:
+                mistakes += error.mistakes
+    return axes, mistakes
 
 
-def _scene_axes(scene: Scene, kind: str, given: object) -> Iterator[tuple[settings.Path, tuple[object, ...]]]:
-    """Yield what a run varies in the records of one kind: of all of them, or of one by its name."""
+def _places(
+    scene: Scene, kind: str, given: object, mistakes: list[FieldError]
+) -> dict[settings.Path, object]:
+    """Return what a run states for the records of one kind: for all of them, or for one by its name."""
     if not isinstance(given, dict):
-        raise FieldError(kind, given, f"must be followed by a key, {kind}.KEY")
+        mistakes.append(FieldError(kind, given, f"must be followed by a key, {kind}.KEY"))
+        return {}
     if kind == "scene":
         known, named = settings.OWN, set[str]()
     else:
-        known = {item.name for item in fields(LISTS[kind])}
+        known = {item.name for item in fields(LISTS[kind])}  # type: ignore[arg-type]  # every record is a dataclass
         named = {settings.record_name(kind, vars(record)) for record in getattr(scene, f"{kind}s")}
         if not named:
-            raise FieldError(kind, given, f"the scene has no {kind}")
-    try:
-        check_keys(given, known | named)
-    except FieldError as error:
-        raise error.within(f"{kind}.") from None
-    for key, value in given.items():
-        if key in known:
-            yield (kind, key), values(f"{kind}.{key}", value)
-        else:
-            yield from _named_axes(kind, key, value, known)
+            mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
+            return {}
+    mistakes += (mistake.within(f"{kind}.") for mistake in check_keys(given, known | named))
+    places: dict[settings.Path, object] = {(kind, key): given[key] for key in given if key in known}
+    for name in (name for name in given if name in named - known):
+        places |= _named_places((kind, name), given[name], known, mistakes)
+    return places
 
 
-def _named_axes(
-    kind: str, name: str, given: object, known: set[str]
-) -> Iterator[tuple[settings.Path, tuple[object, ...]]]:
-    place = f"{kind}.{name}"
+def _named_places(
+    record: settings.Path, given: object, known: set[str], mistakes: list[FieldError]
+) -> dict[settings.Path, object]:
+    place = ".".join(record)
     if not isinstance(given, dict):
-        raise FieldError(place, given, f"must be followed by a key, {place}.KEY")
-    try:
-        check_keys(given, known)
-    except FieldError as error:
-        raise error.within(f"{place}.") from None
-    for key, value in given.items():
-        yield (kind, name, key), values(f"{place}.{key}", value)
+        mistakes.append(FieldError(place, given, f"must be followed by a key, {place}.KEY"))
+        return {}
+    mistakes += (mistake.within(f"{place}.") for mistake in check_keys(given, known))
+    return {(*record, key): value for key, value in given.items() if key in known}
 
 
 def _model(value: object, folder: Path) -> str:
@@ -189,14 +186,41 @@ OPTION_RULES: dict[str, Rule] = {
 assert OPTION_RULES.keys() == {item.name for item in fields(Options)}
 
 
+HEAD_RULES: dict[str, Rule] = {"name": rules.name, "scene": rules.text, "repeats": rules.whole_number}
+"""The keys of the table ``[study]`` with the rules of their values."""
+RUN_KEYS = ("model", *OPTION_RULES, "scene", *LISTS)
+"""The keys of a table ``[[run]]``."""
+
+
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
-    model = _checked("model", chosen[("model",)], lambda value: _model(value, folder))
+    """Return the case of the chosen settings; raise all mistakes in them."""
+    mistakes: list[FieldError] = []
     options = {}
-    for key, rule in OPTION_RULES.items():
-        if (key,) in chosen:
-            value = chosen[(key,)]
-            if key not in find(model).options:
-                raise FieldError(key, value, f'is no option of model = "{find(model).name}"')
-            options[key] = _checked(key, value, rule)
+    model = ""
+    try:
+        model = _checked("model", chosen[("model",)], lambda value: _model(value, folder))
+        options = _options(model, chosen)
+    except FieldError as error:
+        mistakes += error.mistakes
     changes = {path: value for path, value in chosen.items() if len(path) > 1}
-    return Case(scene=settings.changed(scene, changes), model=model, options=Options(**options))
+    try:
+        scene = settings.changed(scene, changes)
+    except FieldError as error:
+        mistakes += error.mistakes
+    if mistakes:
+        raise RecordError(mistakes)
+    return Case(scene=scene, model=model, options=Options(**options))
+
+
+def _options(model: str, chosen: dict[settings.Path, object]) -> dict[str, Any]:
+    """Return the options among the chosen settings; raise all mistakes in them."""
+    given = {key: chosen[key,] for key in OPTION_RULES if (key,) in chosen}
+    mistakes = [
+        FieldError(key, value, f'is no option of model = "{find(model).name}"')
+        for key, value in given.items()
+        if key not in find(model).options
+    ]
+    options, wrong = table_values(given, OPTION_RULES, ())
+    if mistakes or wrong:
+        raise RecordError([*mistakes, *wrong])
+    return options

@@ -78,7 +78,10 @@ def _run(arguments: list[str] | None) -> int:
     try:
         status = given.run(given)
         sys.stdout.flush()
-    except (InputError, ModelError, OutputError) as error:
+    except InputError as error:
+        for line in str(error).split("\n"):
+            status = _told(line, BAD_INPUT)
+    except (ModelError, OutputError) as error:
         status = _told(error, BAD_INPUT)
     except CalculixError as error:
         status = _told(error, BAD_INPUT if error.printed is None else STOPPED)

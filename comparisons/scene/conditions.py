@@ -1,28 +1,20 @@
 """Supports, loads, hinges and springs of beams, as hashable records without arrays that check their values at construction."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from comparisons.scene import rules
 from comparisons.scene.amounts import amount
-from comparisons.scene.rules import (
-    MISSING,
-    FieldError,
-    Name,
-    NotNegative,
-    Number,
-    Point,
-    Vector,
-    apply_rules,
-    exactly_one_of,
-)
+from comparisons.scene.record import Record, exactly_one_of
+from comparisons.scene.rules import MISSING, FieldError, Name, NotNegative, Number, Point, Vector
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportSpec:
+class SupportSpec(Record):
     """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter.
 
     Parameters
@@ -58,20 +50,26 @@ class SupportSpec:
     onward: ClassVar[tuple[tuple[float, float, float], ...]] = ()
     """Motions in the stages after the first one, which the scene states."""
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("kind",), ("fixed",)))
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules: one way to state what is held, a direction for a roller, motion only where it is held."""
+        return exactly_one_of(self, ("kind",), ("fixed",)), self._direction(), self._moved(), self._turned()
+
+    def _direction(self) -> Iterator[FieldError]:
         if self.kind == "roller" and self.free is None:
-            raise FieldError("free", MISSING, 'must be given, a roller is free in "x" or in "y"')
+            yield FieldError("free", MISSING, 'must be given, a roller is free in "x" or in "y"')
         if self.kind != "roller" and self.free is not None:
-            raise FieldError("free", self.free, 'belongs to kind = "roller"')
+            yield FieldError("free", self.free, 'belongs to kind = "roller"')
+
+    def _moved(self) -> Iterator[FieldError]:
         for component, value in zip("xy", self.displacement or (), strict=False):
             if value != 0.0 and component not in self.held:
-                raise FieldError(
+                yield FieldError(
                     "displacement", self.displacement, f"must be zero in {component}, which is free"
                 )
+
+    def _turned(self) -> Iterator[FieldError]:
         if self.rotation is not None and "rotation" not in self.held:
-            raise FieldError("rotation", self.rotation, "must not be given, the rotation is free")
+            yield FieldError("rotation", self.rotation, "must not be given, the rotation is free")
 
     @property
     def node(self) -> str:
@@ -113,7 +111,7 @@ class SupportSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoadSpec:
+class LoadSpec(Record):
     """A dead load scaled by the load parameter: a force and moment on a beam's end or inside the beam, or a force per length.
 
     Parameters
@@ -147,21 +145,24 @@ class LoadSpec:
     force_per_length: Vector | None = None
     part: Annotated[tuple[float, float], rules.span] | None = None
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("end",), ("at",), ("force_per_length",)))
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules: one way to state where the load acts, what belongs to it, and a load that is not zero."""
+        return exactly_one_of(self, ("end",), ("at",), ("force_per_length",)), self._belongs(), self._acts()
+
+    def _belongs(self) -> Iterator[FieldError]:
+        if self.force_per_length is None and self.part is not None:
+            yield FieldError("part", self.part, "belongs to force_per_length")
+        for key in ("force", "moment") if self.force_per_length is not None else ():
+            if any(self.force) if key == "force" else self.moment:
+                rule = "must not be given with force_per_length: it belongs to end or at"
+                yield FieldError(key, getattr(self, key), rule)
+
+    def _acts(self) -> Iterator[FieldError]:
         if self.force_per_length is None:
-            if self.part is not None:
-                raise FieldError("part", self.part, "belongs to force_per_length")
             if not any((*self.force, self.moment)):
-                raise FieldError("force", self.force, "force or moment must not be zero")
-        else:
-            if not any(self.force_per_length):
-                raise FieldError("force_per_length", self.force_per_length, "must not be zero")
-            for key in ("force", "moment"):
-                if any(self.force) if key == "force" else self.moment:
-                    rule = "must not be given with force_per_length: it belongs to end or at"
-                    raise FieldError(key, getattr(self, key), rule)
+                yield FieldError("force", self.force, "force or moment must not be zero")
+        elif not any(self.force_per_length):
+            yield FieldError("force_per_length", self.force_per_length, "must not be zero")
 
     @property
     def amount(self) -> tuple[float, float, float]:
@@ -191,7 +192,7 @@ class LoadSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HingeSpec:
+class HingeSpec(Record):
     """A hinge between a beam's end and its joint: the end turns against the joint without a moment, or against a spring.
 
     Parameters
@@ -214,9 +215,6 @@ class HingeSpec:
     end: Annotated[str, rules.choice("start", "end")]
     stiffness: NotNegative = 0.0
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-
     @property
     def node(self) -> str:
         """Name of the end, as ``upper.end``."""
@@ -224,7 +222,7 @@ class HingeSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpringSpec:
+class SpringSpec(Record):
     """Linear springs between a beam's end and the ground, free of force in the undeformed state.
 
     Parameters
@@ -249,10 +247,13 @@ class SpringSpec:
     stiffness: Annotated[Point, rules.stiffnesses] = (0.0, 0.0)
     rotation: NotNegative = 0.0
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rule: some stiffness is not zero."""
+        return (self._resists(),)
+
+    def _resists(self) -> Iterator[FieldError]:
         if not any((*self.stiffness, self.rotation)):
-            raise FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
+            yield FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
 
     @property
     def node(self) -> str:

@@ -1,111 +1,170 @@
-"""What the records of a scene must obey together."""
+"""What the records of a scene must obey together.
+
+A rule is judged where the values that it reads are right; reading a wrong one raises `comparisons.scene.record.Unjudged`.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 from comparisons.scene.contact import ContactSpec
-from comparisons.scene.hinges import check_hinges
-from comparisons.scene.joints import check_joints
-from comparisons.scene.rules import MISSING, FieldError, Point, shown
-from comparisons.scene.stage_rules import check_stages
+from comparisons.scene.joints import joint_rules
+from comparisons.scene.names import Names, listed
+from comparisons.scene.record import Unjudged, right
+from comparisons.scene.rules import MISSING, FieldError, Point
+from comparisons.scene.stage_rules import stage_rules
 
 if TYPE_CHECKING:
     from comparisons.scene.records import BeamSpec, Scene
 
 
-def check_scene(scene: Scene) -> None:
-    """Raise `FieldError` for the first rule that the records of `scene` break together."""
-    beams = [(f"beam[{i}].name", beam.name) for i, beam in enumerate(scene.beams)]
-    pins = [(f"pin[{i}].name", pin.name) for i, pin in enumerate(scene.pins)]
-    _distinct(beams + pins)
-    keys = {name: key.removesuffix(".name") for key, name in beams + pins}
-    for i, contact in enumerate(scene.contacts):
-        try:
-            _check_contact(scene, contact, keys)
-        except FieldError as error:
-            raise error.within(f"contact[{i}].") from None
-        _check_side(scene, contact, keys)
-    _distinct([(f"contact[{i}].node", contact.pair) for i, contact in enumerate(scene.contacts)])
-    named = [(f"support[{i}].beam", support.beam) for i, support in enumerate(scene.supports)]
-    named += [(f"load[{i}].beam", load.beam) for i, load in enumerate(scene.loads)]
-    named += [(f"hinge[{i}].beam", hinge.beam) for i, hinge in enumerate(scene.hinges)]
-    named += [(f"spring[{i}].beam", spring.beam) for i, spring in enumerate(scene.springs)]
-    known = {beam.name for beam in scene.beams}
-    for key, name in named:
-        if name not in known:
-            raise FieldError(key, name, f"must name a beam: {_known(beam.name for beam in scene.beams)}")
-    _distinct([(f"load[{i}].{load.key}", load.node) for i, load in enumerate(scene.loads)])
-    _distinct([(f"hinge[{i}].end", hinge.node) for i, hinge in enumerate(scene.hinges)])
-    _distinct([(f"spring[{i}].end", spring.node) for i, spring in enumerate(scene.springs)])
-    check_stages(scene)
-    check_hinges(scene)
-    check_joints(scene)
-    _check_weight(scene)
-    _check_cause(scene)
+def scene_rules(scene: Scene) -> Iterable[Iterator[FieldError]]:
+    """Return the rules between the records of `scene`; each yields its mistakes."""
+    names = Names(scene)
+    return (
+        iter(names.repeated),
+        _contacts(scene, names),
+        _distinct("contact", scene, "pair", "node"),
+        _beams_named(scene, names),
+        _distinct("load", scene, "node", "end"),
+        _distinct("hinge", scene, "node", "end"),
+        _distinct("spring", scene, "node", "end"),
+        stage_rules(scene, names),
+        joint_rules(scene, names),
+        _weight(scene),
+        _idle_pins(scene, names),
+        _resting_pins(scene),
+        _cause(scene),
+    )
 
 
-def _check_cause(scene: Scene) -> None:
-    touching = {contact.node for contact in scene.contacts}
-    for i, pin in enumerate(scene.pins):
-        if pin.name not in touching:
-            raise FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
-        if len(set(pin.points)) == 1:
-            raise FieldError(
-                f"pin[{i}].displacement", pin.displacement, "must not be zero: the pin never moves"
-            )
-    acting = (scene.pins, scene.load_histories, scene.gravity)
-    if not (any(acting) or any(support.moves for support in scene.all_supports)):
-        raise FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
-
-
-def _check_weight(scene: Scene) -> None:
-    heavy = [i for i, beam in enumerate(scene.beams) if beam.density is not None]
-    if heavy and scene.gravity is None:
-        density = scene.beams[heavy[0]].density
-        raise FieldError(f"beam[{heavy[0]}].density", density, "needs gravity in [scene]")
-    if scene.gravity is not None and not heavy:
-        raise FieldError("scene.gravity", scene.gravity, "needs the density of a beam")
-    pulls = [scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages)]
-    if scene.gravity is not None and not any(map(any, pulls)):
-        raise FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
-    for i, stage in enumerate(scene.stages):
-        if any(stage.gravity) and scene.gravity is None:
-            raise FieldError(f"stage[{i}].gravity", stage.gravity, "needs gravity in [scene]")
-
-
-def _distinct(named: list[tuple[str, str]]) -> None:
+def _distinct(kind: str, scene: Scene, attribute: str, key: str) -> Iterator[FieldError]:
+    """Yield the records of a kind with the same `attribute` as an earlier one; `key` is its key unless the record states one."""
     seen: set[str] = set()
-    for key, name in named:
-        if name in seen:
-            raise FieldError(key, name, "must not appear twice")
-        seen.add(name)
+    for i, record in enumerate[Any](getattr(scene, f"{kind}s")):
+        with suppress(Unjudged):
+            value = getattr(record, attribute)
+            if value in seen:
+                own = getattr(record, "key", key)
+                yield FieldError(f"{kind}[{i}].{own}", value, "must not appear twice")
+            seen.add(value)
 
 
-def _known(names: Iterable[str]) -> str:
-    return ", ".join(shown(name) for name in names)
+def _beams_named(scene: Scene, names: Names) -> Iterator[FieldError]:
+    for kind in ("support", "load", "hinge", "spring"):
+        for i, record in enumerate[Any](getattr(scene, f"{kind}s") if right(scene, f"{kind}s") else ()):
+            with suppress(Unjudged):
+                yield from names.not_a_beam(f"{kind}[{i}].beam", record.beam)
 
 
-def _check_contact(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> None:
-    """Check a contact; `keys` gives the place in the file, ``beam[0]`` or ``pin[0]``, of every name."""
-    if not keys.get(contact.beam, "").startswith("beam"):
-        known = _known(beam.name for beam in scene.beams)
-        raise FieldError("beam", contact.beam, f"must name a beam: {known}")
+def _idle_pins(scene: Scene, names: Names) -> Iterator[FieldError]:
+    touching = {contact.node for contact in scene.contacts}
+    if any(True for contact in scene.contacts for _ in _touching(contact, names, "")):
+        return
+    for i, pin in enumerate(scene.pins):
+        with suppress(Unjudged):
+            if names.place(pin.name) and pin.name not in touching:
+                yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
+
+
+def _resting_pins(scene: Scene) -> Iterator[FieldError]:
+    for i, pin in enumerate(scene.pins):
+        with suppress(Unjudged):
+            if len(set(pin.points)) == 1:
+                yield FieldError(
+                    f"pin[{i}].displacement", pin.displacement, "must not be zero: the pin never moves"
+                )
+
+
+def _cause(scene: Scene) -> Iterator[FieldError]:
+    acting = (scene.pins, scene.loads, scene.gravity, scene.stages)
+    if scene.beams and not (any(acting) or any(support.moves for support in scene.supports)):
+        yield FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
+
+
+def _weight(scene: Scene) -> Iterator[FieldError]:
+    heavy = [i for i, beam in enumerate(scene.beams) if beam.density is not None]
+    pulled = [i for i, stage in enumerate(scene.stages) if any(stage.gravity)]
+    if scene.gravity is None:
+        if heavy:
+            density = scene.beams[heavy[0]].density
+            yield FieldError(f"beam[{heavy[0]}].density", density, "needs gravity in [scene]")
+        elif pulled:
+            gravity = scene.stages[pulled[0]].gravity
+            yield FieldError(f"stage[{pulled[0]}].gravity", gravity, "needs gravity in [scene]")
+    elif not heavy:
+        yield FieldError("scene.gravity", scene.gravity, "needs the density of a beam")
+    elif not (any(scene.gravity) or pulled):
+        yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
+
+
+def _contacts(scene: Scene, names: Names) -> Iterator[FieldError]:
+    for i, contact in enumerate(scene.contacts):
+        key = f"contact[{i}]"
+        yield from _first(_touched(contact, names, key))
+        yield from _first(
+            _touching(contact, names, key),
+            _apart(contact, names, key),
+            _has_face(contact, names, key),
+            _on_side(contact, names),
+        )
+
+
+def _first(*rules: Iterator[FieldError]) -> Iterator[FieldError]:
+    """Yield the mistakes of the first rule that is broken."""
+    for rule in rules:
+        with suppress(Unjudged):
+            mistakes = list(rule)
+            yield from mistakes
+            if mistakes:
+                return
+
+
+def _touched(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+    yield from names.not_a_beam(f"{key}.beam", contact.beam)
+
+
+def _touching(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+    if not names.is_node(contact.node):
+        rule = f"must name a pin or a beam's end: {listed(names.nodes())}"
+        yield FieldError(f"{key}.node", contact.node, rule)
+    elif contact.node in (f"{contact.beam}.start", f"{contact.beam}.end"):
+        yield FieldError(f"{key}.node", contact.node, "must not be an end of the beam itself")
+
+
+def _apart(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+    beam = names.beam(contact.beam)
+    if "." in contact.node and _position(contact, names)[1] in (beam.start, beam.end):
+        yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
+
+
+def _has_face(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+    if contact.surface == "face" and names.beam(contact.beam).height is None:
+        rule = f'needs the height of beam "{contact.beam}"'
+        yield FieldError(f"{key}.surface", contact.surface, rule)
+
+
+def _on_side(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
+    beam = names.beam(contact.beam)
+    key, position = _position(contact, names)
+    _, fraction = signed_gap(beam, contact.side, 0.0, position)
+    gap, fraction = signed_gap(beam, contact.side, names.scene.offset(contact, fraction), position)
+    if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
+        where = f'on the {contact.side} of beam "{beam.name}"'
+        yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
+
+
+def _position(contact: ContactSpec, names: Names) -> tuple[str, Point]:
+    """Return the key of the undeformed position of the contact's node, and the position."""
     name, dot, end = contact.node.partition(".")
-    kind = keys.get(name, "").partition("[")[0]
-    if (kind, dot, end) not in (("pin", "", ""), ("beam", ".", "start"), ("beam", ".", "end")):
-        ends = (f"{beam.name}.{end}" for beam in scene.beams for end in ("start", "end"))
-        known = _known((*(pin.name for pin in scene.pins), *ends))
-        raise FieldError("node", contact.node, f"must name a pin or a beam's end: {known}")
-    if contact.node.split(".")[0] == contact.beam and "." in contact.node:
-        raise FieldError("node", contact.node, "must not be an end of the beam itself")
-    beam = scene.beam(contact.beam)
-    if contact.node.count(".") and scene.place(contact.node) in (beam.start, beam.end):
-        raise FieldError("node", contact.node, f'must not be joined to beam "{beam.name}"')
-    if contact.surface == "face" and beam.height is None:
-        raise FieldError("surface", contact.surface, f'needs the height of beam "{contact.beam}"')
+    place = names.place(name)
+    if dot:
+        return f"{place}.{end}", names.scene.place(contact.node)
+    pin = names.scene.pin(name)
+    return f"{place}.{'start' if pin.path is None else 'path'}", pin.points[0]
 
 
 def signed_gap(beam: BeamSpec, side: str, offset: float, point: Point) -> tuple[float, float]:
@@ -128,18 +187,3 @@ def _from_arc(beam: BeamSpec, point: Point) -> Point:
     far = math.hypot(k * x, k * y - 1.0)
     turned = math.remainder(math.atan2(k * x, 1.0 - k * y) - beam.turn / 2.0, 2.0 * math.pi)
     return (2.0 * y - k * (x * x + y * y)) / (1.0 + far), turned / beam.turn + 0.5
-
-
-def _check_side(scene: Scene, contact: ContactSpec, keys: dict[str, str]) -> None:
-    beam = scene.beam(contact.beam)
-    name, dot, end = contact.node.partition(".")
-    if dot:
-        key, position = f"{keys[name]}.{end}", scene.place(contact.node)
-    else:
-        pin = scene.pin(name)
-        key, position = f"{keys[name]}.{'start' if pin.path is None else 'path'}", pin.points[0]
-    _, fraction = signed_gap(beam, contact.side, 0.0, position)
-    gap, fraction = signed_gap(beam, contact.side, scene.offset(contact, fraction), position)
-    if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
-        where = f'on the {contact.side} of beam "{beam.name}"'
-        raise FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")

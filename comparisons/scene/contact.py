@@ -2,6 +2,7 @@
 
 import math
 from bisect import bisect_left
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -10,15 +11,8 @@ from typing import Annotated, ClassVar
 
 from comparisons.scene import rules
 from comparisons.scene.amounts import stage_of
-from comparisons.scene.rules import (
-    Friction,
-    Name,
-    Point,
-    Positive,
-    Vector,
-    apply_rules,
-    exactly_one_of,
-)
+from comparisons.scene.record import Record, exactly_one_of
+from comparisons.scene.rules import FieldError, Friction, Name, Point, Positive, Vector
 from comparisons.scene.stages import PinMove
 
 
@@ -59,7 +53,7 @@ class Path:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinSpec:
+class PinSpec(Record):
     """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter.
 
     Parameters
@@ -87,9 +81,9 @@ class PinSpec:
     moves: ClassVar[tuple[PinMove | None, ...]] = ()
     """Motions in the stages after the first one, which the scene states; None where the pin rests."""
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("start", "displacement"), ("path",)))
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rule: one way to state the path."""
+        return (exactly_one_of(self, ("start", "displacement"), ("path",)),)
 
     @cached_property
     def _paths(self) -> tuple[Path, ...]:
@@ -131,7 +125,7 @@ class PinSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactSpec:
+class ContactSpec(Record):
     """A contact of a node with a beam.
 
     Parameters
@@ -163,9 +157,6 @@ class ContactSpec:
     penetration: Positive | None = None
     keep: Annotated[bool, rules.truth] = False
     friction: Friction = 0.0
-
-    def __post_init__(self) -> None:
-        apply_rules(self)
 
     @property
     def pair(self) -> str:

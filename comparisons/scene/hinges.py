@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.scene.rules import FieldError, Point
@@ -15,32 +16,34 @@ LEAST = 1e-9
 """Least pivot of the equations of rigid motions, in coordinates over the structure's size; a smaller one counts as zero."""
 
 
-def check_hinges(scene: Scene) -> None:
-    """Raise `FieldError` for a hinge at an end that nothing turns, and for a joint that all its beams leave free to turn."""
+def useless_hinges(scene: Scene) -> Iterator[FieldError]:
+    """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
     meeting = _ends(scene)
     turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}
     stiff = {hinge.node for hinge in scene.hinges if hinge.stiffness}
     hinged = {hinge.node for hinge in scene.hinges} - stiff
+    free: set[Point] = set()
     for i, hinge in enumerate(scene.hinges):
         place = scene.place(hinge.node)
         if place in turned:
             continue
         if len(meeting[place]) == 1:
             rule = "must be joined to another beam, or its rotation held by a support or a spring"
-            raise FieldError(f"hinge[{i}].end", hinge.node, rule)
-        if hinged.issuperset(meeting[place]):
+            yield FieldError(f"hinge[{i}].end", hinge.node, rule)
+        elif hinged.issuperset(meeting[place]) and place not in free:
+            free.add(place)
             rule = "must leave one beam of the joint without a hinge: the joint turns freely"
-            raise FieldError(f"hinge[{i}].end", hinge.node, rule)
+            yield FieldError(f"hinge[{i}].end", hinge.node, rule)
 
 
-def check_mechanism(scene: Scene, structure: list[BeamSpec]) -> None:
-    """Raise `FieldError` if the beams of a structure, each rigid, can move about its hinges."""
+def mechanism(scene: Scene, structure: list[BeamSpec]) -> Iterator[FieldError]:
+    """Yield a mistake if the beams of a structure, each rigid, can move about its hinges."""
     names = {beam.name for beam in structure}
     own = [i for i, hinge in enumerate(scene.hinges) if hinge.beam in names and not hinge.stiffness]
     if own and _free_motion(scene, structure):
         node = scene.hinges[own[0]].node
         rule = "must not make a mechanism: the beams can move without strain"
-        raise FieldError(f"hinge[{own[0]}].end", node, rule)
+        yield FieldError(f"hinge[{own[0]}].end", node, rule)
 
 
 def _ends(scene: Scene) -> dict[Point, list[str]]:

@@ -5,29 +5,58 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from comparisons.scene.hinges import check_mechanism
+from comparisons.scene.hinges import mechanism, useless_hinges
+from comparisons.scene.record import Unjudged, right
 from comparisons.scene.rules import FieldError, Point
 
 if TYPE_CHECKING:
+    from comparisons.scene.names import Names
     from comparisons.scene.records import BeamSpec, Scene
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
 
 
-def check_joints(scene: Scene) -> None:
-    """Raise `FieldError` for ends that nearly meet, for a joint with two supports and for a structure that is not held."""
-    _check_meeting(scene)
-    _check_apart(scene)
-    _check_one_support(scene)
-    touched = {name for contact in scene.contacts for name in (contact.beam, contact.node.split(".")[0])}
+def joint_rules(scene: Scene, names: Names) -> Iterator[FieldError]:
+    """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
+    misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
+    yield from misplaced
+    if not misplaced:
+        yield from _one_support(scene, names)
+        yield from _held(scene, names)
+
+
+def _held(scene: Scene, names: Names) -> Iterator[FieldError]:
+    named = [beam.name for beam in scene.beams]
+    for records in (scene.supports, scene.springs, scene.hinges):
+        named += (record.beam for record in records)
+    if not all(map(names.is_beam, named)):
+        return
+    useless = list(useless_hinges(scene))
+    yield from useless
+    touched = _touched(scene, names)
     numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
     for structure in structures(scene):
-        key = f"beam[{numbers[structure[0].name]}].clamped"
-        _check_held(scene, structure, touched, key)
+        with suppress(Unjudged):
+            number = numbers[structure[0].name]
+            free = list(_structure_held(scene, structure, number))
+            yield from free
+            own = {beam.name for beam in structure}
+            if not free and not useless and touched is not None and touched.isdisjoint(own):
+                yield from _structure_stiff(scene, structure, number)
+
+
+def _touched(scene: Scene, names: Names) -> set[str] | None:
+    """Return the names of beams and pins in contacts; None where a name in a contact is wrong."""
+    with suppress(Unjudged):
+        contacts = scene.contacts
+        if all(names.is_beam(contact.beam) and names.is_node(contact.node) for contact in contacts):
+            return {name for contact in contacts for name in (contact.beam, contact.node.partition(".")[0])}
+    return None
 
 
 def structures(scene: Scene) -> list[list[BeamSpec]]:
@@ -58,16 +87,17 @@ def _meeting(scene: Scene) -> dict[Point, list[BeamSpec]]:
     return meeting
 
 
-def _check_meeting(scene: Scene) -> None:
-    meeting = _meeting(scene)
-    longest = {place: max(beam.length for beam in beams) for place, beams in meeting.items()}
+def _nearly_meeting(scene: Scene) -> Iterator[FieldError]:
+    beams = {i: beam for i, beam in enumerate(scene.beams) if right(beam, "name", "start", "end")}
+    meeting: dict[Point, list[int]] = defaultdict(list)
+    for i, beam in beams.items():
+        meeting[beam.start].append(i)
+        meeting[beam.end].append(i)
+    longest = {place: max(beams[i].length for i in own) for place, own in meeting.items()}
     for place, other in _neighbours(longest):
-        if math.dist(place, other) >= NEAR * min(longest[place], longest[other]):
-            continue
-        numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
-        own = sorted({numbers[beam.name] for at in (place, other) for beam in meeting[at]})
-        for i, j in combinations(own, 2):
-            _check_pair(scene.beams[i], scene.beams[j], j)
+        if math.dist(place, other) < NEAR * min(longest[place], longest[other]):
+            for i, j in combinations(sorted({*meeting[place], *meeting[other]}), 2):
+                yield from _pair(beams[i], beams[j], j)
 
 
 def _neighbours(longest: dict[Point, float]) -> Iterator[tuple[Point, Point]]:
@@ -94,49 +124,68 @@ def _neighbours(longest: dict[Point, float]) -> Iterator[tuple[Point, Point]]:
                     yield from ((place, other) for other in near if other != place)
 
 
-def _check_pair(a: BeamSpec, b: BeamSpec, number: int) -> None:
-    """Raise for ends of `b`, the beam of that number, that nearly meet an end of `a`."""
+def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Iterator[FieldError]:
+    """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
     for end in ("start", "end"):
         for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
             mine = getattr(b, end)
             if mine != place and math.dist(mine, place) < NEAR * min(a.length, b.length):
-                raise FieldError(
+                yield FieldError(
                     f"beam[{number}].{end}", mine, f'must be "{node}" exactly, or stay clear of it'
                 )
 
 
-def _check_apart(scene: Scene) -> None:
-    """Raise for two beams between the same ends, unless they are different arcs."""
+def _end_to_end(scene: Scene) -> Iterator[FieldError]:
+    """Yield beams between the same ends as an earlier one, unless they are different arcs."""
     there: dict[tuple[frozenset[Point], float], int] = {}
     for j, beam in enumerate(scene.beams):
-        turn = beam.turn if beam.start < beam.end else -beam.turn
-        i = there.setdefault((frozenset((beam.start, beam.end)), turn), j)
-        if i != j:
-            rule = f'must not lie on beam[{i}], "{scene.beams[i].name}", end to end'
-            raise FieldError(f"beam[{j}].end", beam.end, rule)
+        with suppress(Unjudged):
+            turn = beam.turn if beam.start < beam.end else -beam.turn
+            i = there.setdefault((frozenset((beam.start, beam.end)), turn), j)
+            if i != j:
+                rule = f'must not lie on beam[{i}], "{scene.beams[i].name}", end to end'
+                yield FieldError(f"beam[{j}].end", beam.end, rule)
 
 
-def _check_one_support(scene: Scene) -> None:
+def _one_support(scene: Scene, names: Names) -> Iterator[FieldError]:
+    """Yield supports at a place that an earlier support holds."""
     held: dict[Point, str] = {}
-    keys = [f"beam[{i}].clamped" for i, beam in enumerate(scene.beams) for _ in beam.clamped]
-    keys += [f"support[{i}].end" for i in range(len(scene.supports))]
-    for key, support in zip(keys, scene.all_supports, strict=True):
-        place = scene.place(support.node)
-        if place in held:
-            raise FieldError(key, support.node, f'must not be supported twice, "{held[place]}" is there')
-        held[place] = support.node
+    for key, node in _supported(scene, names):
+        with suppress(Unjudged):
+            place = scene.place(node)
+            if place in held:
+                yield FieldError(key, node, f'must not be supported twice, "{held[place]}" is there')
+            held[place] = node
 
 
-def _check_held(scene: Scene, structure: list[BeamSpec], touched: set[str], key: str) -> None:
-    beam, names = structure[0], [member.name for member in structure]
+def _supported(scene: Scene, names: Names) -> Iterator[tuple[str, str]]:
+    """Yield the keys of the supports and the ends that they hold."""
+    for i, beam in enumerate(scene.beams):
+        with suppress(Unjudged):
+            if names.is_beam(beam.name):
+                yield from ((f"beam[{i}].clamped", f"{beam.name}.{end}") for end in beam.clamped)
+    for i, support in enumerate(scene.supports):
+        with suppress(Unjudged):
+            if names.is_beam(support.beam):
+                yield f"support[{i}].end", support.node
+
+
+def _structure_held(scene: Scene, structure: list[BeamSpec], number: int) -> Iterator[FieldError]:
+    """Yield a mistake if nothing holds a structure; `number` is its first beam's."""
+    beam, names = structure[0], {member.name for member in structure}
     if not any(map(scene.supports_of, names)) and not any(spring.beam in names for spring in scene.springs):
         rule = f'beam "{beam.name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
-        raise FieldError(key, beam.clamped, rule)
-    if touched.isdisjoint(names) and not _rigid(scene, structure):
+        yield FieldError(f"beam[{number}].clamped", beam.clamped, rule)
+
+
+def _structure_stiff(scene: Scene, structure: list[BeamSpec], number: int) -> Iterator[FieldError]:
+    """Yield a mistake if a structure that nothing touches can move without strain."""
+    beam = structure[0]
+    if not _rigid(scene, structure):
         rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
-        raise FieldError(key, beam.clamped, rule)
-    if touched.isdisjoint(names):
-        check_mechanism(scene, structure)
+        yield FieldError(f"beam[{number}].clamped", beam.clamped, rule)
+    else:
+        yield from mechanism(scene, structure)
 
 
 def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:

@@ -1,5 +1,7 @@
-"""Reader of scene files: it turns TOML into a `Scene`, or raises an error of one line."""
+"""Reader of scene files: it turns TOML into a `Scene`, or raises an error with all mistakes."""
 
+from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import MISSING as NO_DEFAULT
 from dataclasses import fields
 from importlib import resources
@@ -7,13 +9,24 @@ from typing import Any, TypeVar
 
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
+from comparisons.scene.record import Record, examined
 from comparisons.scene.records import BeamSpec, Scene
-from comparisons.scene.rules import FieldError
+from comparisons.scene.rules import MISSING, FieldError, RecordError
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
-from comparisons.scene.tables import SceneError, check_keys, read_tables, read_text
+from comparisons.scene.tables import (
+    MOST,
+    SceneError,
+    check_keys,
+    check_table,
+    check_tables,
+    in_order,
+    meant,
+    read_tables,
+    read_text,
+)
 
-Record = TypeVar("Record")
-LISTS: dict[str, type] = {
+R = TypeVar("R", bound=Record)
+LISTS: dict[str, type[Record]] = {
     "beam": BeamSpec,
     "support": SupportSpec,
     "load": LoadSpec,
@@ -24,7 +37,9 @@ LISTS: dict[str, type] = {
     "stage": StageSpec,
 }
 """The tables of a file, each a list."""
-STAGE_LISTS: dict[str, type] = {"pin": PinMove, "support": SupportMove, "load": LoadSpec}
+LIST_FIELDS = {f"{kind}s" for kind in LISTS}
+"""Fields of a scene that are lists of records."""
+STAGE_LISTS: dict[str, type[Record]] = {"pin": PinMove, "support": SupportMove, "load": LoadSpec}
 """The lists of tables in a ``[[stage]]``."""
 
 
@@ -43,7 +58,7 @@ def load_scene(scene: str) -> Scene:
     Raises
     ------
     SceneError
-        One line: file, key, value and rule.
+        All mistakes in the order of the file, each in one line: file, key, value and rule.
 
     Examples
     --------
@@ -65,46 +80,91 @@ def read_scene(text: str, source: str) -> Scene:
     Raises
     ------
     SceneError
-        One line: file, key, value and rule.
+        All mistakes in the order of the text, each in one line: file, key, value and rule.
     """
     tables = read_tables(text, source, SceneError)
-    try:
-        return _scene(tables)
-    except FieldError as error:
-        raise SceneError(source, str(error)) from None
+    scene, mistakes = _scene(tables)
+    if mistakes:
+        raise SceneError(source, RecordError(in_order(mistakes, text, tables)))
+    return scene
 
 
-def _scene(tables: dict[str, Any]) -> Scene:
-    check_keys(tables, {"scene", *LISTS}, required=("scene", "beam"))
-    if not isinstance(tables["scene"], dict):
-        raise FieldError("scene", tables["scene"], "must be a table, [scene]")
-    lists: dict[str, Any] = {
-        f"{kind}s": _records(LISTS[kind], tables[kind], kind) for kind in LISTS if kind in tables
-    }
-    own = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
-    try:
-        check_keys(tables["scene"], own, required=("name", "load_parameters"))
-    except FieldError as error:
-        raise error.within("scene.") from None
-    try:
-        return Scene(**tables["scene"], **lists)
-    except FieldError as error:
-        raise (error.within("scene.") if error.key in own else error) from None
+def _scene(tables: dict[str, Any]) -> tuple[Scene, list[FieldError]]:
+    """Return the scene of the tables, and its mistakes in no order; a scene with mistakes is not whole."""
+    kinds = ("scene", *LISTS)
+    mistakes = list(check_keys(tables, kinds, required=("scene", "beam")))
+    lists, wrong = _lists(LISTS, tables, mistakes)
+    wrong |= {*meant(tables, kinds), *({"beam"} - tables.keys())}
+    mistakes += check_table(tables, "scene")
+    own = {item.name for item in fields(Scene)} - LIST_FIELDS
+    head = tables.get("scene")
+    unknown = set() if isinstance(head, dict) else own
+    scene, found = _whole_or_partial(
+        Scene,
+        head if isinstance(head, dict) else {},
+        "scene.",
+        {f"{kind}s": records for kind, records in lists.items()},
+        {*unknown, *(f"{kind}s" for kind in wrong)},
+        whole=not mistakes,
+    )
+    return scene, [*mistakes, *found]
 
 
-def _records(kind: type, tables: object, key: str) -> tuple[object, ...]:
-    if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
-        raise FieldError(key, tables, f"must be a list of tables, [[{key}]]")
-    return tuple(_record(kind, table, f"{key}[{i}].") for i, table in enumerate(tables))
+def _lists(
+    kinds: Mapping[str, type[Record]], tables: dict[str, Any], mistakes: list[FieldError]
+) -> tuple[dict[str, tuple[Record, ...]], set[str]]:
+    """Return the lists of records by kind, and the kinds whose list is wrong; mistakes are added to `mistakes`."""
+    lists: dict[str, tuple[Record, ...]] = {}
+    wrong = set()
+    for kind in (kind for kind in kinds if kind in tables):
+        before = len(mistakes)
+        mistakes += check_tables(tables, kind)
+        unreadable = len(mistakes) > before
+        records = []
+        for i, table in enumerate(() if unreadable else tables[kind]):
+            if len(mistakes) > MOST:
+                unreadable = True
+                break
+            record, own = _record(kinds[kind], table)
+            records.append(record)
+            mistakes += (mistake.within(f"{kind}[{i}].") for mistake in own)
+        if unreadable:
+            wrong.add(kind)
+        else:
+            lists[kind] = tuple(records)
+    return lists, wrong
 
 
-def _record(kind: type[Record], table: dict[str, Any], prefix: str) -> Record:
-    known = fields(kind)  # type: ignore[arg-type]  # every kind is a dataclass
-    try:
-        required = tuple(item.name for item in known if item.default is NO_DEFAULT)
-        check_keys(table, {item.name for item in known}, required)
-        inner = STAGE_LISTS if kind is StageSpec else {}
-        lists = {name: _records(inner[name], value, name) for name, value in table.items() if name in inner}
-        return kind(**{**table, **lists})
-    except FieldError as error:
-        raise error.within(prefix) from None
+def _record(kind: type[R], table: dict[str, Any]) -> tuple[R, list[FieldError]]:
+    """Return the record of a table and its mistakes; a record with mistakes is not whole."""
+    mistakes: list[FieldError] = []
+    lists, wrong = _lists(STAGE_LISTS if kind is StageSpec else {}, table, mistakes)
+    record, found = _whole_or_partial(kind, table, "", lists, wrong, whole=not mistakes)
+    return record, [*mistakes, *found]
+
+
+def _whole_or_partial(
+    kind: type[R],
+    table: dict[str, Any],
+    prefix: str,
+    lists: Mapping[str, Any],
+    wrong: Collection[str],
+    *,
+    whole: bool,
+) -> tuple[R, list[FieldError]]:
+    """Return the record of a table, `prefix` before its keys, and of `lists` of records; and the mistakes.
+
+    The lists are `whole` if they have no mistakes. The fields in `wrong` are known to be wrong.
+    """
+    defaults = {item.name: item.default for item in fields(kind)}  # type: ignore[arg-type]  # every kind is a dataclass
+    own = [name for name in defaults if name not in LIST_FIELDS]
+    required = [name for name in own if defaults[name] is NO_DEFAULT and name not in wrong]
+    mistakes = [mistake.within(prefix) for mistake in check_keys(table, own, required)]
+    given = {**{name: table[name] for name in own if name in table}, **lists}
+    if whole and not mistakes:
+        with suppress(FieldError):
+            return kind(**given), []
+    misspelt = dict.fromkeys(meant(table, own), MISSING)
+    missing = {name for name in required if name not in table}
+    record, found = examined(kind, {**defaults, **misspelt, **given}, {*wrong, *misspelt, *missing})
+    return record, [*mistakes, *(item.within(prefix) if item.key in own else item for item in found)]

@@ -1,7 +1,8 @@
 """A beam and the whole scene, as hashable records without arrays that check their values at construction."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
 
@@ -9,22 +10,14 @@ from comparisons.scene import rules
 from comparisons.scene.amounts import amount
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.rules import (
-    Count,
-    Dimension,
-    FieldError,
-    Name,
-    Point,
-    Positive,
-    Vector,
-    apply_rules,
-    exactly_one_of,
-)
+from comparisons.scene.names import by_name
+from comparisons.scene.record import Record, Unjudged, copied, exactly_one_of
+from comparisons.scene.rules import Count, Dimension, FieldError, Name, Point, Positive, Vector
 from comparisons.scene.stages import LoadHistory, StageSpec, load_histories
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamSpec:
+class BeamSpec(Record):
     """A beam, straight and uniform unless it turns or tapers.
 
     The section is a rectangle `width` x `height` (effective shear area 5/6 of the area), or `area` and `second_moment`
@@ -105,22 +98,34 @@ class BeamSpec:
         "st-venant-kirchhoff"
     )
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("poissons_ratio",), ("shear_modulus",)))
-        exactly_one_of(vars(self), (("width", "height"), ("area", "second_moment")))
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules: one way to state material and section, a length, stiffnesses within floating-point range."""
+        return (
+            exactly_one_of(self, ("poissons_ratio",), ("shear_modulus",)),
+            exactly_one_of(self, ("width", "height"), ("area", "second_moment")),
+            self._has_length(),
+            self._shears_as_it_tapers(),
+            self._has_stiffness(),
+        )
+
+    def _has_length(self) -> Iterator[FieldError]:
         shortest = 1.0 / rules.LARGEST
         if not shortest <= self.length <= rules.LARGEST:
             rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
-            raise FieldError("end", self.end, rule)
-        least, most = rules.RANGE
+            yield FieldError("end", self.end, rule)
+
+    def _shears_as_it_tapers(self) -> Iterator[FieldError]:
         if self.tapers and self.shear_area is not None:
-            raise FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
+            yield FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
+
+    def _has_stiffness(self) -> Iterator[FieldError]:
+        least, most = rules.RANGE
         stiffnesses = zip(("EA", "GA", "EI") * 2, (*self.stiffness(0.0), *self.stiffness(1.0)), strict=True)
         for name, stiffness in stiffnesses:
             if not least <= stiffness <= most:
                 rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
-                raise FieldError("youngs_modulus", self.youngs_modulus, rule)
+                yield FieldError("youngs_modulus", self.youngs_modulus, rule)
+                return
 
     @property
     def length(self) -> float:
@@ -231,7 +236,7 @@ def _cube(number: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene:
+class Scene(Record):
     """Beams with supports and loads, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
 
     Beams whose ends have the same coordinates are rigidly joined there, unless a hinge is between them. The load parameter goes from
@@ -274,29 +279,33 @@ class Scene:
     springs: Annotated[tuple[SpringSpec, ...], rules.records(SpringSpec)] = ()
     stages: Annotated[tuple[StageSpec, ...], rules.records(StageSpec)] = ()
 
-    def __post_init__(self) -> None:
-        from comparisons.scene.consistency import check_scene
-
-        apply_rules(self)
+    def settle(self) -> None:
+        """Give the pins their motions in the stages."""
         object.__setattr__(self, "pins", tuple(map(self._with_moves, self.pins)))
-        check_scene(self)
+
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules between the records."""
+        from comparisons.scene.consistency import scene_rules
+
+        return scene_rules(self)
 
     def _with_moves(self, pin: PinSpec) -> PinSpec:
         """Return a copy of `pin` that knows its motions in the stages."""
         if not (self.stages or pin.moves):
             return pin
-        pin = replace(pin)
-        moves = ({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
-        object.__setattr__(pin, "moves", tuple(moves))
-        return pin
+        try:
+            moves = ({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
+            return copied(pin, moves=tuple(moves))
+        except Unjudged:
+            return copied(pin, "moves")
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:
-        return {beam.name: beam for beam in self.beams}
+        return by_name(self.beams)
 
     @cached_property
     def _pins(self) -> dict[str, PinSpec]:
-        return {pin.name: pin for pin in self.pins}
+        return by_name(self.pins)
 
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
@@ -317,14 +326,19 @@ class Scene:
         return (pin and pin.radius) or 0.0
 
     @cached_property
-    def all_supports(self) -> tuple[SupportSpec, ...]:
-        """The clamped ends of the beams, then `supports`."""
+    def first_supports(self) -> tuple[SupportSpec, ...]:
+        """The clamped ends of the beams, then `supports`, with the motions of the first stage."""
         clamps = (
             SupportSpec(beam=beam.name, end=end, kind="clamped")
             for beam in self.beams
             for end in beam.clamped
         )
-        return tuple(map(self._with_motions, (*clamps, *self.supports)))
+        return (*clamps, *self.supports)
+
+    @cached_property
+    def all_supports(self) -> tuple[SupportSpec, ...]:
+        """The clamped ends of the beams, then `supports`, with the motions of all stages."""
+        return tuple(map(self._with_motions, self.first_supports))
 
     @property
     def holding(self) -> tuple[SupportSpec | SpringSpec, ...]:
@@ -335,13 +349,12 @@ class Scene:
         """Return a copy of `support` that knows its motions in the stages."""
         if not self.stages:
             return support
-        support, place = replace(support), self.place(support.node)
+        place = self.place(support.node)
         motions = (
             next((move.motion for move in stage.support if self.place(move.node) == place), (0.0, 0.0, 0.0))
             for stage in self.stages
         )
-        object.__setattr__(support, "onward", tuple(motions))
-        return support
+        return copied(support, onward=tuple(motions))
 
     @cached_property
     def load_histories(self) -> tuple[LoadHistory, ...]:

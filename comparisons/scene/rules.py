@@ -1,14 +1,14 @@
 """Rules for single values of a scene. A rule returns the value in its stored form, or raises an error with its sentence.
 
-A record names the rule of a field in the field's type, ``Annotated[float, positive]``; `apply_rules` applies them.
+A record names the rule of a field in the field's type, ``Annotated[float, positive]``; `comparisons.scene.record` applies them.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
 from functools import cache
 from itertools import pairwise
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import Annotated, get_args, get_type_hints
 
 from comparisons.scene.values import toml_value
 
@@ -29,7 +29,7 @@ class RuleError(ValueError):
 
 
 class FieldError(ValueError):
-    """A value of a record breaks a rule: ``KEY = VALUE: RULE`` in one line.
+    """A mistake: a value of a record breaks a rule, ``KEY = VALUE: RULE`` in one line.
 
     Parameters
     ----------
@@ -45,9 +45,39 @@ class FieldError(ValueError):
         super().__init__(f"{key} = {shown(value)}: {rule}")
         self.key, self.value, self.rule = key, value, rule
 
+    @property
+    def mistakes(self) -> "tuple[FieldError, ...]":
+        """Every single mistake."""
+        return (self,)
+
     def within(self, prefix: str) -> "FieldError":
-        """Return the same error with `prefix` before its key."""
+        """Return the same error with `prefix` before every key."""
         return FieldError(prefix + self.key, self.value, self.rule)
+
+
+class RecordError(FieldError):
+    """Several mistakes, each in one line; `key`, `value` and `rule` are those of the first.
+
+    Parameters
+    ----------
+    mistakes : collection of FieldError
+        At least one.
+    """
+
+    def __init__(self, mistakes: Collection[FieldError]) -> None:
+        self._mistakes = tuple(mistakes)
+        first = self._mistakes[0]
+        super().__init__(first.key, first.value, first.rule)
+        self.args = ("\n".join(map(str, self._mistakes)),)
+
+    @property
+    def mistakes(self) -> tuple[FieldError, ...]:
+        """Every single mistake."""
+        return self._mistakes
+
+    def within(self, prefix: str) -> FieldError:
+        """Return the same error with `prefix` before every key."""
+        return RecordError([mistake.within(prefix) for mistake in self._mistakes])
 
 
 class Missing:
@@ -75,25 +105,6 @@ def field_rules(kind: type) -> dict[str, Rule]:
         name: next(part for part in (hint, *get_args(hint)) if hasattr(part, "__metadata__")).__metadata__[0]
         for name, hint in hints
     }
-
-
-def apply_rules(record: Any) -> None:
-    """Check every field of a frozen record against its rule and store the value in its stored form.
-
-    Raises
-    ------
-    FieldError
-        For the first field that breaks its rule.
-    """
-    rules = field_rules(record.__class__)
-    for item in fields(record):
-        value = getattr(record, item.name)
-        if value is None and item.default is None:
-            continue
-        try:
-            object.__setattr__(record, item.name, rules[item.name](value))
-        except RuleError as error:
-            raise FieldError(item.name, value, str(error)) from None
 
 
 def number(value: object, largest: float = LARGEST) -> float:
@@ -341,20 +352,6 @@ def records(kind: type, at_least: int = 0) -> Rule:
         return items
 
     return rule
-
-
-def exactly_one_of(given: Mapping[str, object], groups: tuple[tuple[str, ...], ...]) -> None:
-    """Raise unless exactly one of the `groups` of keys is given, with all its keys; None means not given."""
-    wanted = " or ".join(" and ".join(group) for group in groups)
-    present = [group for group in groups if any(given[item] is not None for item in group)]
-    if not present:
-        raise FieldError(groups[0][0], MISSING, f"give {wanted}")
-    if len(present) > 1:
-        extra = next(item for item in present[1] if given[item] is not None)
-        raise FieldError(extra, given[extra], f"give either {wanted}, not both")
-    for item in present[0]:
-        if given[item] is None:
-            raise FieldError(item, MISSING, f"must be given, {' and '.join(present[0])} belong together")
 
 
 Number = Annotated[float, number]

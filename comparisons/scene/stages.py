@@ -1,26 +1,18 @@
 """Stages that follow the first one of a scene: what they move on from where the stage before ended."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
 from comparisons.scene import rules
 from comparisons.scene.amounts import amount
 from comparisons.scene.conditions import LoadSpec
-from comparisons.scene.rules import (
-    MISSING,
-    Count,
-    FieldError,
-    Name,
-    Number,
-    Point,
-    Vector,
-    apply_rules,
-    exactly_one_of,
-)
+from comparisons.scene.record import Record, exactly_one_of
+from comparisons.scene.rules import MISSING, Count, FieldError, Name, Number, Point, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinMove:
+class PinMove(Record):
     """A pin's motion during a stage, at constant speed by the load parameter.
 
     Parameters
@@ -42,15 +34,17 @@ class PinMove:
     displacement: Vector | None = None
     path: Annotated[tuple[Point, ...], rules.further_points] | None = None
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
-        exactly_one_of(vars(self), (("displacement",), ("path",)))
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules: one way to state the motion, and a displacement that is not zero."""
+        return exactly_one_of(self, ("displacement",), ("path",)), self._moves()
+
+    def _moves(self) -> Iterator[FieldError]:
         if self.displacement is not None and not any(self.displacement):
-            raise FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
+            yield FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportMove:
+class SupportMove(Record):
     """A support's motion during a stage, in proportion to the load parameter.
 
     Parameters
@@ -75,10 +69,13 @@ class SupportMove:
     displacement: Vector = (0.0, 0.0)
     rotation: Number = 0.0
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rule: the support moves."""
+        return (self._moves(),)
+
+    def _moves(self) -> Iterator[FieldError]:
         if not any(self.motion):
-            raise FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
+            yield FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
 
     @property
     def node(self) -> str:
@@ -92,7 +89,7 @@ class SupportMove:
 
 
 @dataclass(frozen=True, kw_only=True)
-class StageSpec:
+class StageSpec(Record):
     """A stage after the first one: pins, supports and loads change on from where the stage before ended; all others rest.
 
     The first stage is the scene without its stages, at load parameters from 0 to 1. The stages follow in the order of the file, the
@@ -126,10 +123,13 @@ class StageSpec:
     load: Annotated[tuple[LoadSpec, ...], rules.records(LoadSpec)] = ()
     gravity: Vector = (0.0, 0.0)
 
-    def __post_init__(self) -> None:
-        apply_rules(self)
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rule: something changes."""
+        return (self._changes(),)
+
+    def _changes(self) -> Iterator[FieldError]:
         if not (self.pin or self.support or self.load or any(self.gravity)):
-            raise FieldError(
+            yield FieldError(
                 "pin", MISSING, "give pin, support, load or gravity: nothing happens in the stage"
             )
 

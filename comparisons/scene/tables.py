@@ -1,26 +1,52 @@
-"""Reader of TOML input files: it checks the keys and raises errors of one line."""
+"""Reader of TOML input files: it checks the keys and lists the mistakes in the order of the file, each in one line."""
 
 import difflib
 import re
 import tomllib
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import islice
 from typing import Any
 
 from comparisons.files import read_regular
-from comparisons.scene.rules import MISSING, FieldError
+from comparisons.scene.rules import MISSING, FieldError, Rule, RuleError, shown
 
 LARGEST_FILE = 16_000_000
 """Largest size of an input file [byte]."""
 DEEPEST = 50
 """Largest number of parts of a dotted key; the time to parse a key rises with the square of this number."""
+MOST = 1000
+"""Number of mistakes from which the reader of a file looks for no more."""
+_KEY = re.compile(r"([^.\[\]]+)(?:\[(\d+)\])?")
+_HEADER = re.compile(
+    r"""\"{3}(?:\\.|[^\\])*?\"{3}|'{3}.*?'{3}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*"""
+    r"""|^[ \t]*\[\[?[ \t]*(?P<quote>["']?)(?P<key>[\w-]+)(?P=quote)[ \t]*\]""",
+    re.DOTALL | re.MULTILINE,
+)
+"""Header of a table, or a text or comment, which may look like one."""
 _DEEP = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{DEEPEST}}}""")
 
 
 class InputError(ValueError):
-    """An input file that cannot be read: exactly one line, ``FILE: KEY = VALUE: RULE``."""
+    """An input file that cannot be read, ``FILE: KEY = VALUE: RULE`` in one line for every mistake.
 
-    def __init__(self, source: str, reason: str) -> None:
-        super().__init__(" ".join(f"{source}: {reason}".split()))
+    Parameters
+    ----------
+    source : str
+        The file.
+    reason : str or FieldError
+        What is wrong with the file, or its mistakes.
+
+    Attributes
+    ----------
+    mistakes : tuple of FieldError
+        The mistakes in the file's order; none if the file cannot be read at all.
+    """
+
+    def __init__(self, source: str, reason: str | FieldError) -> None:
+        self.mistakes = reason.mistakes if isinstance(reason, FieldError) else ()
+        lines = (f"{source}: {item}" for item in self.mistakes or (reason,))
+        super().__init__("\n".join(" ".join(line.split()) for line in lines))
 
 
 class SceneError(InputError):
@@ -56,14 +82,113 @@ def read_tables(text: str, source: str, kind: type[InputError]) -> dict[str, Any
         raise kind(source, f"must be valid TOML: {error}") from None
 
 
-def check_keys(table: dict[str, Any], known: Iterable[str], required: Iterable[str] = ()) -> None:
-    """Raise `FieldError` for the first key of `table` that is not known, or that is required and not there."""
-    names = sorted(known)
-    for key, value in table.items():
-        if key not in names:
-            near = difflib.get_close_matches(key, names, n=1, cutoff=0.5)
-            hint = f"did you mean {near[0]}?" if near else "known are " + ", ".join(names)
-            raise FieldError(key if key.isprintable() else repr(key), value, f"unknown key, {hint}")
+def check_keys(
+    table: dict[str, Any], known: Collection[str], required: Iterable[str] = ()
+) -> Iterator[FieldError]:
+    """Yield the keys of `table` that are not known, and the keys that are required and not there."""
+    meant = set()
+    for key in _unknown(table, known):
+        near = nearest(key, known)
+        meant.add(near)
+        hint = f"did you mean {near}?" if near else "known are " + ", ".join(sorted(known))
+        yield FieldError(key if key.isprintable() else repr(key), table[key], f"unknown key, {hint}")
     for key in required:
-        if key not in table:
-            raise FieldError(key, MISSING, "must be given")
+        if key not in table and key not in meant:
+            yield FieldError(key, MISSING, "must be given")
+
+
+def _unknown(table: dict[str, Any], known: Collection[str]) -> Iterator[str]:
+    """Return the keys of a table that are not known, `MOST` at most."""
+    return islice((key for key in table if key not in known), MOST)
+
+
+def meant(table: dict[str, Any], known: Collection[str]) -> set[str]:
+    """Return the known keys that are not in `table`, for which a key of `table` is a misspelling."""
+    near = {nearest(key, known) for key in _unknown(table, known)}
+    return {key for key in near if key is not None and key not in table}
+
+
+def nearest(key: str, known: Iterable[str]) -> str | None:
+    """Return the known key that is spelt most like `key`, if one is near."""
+    near = difflib.get_close_matches(key, sorted(known), n=1, cutoff=0.5)
+    return near[0] if near else None
+
+
+def check_table(tables: dict[str, Any], name: str) -> Iterator[FieldError]:
+    """Yield a mistake if the value called `name` is there and is no table."""
+    if name in tables and not isinstance(tables[name], dict):
+        yield FieldError(name, tables[name], f"must be a table, [{name}]")
+
+
+def check_tables(tables: dict[str, Any], name: str) -> Iterator[FieldError]:
+    """Yield a mistake if the value called `name` is there and is no list of tables."""
+    found = tables.get(name, [{}])
+    if not isinstance(found, list) or not found or not all(isinstance(item, dict) for item in found):
+        yield FieldError(name, found, f"must be a list of tables, [[{name}]]")
+
+
+def head_values(
+    tables: dict[str, Any], name: str, rules: Mapping[str, Rule], required: Iterable[str]
+) -> tuple[dict[str, Any], list[FieldError]]:
+    """Return the right values of the table called `name` in their stored form, and its mistakes."""
+    mistakes = list(check_table(tables, name))
+    if mistakes or name not in tables:
+        return {}, mistakes
+    values, mistakes = table_values(tables[name], rules, required)
+    return values, [mistake.within(f"{name}.") for mistake in mistakes]
+
+
+def table_values(
+    table: dict[str, Any], rules: Mapping[str, Rule], required: Iterable[str]
+) -> tuple[dict[str, Any], list[FieldError]]:
+    """Return the right values of a table in their stored form, and its mistakes."""
+    mistakes = list(check_keys(table, rules, required))
+    values = {}
+    for key in (key for key in table if key in rules):
+        try:
+            values[key] = rules[key](table[key])
+        except RuleError as error:
+            mistakes.append(FieldError(key, table[key], str(error)))
+    return values, mistakes
+
+
+def in_order(mistakes: Iterable[FieldError], text: str, tables: dict[str, Any]) -> list[FieldError]:
+    """Return mistakes in the order in which their keys stand in the TOML `text` of `tables`, one for a value.
+
+    A key that is missing stands at the end of its table.
+    """
+    headers: dict[str, list[int]] = defaultdict(list)
+    for found in _HEADER.finditer(text):
+        headers[found["key"]].append(found.start())
+
+    top = {name: number - len(tables) for number, name in enumerate(tables)}
+    ranks: dict[int, dict[str, int]] = {}
+
+    def place(mistake: FieldError) -> tuple[int, ...]:
+        path = [(name, int(number or 0)) for name, number in _KEY.findall(mistake.key)]
+        if not path or path[0][0] not in tables:
+            return (len(text),)
+        name, number = path[0]
+        start = headers[name][number] if number < len(headers[name]) else top[name]
+        return start, *_places(path, tables, ranks)
+
+    first: dict[tuple[str, str], FieldError] = {}
+    for mistake in sorted(mistakes, key=place):
+        first.setdefault((mistake.key, shown(mistake.value)), mistake)
+    return list(first.values())
+
+
+def _places(
+    path: Iterable[tuple[str, int]], table: object, ranks: dict[int, dict[str, int]]
+) -> Iterator[int]:
+    """Yield the number of every key of a path among the keys of its table, and the number in its list; `ranks` keeps the numbers."""
+    for name, number in path:
+        if not isinstance(table, dict):
+            return
+        if id(table) not in ranks:
+            ranks[id(table)] = {key: rank for rank, key in enumerate(table)}
+        yield ranks[id(table)].get(name, len(table))
+        yield number
+        table = table.get(name)
+        if isinstance(table, list) and number < len(table):
+            table = table[number]

@@ -4,6 +4,8 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
+GROUPS = {"RecordError"}
+"""Errors that hold errors."""
 ERRORS = {"RuleError", "FieldError", "InputError", "SceneError", "kind"}
 """Names by which the reader calls its errors; `kind` is the class of error that a caller hands down."""
 
@@ -26,16 +28,22 @@ def sentences(source: Path) -> set[str]:
 
 
 def _said(function: ast.FunctionDef) -> Iterator[ast.expr]:
-    """Yield the last argument of every error raised in a function itself, and what it hands to `read_text`."""
+    """Yield the last argument of every error made in a function itself, and what it hands to `read_text`."""
     for node in _own_nodes(function):
-        if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
-            name = getattr(node.exc.func, "id", None)
-            if name in ERRORS:
-                yield node.exc.args[-1]
-            elif name is not None:
-                raise ValueError(f"line {node.lineno}: {name} is no error of the reader")
-        if isinstance(node, ast.Call) and getattr(node.func, "id", None) == "read_text":
+        if not isinstance(node, ast.Call):
+            continue
+        name = _name(node)
+        if name in ERRORS and node.args:
+            yield node.args[-1]
+        elif name.endswith("Error") and name not in GROUPS | ERRORS:
+            raise ValueError(f"line {node.lineno}: {name} is no error of the reader")
+        elif name == "read_text":
             yield node.args[1]
+
+
+def _name(value: ast.AST) -> str:
+    """Return the name of the function that is called, empty if the value is no call of a name."""
+    return str(getattr(getattr(value, "func", None), "id", ""))
 
 
 def _own_nodes(function: ast.FunctionDef) -> Iterator[ast.AST]:
@@ -59,8 +67,8 @@ def _templates(value: ast.expr, function: ast.FunctionDef, where: str) -> set[st
         ]
         if assigned:
             return set().union(*(_templates(item, function, where) for item in assigned))
-    if ast.unparse(value) in ("str(error)", "self.rule"):
-        return set()  # a sentence that is passed on
+    if ast.unparse(value) in ("str(error)", "self.rule") or _name(value) in GROUPS:
+        return set()  # a sentence that is passed on, or errors that are looked at one by one
     raise ValueError(f"{where}: {ast.unparse(value)} is no sentence")
 
 

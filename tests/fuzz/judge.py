@@ -23,6 +23,8 @@ OWN_STDERR = os.dup(2)
 """Where the stack of a process goes that is deaf to the limit."""
 NAMED = re.compile(r"crossval: ([A-Z_]+): .+\n")
 """The one line of a solution that stopped."""
+REFUSED = re.compile(r"(crossval: .+\n)+")
+"""The lines of an input that is refused, one for every mistake."""
 
 
 class Hang(BaseException):
@@ -69,13 +71,7 @@ def _verdict(status: int | None, out: str, err: str) -> tuple[str, str | None]:
     named = NAMED.fullmatch(err)
     if status == 0 and not err:
         return "done", None
-    if (
-        status == 2
-        and not out
-        and err.startswith("crossval: ")
-        and err.count("\n") == 1
-        and err.endswith("\n")
-    ):
+    if status == 2 and not out and REFUSED.fullmatch(err):
         return "refused", None
     if status == 3 and named:
         return f"stopped {named[1]}", None

@@ -20,7 +20,7 @@ TOKENS = [
 
 
 def reader(folder: Path) -> Callable[[bytes], bool]:
-    """Return the harness: whether the reader takes some bytes; fails where it neither does nor refuses in one line."""
+    """Return the harness: whether the reader takes some bytes; fails where it neither does nor refuses, each mistake in one line."""
     file = folder / "scene.toml"
 
     def read(data: bytes) -> bool:
@@ -28,9 +28,9 @@ def reader(folder: Path) -> Callable[[bytes], bool]:
         try:
             scene = load_scene(str(file))
         except SceneError as error:
-            line = str(error)
-            assert line.startswith(f"{file}: "), line
-            assert len(line.splitlines()) == 1, line
+            lines = str(error).splitlines()
+            assert all(line.startswith(f"{file}: ") for line in lines), lines
+            assert len(set(lines)) == len(lines), lines
             return False
         assert isinstance(scene, Scene)
         assert hash(scene) == hash(load_scene(str(file)))

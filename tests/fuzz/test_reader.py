@@ -1,4 +1,4 @@
-"""The reader of scene files takes bytes or refuses them in one line."""
+"""The reader of scene files takes bytes or refuses them, each mistake in one line."""
 
 from pathlib import Path
 

@@ -72,7 +72,9 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     if not reported and isinstance(data.get("status"), str) and "load_parameter" not in data:
         return silent(scene, model, str(data["status"]), str(data.get("message", "as the program reports")))
     try:
-        check_keys(data, {*as_dict(silent(scene, model, "", "")), "versions"}, required=("status",))
+        known = {*as_dict(silent(scene, model, "", "")), "versions"}
+        for mistake in check_keys(data, known, required=("status",)):
+            raise mistake
         _check_status(data["status"])
         response = restated({**_defaults(data, scene, seconds), "model": model})
         wrong = next(_contradictions(response, scene), "")

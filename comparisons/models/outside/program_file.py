@@ -1,14 +1,13 @@
 """Program files: a program of others, with its command and limits, as TOML."""
 
 from pathlib import Path
-from typing import Any
 
 from comparisons.models.outside.child import Limits
 from comparisons.models.outside.program import Program
 from comparisons.models.outside.source import COLOUR, Command
 from comparisons.scene import rules
-from comparisons.scene.rules import FieldError, Rule, RuleError
-from comparisons.scene.tables import InputError, check_keys, read_tables, read_text
+from comparisons.scene.rules import RecordError, Rule, RuleError
+from comparisons.scene.tables import InputError, check_keys, head_values, in_order, read_tables, read_text
 
 
 class ProgramFileError(InputError):
@@ -25,14 +24,15 @@ def read_program(path: Path) -> Program:
     Raises
     ------
     ProgramFileError
-        One line: file, key, value and rule.
+        All mistakes in the order of the file, each in one line: file, key, value and rule.
     """
     source = str(path)
-    tables = read_tables(read_text(source, "no such file", ProgramFileError), source, ProgramFileError)
-    try:
-        given = _checked(tables)
-    except FieldError as error:
-        raise ProgramFileError(source, str(error)) from None
+    text = read_text(source, "no such file", ProgramFileError)
+    tables = read_tables(text, source, ProgramFileError)
+    given, mistakes = head_values(tables, "program", RULES, required=("name", "command"))
+    mistakes += check_keys(tables, ("program",), required=("program",))
+    if mistakes:
+        raise ProgramFileError(source, RecordError(in_order(mistakes, text, tables)))
     return Program(
         Command(
             name=given["name"],
@@ -74,22 +74,3 @@ RULES: dict[str, Rule] = {
     "colour": _colour,
 }
 """The keys of a program file with the rules of their values."""
-
-
-def _checked(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of the table ``[program]`` in their stored form."""
-    check_keys(tables, ("program",), required=("program",))
-    table = tables["program"]
-    if not isinstance(table, dict):
-        raise FieldError("program", table, "must be a table, [program]")
-    try:
-        check_keys(table, RULES, required=("name", "command"))
-        found = {}
-        for key, value in table.items():
-            try:
-                found[key] = RULES[key](value)
-            except RuleError as error:
-                raise FieldError(key, value, str(error)) from None
-    except FieldError as error:
-        raise error.within("program.") from None
-    return found

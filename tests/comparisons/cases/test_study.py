@@ -115,7 +115,7 @@ BAD = {
     "run[0].integration_tolerance = 2: must lie between 0 and 1": RUN
     + 'element = "exact"\nintegration_tolerance = 2',
     'run[0].mesh = "25x2": is no option of model = "tsm"': RUN + 'mesh = "25x2"',
-    "run[0].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25, 2]',
+    "run[0].mesh = 25: must be NXxNY": '[[run]]\nmodel = "solid"\nmesh = [25]',
     'run[0].model = "fem": must be one of': '[[run]]\nmodel = "fem"',
     "run[0].model = (missing): must be given": "[[run]]\nelements = 3",
     "run[0].scene.load_parameters = 0: must lie between": RUN + "scene.load_parameters = 0",

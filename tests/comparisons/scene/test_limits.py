@@ -29,14 +29,14 @@ EXTREME = {
 }  # fmt: skip
 
 
-def refused(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+def refused(arguments: list[str], capsys: pytest.CaptureFixture[str], lines: int = 1) -> str:
     began = monotonic()
     assert main(arguments) == 2
     assert monotonic() - began < 20
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith("crossval: ")
-    assert err.count("\n") == 1
+    assert all(line.startswith("crossval: ") for line in err.splitlines())
+    assert err.count("\n") == lines
     return err
 
 
@@ -60,7 +60,8 @@ def test_looking_for_deep_keys_takes_no_time(
 ) -> None:
     file = tmp_path / "my.toml"
     file.write_text(text)
-    assert "parts" not in refused(["solve", str(file), "--model", "tsm"], capsys)
+    empty = text.startswith("#")
+    assert "parts" not in refused(["solve", str(file), "--model", "tsm"], capsys, lines=2 if empty else 1)
 
 
 def odd(kind: str, folder: Path) -> str:

@@ -22,6 +22,7 @@ from comparisons.scene.values import toml_value
 
 SHIPPED = resources.files("comparisons.scene")
 TEMPLATE = SHIPPED.joinpath("template.toml").read_text()
+THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
 VALIDATOR = Draft202012Validator(json_schema())
 Output = pytest.CaptureFixture[str]
 
@@ -88,13 +89,13 @@ def test_a_new_scene_is_like_a_built_in_one(name: str) -> None:
 def test_what_cannot_be_done_is_one_line(
     arguments: list[str], line: str, capsys: Output, in_a_folder: Path
 ) -> None:
-    (in_a_folder / "there.toml").write_text("[scene]\n")
+    (in_a_folder / "there.toml").write_text(THERE)
     assert main(arguments) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"crossval: {line}")
     assert len(error.splitlines()) == 1
     assert [path.name for path in in_a_folder.iterdir()] == ["there.toml"]
-    assert (in_a_folder / "there.toml").read_text() == "[scene]\n"
+    assert (in_a_folder / "there.toml").read_text() == THERE
 
 
 def test_check_says_why_a_model_cannot_state_a_scene(capsys: Output) -> None:
