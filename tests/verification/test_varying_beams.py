@@ -80,7 +80,7 @@ def structure(
 
 def apart(result, shot):
     """Largest difference in position, angle, force and moment; all of the order 1."""
-    support = result.supports["b"]
+    support = result.supports["b.start"]
     tip = result.shape("b", -1)[-1]
     clamp = np.array([*support.force[-1], support.moment[-1]])
     beam = result.model.structure.beams[0]
@@ -103,7 +103,7 @@ def test_exact_against_shooting(key, pin):
     offset = 0.05 if pin else 0.0
     result = tsm.solve(structure(**given, tip=tip, pin=pin, offset=offset), [0.5, 1.0])
     assert result.status is tsm.Status.COMPLETED
-    support = result.supports["b"]
+    support = result.supports["b.start"]
     guess = -np.array([*support.force[-1], support.moment[-1]])
     if pin:
         touch = result.equilibria[-1].state.touches[0]
@@ -125,7 +125,7 @@ def test_an_arc_is_straightened_by_its_natural_moment():
     result = tsm.solve(structure(turn=turn, tip=(0.0, 0.0, moment)), [0.5, 1.0])
     arc, line = result.axis_line("b", -1)
     assert np.abs(line - np.outer(arc, [1.0, 0.0])).max() <= 1e-12
-    assert result.supports["b"].moment[-1] == pytest.approx(-moment, rel=1e-12)
+    assert result.supports["b.start"].moment[-1] == pytest.approx(-moment, rel=1e-12)
     half = result.axis_line("b", 0)[1][-1]
     assert half == pytest.approx(
         [math.sin(turn / 2) / (turn / 2), (1 - math.cos(turn / 2)) / (turn / 2)], abs=1e-12
