@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from tsm.beam import Beam, LineLoad
-from tsm.elements import ELEMENTS
+from tsm.elements import ELEMENTS, EXACT, ElementType, Integrated
 from tsm.elements.properties import Array
 from tsm.elements.rod import Flexibility
 from tsm.elements.varying import Course
@@ -114,23 +114,42 @@ class Along:
         )  # fmt: skip
 
 
-def refuse(beams: Sequence[Beam], loads: Sequence[LineLoad]) -> None:
-    """Raise ValueError where a beam has what its elements cannot state."""
-    laden = {load.beam for load in loads}
-    for beam in beams:
-        if ELEMENTS[beam.element].varies:
-            continue
-        for field, there in (
-            ("turn", beam.turn),
-            ("end_section", beam.end_section),
-            ("load", beam.name in laden),
-        ):
-            if there:
-                able = ", ".join(name for name, kind in ELEMENTS.items() if kind.varies)
-                raise ValueError(
-                    f'Beam({beam.name}).{field}: elements "{beam.element}" are straight and uniform, '
-                    f"without loads along them; use {able}"
-                )
+def kind_of(beam: Beam, *, varies: bool) -> ElementType:
+    """Type of a beam's elements.
+
+    Raises
+    ------
+    ValueError
+        If the beam has what its elements cannot state.
+    """
+    kind = ELEMENTS[beam.element]
+    if not varies:
+        return kind
+    if kind.on_varying is None:
+        able = ", ".join(name for name, other in ELEMENTS.items() if other.on_varying)
+        raise ValueError(
+            f"Beam({beam.name}).element = {beam.element!r}: such elements are straight and uniform, without loads along them; "
+            f"use {able}"
+        )
+    return kind.on_varying
+
+
+def gauss_nodes(beams: Sequence[tuple[Beam, ElementType]]) -> int | None:
+    """Fixed number of Gauss nodes of the elements that contacts cut, None where it follows from the accuracy.
+
+    Raises
+    ------
+    ValueError
+        If it is fixed for some of them only.
+    """
+    counts = {kind.nodes: beam for beam, kind in beams if isinstance(kind, Integrated)}
+    if len(counts) > 1:
+        fixed = next(beam for nodes, beam in counts.items() if nodes)
+        raise ValueError(
+            f'Beam({fixed.name}).element = {fixed.element!r}: must be "{EXACT.name}" as of other beams here, since the beam is '
+            "curved or tapered or has a load along it"
+        )
+    return next(iter(counts), None)
 
 
 def _sections(beam: Beam, begin: float, end: float) -> list[tuple[float, float]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from tsm.elements import ELEMENTS, ClosedForm
 from tsm.elements.properties import Array, Properties
 from tsm.events import normal_force
 from tsm.model import Model
@@ -16,7 +16,7 @@ from tsm.newton import Equilibrium
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Deformation:
-    """The most deformed element in closed form at every accepted step, between the prescribed load parameters too.
+    """The most deformed element at every accepted step, between the prescribed load parameters too; exact elements do not count.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Deformation:
     turn : ndarray, shape (n,)
         Largest angle by which an element bends between its ends [rad]. For an element in contact the angle is at least
         ``F min(a, b) l/EI``, the bend under a constant moment of the contact force, with the distances a and b of the contact from the
-        ends of the element.
+        ends of the element. Of a curved or tapered beam, or one with a load along it, the angle between the ends of a segment.
     strain : ndarray, shape (n,)
         Section force, or contact force inside the element, over the smaller of EA and GA; over EA where the element does not shear.
     bearable : float
@@ -40,11 +40,32 @@ class Deformation:
 
 def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation | None:
     """Return turn and strain at every equilibrium; None if all elements are exact, because exact elements have no limit."""
-    kinds = {ELEMENTS[beam.beam.element] for beam in model.beams.values()}
-    bearable = [kind.bearable_turn for kind in kinds if isinstance(kind, ClosedForm)]
-    if not bearable:
+    bearable = min(beam.kind.bearable_turn for beam in model.beams.values())
+    if bearable == math.inf:
         return None
-    number = next(group.number for group in model.groups if not group.internal)
+    turn, strain = np.zeros((2, len(equilibria)))
+    for group in model.groups:
+        if group.internal:
+            turn = np.maximum(turn, [_segment_turn(equilibrium, group.number) for equilibrium in equilibria])
+        else:
+            turns, strain = _closed_form(model, equilibria, group.number)
+            turn = np.maximum(turn, turns)
+    return Deformation(
+        load_parameter=np.array([one.state.load_parameter for one in equilibria]),
+        turn=turn,
+        strain=strain,
+        bearable=bearable,
+    )
+
+
+def _segment_turn(equilibrium: Equilibrium, number: int) -> float:
+    """Largest angle between the ends of a segment of the elements that contacts cut."""
+    entry = equilibrium.system.groups[number].entry  # type: ignore[attr-defined]
+    return float(np.abs(entry.end - entry.start).max())
+
+
+def _closed_form(model: Model, equilibria: Sequence[Equilibrium], number: int) -> tuple[Array, Array]:
+    """Turn and strain of the elements in closed form."""
     p = Properties(*(column[model.closed] for column in model.properties))
     with np.errstate(divide="ignore"):
         stiffness = np.minimum(p.EA, 12 * p.EI / (p.Phi * p.l0**2))
@@ -62,9 +83,4 @@ def deformation(model: Model, equilibria: Sequence[Equilibrium]) -> Deformation 
             arm = p.l0[e] * min(max(touch.xi, 0.0), max(1.0 - touch.xi, 0.0))
             turn[n] = max(turn[n], pressed * arm * p.l0[e] / p.EI[e])
             strain[n] = max(strain[n], pressed / stiffness[e])
-    return Deformation(
-        load_parameter=np.array([one.state.load_parameter for one in equilibria]),
-        turn=turn,
-        strain=strain,
-        bearable=min(bearable),
-    )
+    return turn, strain

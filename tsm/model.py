@@ -11,8 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsm.along import Along, refuse
-from tsm.elements import ELEMENTS, ClosedForm
+from tsm.along import Along, gauss_nodes, kind_of
+from tsm.elements import ClosedForm
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
@@ -58,6 +58,8 @@ class Model:
     turns : tuple of float
         Load parameters at which a stage ends and another follows, and at which the paths of the pins turn; with friction, every corner,
         since each may reverse a slip.
+    gauss_nodes : int or None
+        Fixed number of Gauss nodes of the elements that contacts cut, None where it follows from the accuracy.
     along : Along
         What varies along the elements.
     loads : Increments
@@ -78,10 +80,10 @@ class Model:
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.stages = structure, structure.stages
-        refuse(structure.beams, structure.line_loads)
         self.along = Along(structure.beams, structure.line_loads, self.stages)
         self._place_beams(structure.beams)
-        self._sort_elements(structure.beams)
+        self._sort_elements()
+        self.gauss_nodes = gauss_nodes([(beam.beam, beam.kind) for beam in self.beams.values()])
         self._prescribe(structure)
         self.springs = self._place_springs(structure)
         self._place_pairs(structure)
@@ -120,7 +122,12 @@ class Model:
                 nodes.append(node)
             arcs = [part * beam.length for part in beam.parts]
             self.beams[beam.name] = BeamModel(
-                beam=beam, first=elements, nodes=np.array(nodes), lengths=_lengths(beam, arcs), arcs=arcs
+                beam=beam,
+                first=elements,
+                nodes=np.array(nodes),
+                lengths=_lengths(beam, arcs),
+                arcs=arcs,
+                kind=kind_of(beam, varies=bool(self.along.varies[elements])),
             )
             elements += beam.elements
         self._place_joints(behind, ends, coordinates)
@@ -179,14 +186,14 @@ class Model:
                 raise ValueError(f"Hinge({hinge.beam}.{hinge.end}): the joint turns freely")
         return Springs(ground, between) if ground or between else None
 
-    def _sort_elements(self, beams: tuple[Beam, ...]) -> None:
-        counts = [beam.elements for beam in beams]
+    def _sort_elements(self) -> None:
+        counts = [beam.beam.elements for beam in self.beams.values()]
         self.groups: list[ElementGroup] = []
         self.place, self.block = np.zeros(sum(counts), dtype=int), np.full(sum(counts), -1)
         count = len(self.coordinates)
         for kind, group in GROUPS.items():
             elements = np.flatnonzero(
-                np.repeat([isinstance(ELEMENTS[b.element], kind) for b in beams], counts)
+                np.repeat([isinstance(beam.kind, kind) for beam in self.beams.values()], counts)
             )
             if not len(elements):
                 continue
@@ -327,7 +334,7 @@ class Model:
         slots = 0
         for pair in structure.contacts:
             target = self.beams[pair.beam]
-            element_type = ELEMENTS[target.beam.element]
+            element_type = target.kind
             pin = pins.get(pair.node)
             if pair.friction and not element_type.rubs:
                 raise ValueError(
@@ -398,7 +405,7 @@ class Model:
         """
         counts = [beam.beam.elements for beam in self.beams.values()]
         EA, GA, EI = np.repeat(sections, counts, axis=1)
-        sheared = np.repeat([ELEMENTS[beam.beam.element].sheared for beam in self.beams.values()], counts)
+        sheared = np.repeat([beam.kind.sheared for beam in self.beams.values()], counts)
         d = coordinates[self.element_nodes[:, 1]] - coordinates[self.element_nodes[:, 0]]
         Phi = np.where(sheared.reshape(-1, *[1] * (l0.ndim - 1)), 12 * EI / (GA * l0**2), 0.0)
         return Properties(dx0=d[:, 0].copy(), dy0=d[:, 1].copy(), l0=l0, EA=EA, EI=EI, Phi=Phi)
@@ -407,7 +414,7 @@ class Model:
         """Coefficients of the energy of the elements in closed form; the properties are arrays over all elements."""
         parts = []
         for beam in self.beams.values():
-            kind = ELEMENTS[beam.beam.element]
+            kind = beam.kind
             if isinstance(kind, ClosedForm):
                 properties_there = Properties(*(column[beam.first : beam.last + 1] for column in properties))
                 parts.append(kind.coefficients(properties_there))

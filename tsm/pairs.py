@@ -32,6 +32,8 @@ class BeamModel:
         Undeformed lengths of its elements.
     arcs : list of float
         Arc positions of its nodes.
+    kind : ElementType
+        Type of its elements.
     """
 
     beam: Beam
@@ -39,6 +41,7 @@ class BeamModel:
     nodes: Array
     lengths: list[float]
     arcs: list[float]
+    kind: ElementType
 
     @property
     def last(self) -> int:

@@ -60,11 +60,18 @@ def leaning():
     return tsm.Structure(beams=(lower, upper), supports=supports, line_loads=loads, contacts=(contact,))
 
 
+def as_mixed(structure):
+    """The same structure in `mixed` elements."""
+    beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
+    return replace(structure, beams=beams)
+
+
 SCENES = {
     "two pins": pushed,
     "with offset": lambda: pushed(offset=0.03),
     "with friction": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
     "leaning": leaning,
+    "mixed": lambda: as_mixed(pushed(offset=0.03)),
 }
 
 
@@ -129,14 +136,14 @@ def test_second_variation_answers_loads_as_the_tangent_does(name):
         assert np.abs(moved - again).max() <= 1e-10 * np.abs(moved).max()
 
 
-def heavy_column(weight, elements, *, tapered=False):
-    """A clamped column under a weight per length that rises by a power of the distance from the tip, nearly without stretch."""
+def heavy_column(weight, elements, *, tapered=False, element="exact"):
+    """A clamped column under its weight, nearly without stretch."""
     section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
     thin = tsm.Section(EA=0.5e9, GA=0.5e9, EI=1 / 8)
     return tsm.Structure(
         beams=(
             tsm.Beam(
-                name="b", start=(0, 0), end=(0, 1), section=section, elements=elements, element="exact",
+                name="b", start=(0, 0), end=(0, 1), section=section, elements=elements, element=element,
                 end_section=thin if tapered else None,
             ),
         ),
@@ -152,8 +159,10 @@ def straight_index(structure):
     return index(newton.assembler, equilibrium.state, equilibrium.system)
 
 
-@pytest.mark.parametrize("elements", [1, 3])
-def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(elements):
+@pytest.mark.parametrize(
+    ("element", "elements", "apart"), [("exact", 1, 1e-6), ("exact", 3, 1e-6), ("mixed", 8, 1e-4)]
+)
+def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(element, elements, apart):
     """Greenhill 1881: ``q L^3/EI = 9/4 z^2`` with the zeros z of the Bessel function of order -1/3; the first is 7.8373."""
     # zeros of J_(-1/3) lie just below those of J_0
     zeros = []
@@ -165,8 +174,9 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
         zeros.append(low)
     assert 9 / 4 * zeros[0] ** 2 == pytest.approx(7.837347, abs=1e-6)
     for number, zero in enumerate(zeros):
-        for factor, expected in ((1 - 1e-6, number), (1 + 1e-6, number + 1)):
-            assert straight_index(heavy_column(9 / 4 * zero**2 * factor, elements)) == expected
+        for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
+            column = heavy_column(9 / 4 * zero**2 * factor, elements, element=element)
+            assert straight_index(column) == expected
 
 
 def test_index_of_a_tapered_column_does_not_depend_on_the_elements():
@@ -206,8 +216,30 @@ def test_elements_that_cannot_state_it_refuse_by_name():
     curved = replace(hook(element="timoshenko"), line_loads=())
     laden = replace(heavy_column(1, 1), beams=(replace(heavy_column(1, 1).beams[0], element="timoshenko"),))
     for structure in (curved, laden):
-        with pytest.raises(ValueError, match=r'elements "timoshenko" are straight and uniform'):
+        with pytest.raises(
+            ValueError, match="such elements are straight and uniform, without loads along them; use mixed"
+        ):
             tsm.solve(structure, [1.0])
+    both = replace(leaning(), beams=(replace(leaning().beams[0], element="mixed"), leaning().beams[1]))
+    with pytest.raises(
+        ValueError, match=r'Beam\(low\).element = .mixed.: must be "exact" as of other beams here'
+    ):
+        tsm.solve(both, [1.0])
+
+
+def test_straight_mixed_beams_stand_beside_varying_ones():
+    """A tip of straight elements in closed form on a curved and tapered beam."""
+    loads = leaning().line_loads[:1]
+    push = tsm.Load(beam="up", end="end", force=(0.0, -1.0))
+    found = []
+    for element, elements in (("mixed", 16), ("exact", 1)):
+        beams = tuple(replace(beam, element=element, elements=elements, nodes=()) for beam in leaning().beams)
+        result = tsm.solve(replace(leaning(), beams=beams, line_loads=loads, loads=(push,)), [0.5, 1.0])
+        history = result.contacts["up.end->low"]
+        found.append([*history.force, *history.arc_position, *result.shape("low", -1)[-1]])
+        assert result.index.tolist() == [0, 0]
+        assert (result.deformation is None) == (element == "exact")
+    assert np.abs(np.subtract(*found)).max() <= 2e-6
 
 
 @pytest.mark.parametrize(

@@ -116,6 +116,37 @@ def test_exact_against_shooting(key, pin):
     assert apart(result, shot) <= 1e-9
 
 
+@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize("pin", [None, (-0.1, 0.3)], ids=["tip load", "pin"])
+def test_mixed_converges_with_fourth_order_at_least(key, pin):
+    """8 and 32 elements, between the ends of loads; 8 elements are good for six digits."""
+    tip, offset = ((0.0, 0.0, 0.0), 0.05) if pin else ((0.3, 0.9, -0.2), 0.0)
+    given = {**KEYS[key], "tip": tip, "pin": pin, "offset": offset}
+
+    def numbers(elements, element):
+        result = tsm.solve(structure(**given, elements=elements, element=element), [0.5, 1.0])
+        support = result.supports["b.start"]
+        found = [*result.shape("b", -1)[-1], *support.force[-1], support.moment[-1]]
+        if pin:
+            history = result.contacts["p->b"]
+            found += [history.force[-1], history.arc_position[-1]]
+        return np.array(found)
+
+    exact = numbers(1, "exact")
+    coarse, fine = (np.abs(numbers(n, "mixed") - exact).max() for n in (8, 32))
+    assert coarse <= 1e-6
+    assert fine <= max(coarse / 4**4, 1e-11)
+
+
+def test_too_few_mixed_elements_say_how_much_they_bend():
+    for elements in (1, 5):
+        result = tsm.solve(
+            structure(turn=5.0, element="mixed", tip=(0.0, 0.0, 0.1), elements=elements), [1.0]
+        )
+        assert result.deformation.turn[-1] == pytest.approx(5.1 / elements, rel=0.05)
+        assert (result.deformation.turn[-1] > result.deformation.bearable) == (elements == 1)
+
+
 def test_an_arc_is_straightened_by_its_natural_moment():
     """A moment ``-EI k0`` at the tip makes a straight line of an arc of almost a full circle."""
     turn = 5.0

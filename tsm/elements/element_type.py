@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ class ElementType(ABC):
     variant : bool
         Whether the element exists only for comparison with another one, as an element with misprints or without a term. The
         matrix of extreme cases does not have it.
+    bearable_turn : float
+        Largest bend between the ends for which the element is an approximation [rad]; infinite for an element that refines itself.
     colour, marker : str
         How figures draw its answers: a colour in hexadecimal digits, a marker of matplotlib.
     """
@@ -34,6 +37,7 @@ class ElementType(ABC):
     source: str
     sheared: bool = True
     variant: bool = False
+    bearable_turn: float = math.inf
     colour: str = "#666666"
     marker: str = "v"
 
@@ -54,18 +58,26 @@ class ElementType(ABC):
 
     @property
     @abstractmethod
-    def varies(self) -> bool:
-        """Whether its beams may be curved or tapered, or have loads along them."""
+    def on_varying(self) -> Integrated | None:
+        """Type of the elements of a beam that is curved or tapered, or has a load along it; None where they cannot state it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(ElementType):
-    """An element whose equations are integrated. A contact cuts it in two; force (2), arc position and section angle are unknowns."""
+    """An element whose equations are integrated. A contact cuts it in two; force (2), arc position and section angle are unknowns.
+
+    Attributes
+    ----------
+    nodes : int or None
+        Gauss nodes of every segment; None where their number follows from the accuracy.
+    """
+
+    nodes: int | None = None
 
     @property
     def meshed(self) -> bool:
-        """False: one element is as accurate as many."""
-        return False
+        """Whether the number of nodes is fixed. Otherwise one element is as accurate as many."""
+        return self.nodes is not None
 
     @property
     def contact_unknowns(self) -> int:
@@ -78,9 +90,9 @@ class Integrated(ElementType):
         return True
 
     @property
-    def varies(self) -> bool:
-        """True."""
-        return True
+    def on_varying(self) -> Integrated:
+        """The same."""
+        return self
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,8 +108,9 @@ class ClosedForm(ElementType):
     order : int
         Order of the errors of forces and shapes in the element's length.
     bearable_turn : float
-        Largest bend between the ends for which the element is an approximation [rad]. The first neglected term is then a fifth of the
-        force.
+        The first neglected term is then a fifth of the force.
+    varying : Integrated or None
+        Type of the elements of a beam that is curved or tapered, or has a load along it.
     shear_floor : (float, int)
         Factor and power of the shear strain F/GA in the error that no number of elements removes, measured on KS for F/GA from 1e-3 to
         3e-2.
@@ -107,6 +120,7 @@ class ClosedForm(ElementType):
     contact: ContactLaw
     order: int = 2
     bearable_turn: float = 1.0
+    varying: Integrated | None = None
     shear_floor: tuple[float, int] = (1.0, 2)
 
     @property
@@ -125,9 +139,9 @@ class ClosedForm(ElementType):
         return self.contact.coupling is not None and self.contact.coupling.friction is not None
 
     @property
-    def varies(self) -> bool:
-        """False."""
-        return False
+    def on_varying(self) -> Integrated | None:
+        """The type in `varying`."""
+        return self.varying
 
     def constants(self, p: Properties) -> Properties:
         """Return the section's constants as this element has them."""

@@ -139,7 +139,7 @@ class ExactGroup(ElementGroup):
 
     def integration_error(self, forces: RodBalance) -> float:
         """Estimated error of the integration inside the elements."""
-        return truncation(self.rods, forces.entry)
+        return 0.0 if self.rods.nodes else truncation(self.rods, forces.entry)
 
     def project(self, pair: PairModel, state: State) -> Projection:
         """Closest point, the last ones found at the same state kept."""

@@ -43,7 +43,9 @@ def truncation(rods: Rods, entry: Entry) -> float:
 
 
 def finer(rods: Rods, state: State, balance: RodBalance, tolerance: float) -> State | None:
-    """State with more Gauss nodes, None where the error estimate of `truncation` is small enough."""
+    """State with more Gauss nodes, None where the error estimate of `truncation` is small enough, or their number is fixed."""
+    if rods.nodes is not None:
+        return None
     order, error = profile_of(state).angle.shape[1], truncation(rods, balance.entry)
     if error <= tolerance or order == MOST_NODES:
         return None
@@ -52,7 +54,9 @@ def finer(rods: Rods, state: State, balance: RodBalance, tolerance: float) -> St
 
 
 def inaccurate(rods: Rods, balance: RodBalance, tolerance: float) -> bool:
-    """Whether the most Gauss nodes do not suffice."""
+    """Whether the most Gauss nodes do not suffice; never with a fixed number, whose error is that of the mesh."""
+    if rods.nodes is not None:
+        return False
     return balance.arrival.bent.shape[1] == MOST_NODES and truncation(rods, balance.entry) > tolerance
 
 

@@ -49,6 +49,7 @@ class Rods:
 
     def __init__(self, model: Model, dofs: Array, exact: Array) -> None:
         self.model, self.dofs, self.elements = model, dofs, exact
+        self.nodes = model.gauss_nodes
         nodes = model.element_nodes[exact]
         self.start, self.end = model.coordinates[nodes[:, 0]].T, model.coordinates[nodes[:, 1]].T
         p = model.properties

@@ -14,7 +14,7 @@ from tsm.rods.shape import RodShape, plain_shape
 from tsm.state import Cuts, Profile, State, Touch
 
 START_ORDER = 14
-"""Gauss nodes of an undeformed element."""
+"""Gauss nodes of an undeformed element whose accuracy decides on their number."""
 
 
 def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
@@ -29,8 +29,9 @@ def cuts_of(rods: Rods, touches: tuple[Touch | None, ...]) -> Cuts:
 def undeformed(rods: Rods, touches: tuple[Touch | None, ...]) -> Profile:
     """Profile of the undeformed elements."""
     cuts = cuts_of(rods, touches)
-    place, nodes, inside = layout(len(rods.length), cuts), collocation(START_ORDER).c, dict(cuts)
-    angle = np.empty((len(place.owner), START_ORDER))
+    order = rods.nodes or START_ORDER
+    place, nodes, inside = layout(len(rods.length), cuts), collocation(order).c, dict(cuts)
+    angle = np.empty((len(place.owner), order))
     for element, (first, last) in enumerate(zip(place.first, place.last, strict=True)):
         places = (touches[k] for k in inside.get(element, ()))
         ends = np.array([0.0, *(touch.xi for touch in places if touch is not None), 1.0])

@@ -3,7 +3,7 @@
 from tsm.elements import mixed_contact
 from tsm.elements.beam import bowed_coefficients, linear_coefficients
 from tsm.elements.contact_law import ContactLaw, Coupling
-from tsm.elements.element_type import ClosedForm
+from tsm.elements.element_type import ClosedForm, Integrated
 from tsm.elements.mixed_friction import FRICTION
 
 LAW = ContactLaw(
@@ -18,6 +18,16 @@ LAW = ContactLaw(
 )
 """The contact law whose force and arc position are unknowns."""
 
+_COLOUR = "#009E73"
+VARYING = Integrated(
+    name="mixed",
+    source="the functional of the Reissner rod, a cubic rotation, three Gauss nodes from load to load",
+    nodes=3,
+    bearable_turn=2.0,
+    colour=_COLOUR,
+    marker="D",
+)
+"""The elements of a curved or tapered beam, or one with a load along it, for which there is no closed form."""
 MIXED = ClosedForm(
     name="mixed",
     source="contact force as unknown, full derivative, strains of the Reissner rod to fourth order",
@@ -26,7 +36,8 @@ MIXED = ClosedForm(
     order=4,
     bearable_turn=2.0,
     shear_floor=(0.3, 3),
-    colour="#009E73",
+    varying=VARYING,
+    colour=_COLOUR,
     marker="D",
 )
 MIXED_NO_BOW = ClosedForm(
@@ -35,7 +46,7 @@ MIXED_NO_BOW = ClosedForm(
     coefficients=linear_coefficients,
     contact=LAW,
     variant=True,
-    colour="#009E73",
+    colour=_COLOUR,
     marker="v",
 )
 
