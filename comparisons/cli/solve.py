@@ -47,7 +47,7 @@ def add_to(commands: "Commands") -> None:
         "--certify",
         choices=("last", "all", "none"),
         default="last",
-        help="load parameters to hold against the exact equilibrium: the last and those beside events (the default), all, none",
+        help="load parameters to hold against the exact equilibrium: the last of every stage and those beside events (the default), all, none",
     )
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.distance import least_force
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
@@ -40,26 +41,27 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
 def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
     """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point.
 
-    Gaps are evaluated at the local minima of the distance between node and axis. At a contact the axis has a kink of the angle 2 a by
+    Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
     shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
     beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
     """
     beam, node = scene.beam(spec.beam), _node(scene, exact, spec)
-    offset, side = scene.offset(spec), 1.0 if spec.side == "left" else -1.0
+    offset, side = touching_distance(scene, spec, 0.0), 1.0 if spec.side == "left" else -1.0
     if offset == 0.0:
         return np.inf, np.nan
+    steep = face_slope(scene, spec)
     arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
     if contact is not None:
         arcs = np.sort(np.append(arcs, contact.arc_position))
         half = _kink(exact, spec.beam, contact.arc_position) / 2.0
-    away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T)
+    away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T) - steep * arcs
     least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
     best, place = np.inf, np.nan
     for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
-        arc = _foot(exact, spec.beam, node, float(arcs[k - 1]), float(arcs[k + 1]))
+        arc = _foot(exact, spec.beam, node, steep, (float(arcs[k - 1]), float(arcs[k + 1])))
         there = exact.shape(spec.beam, np.array([arc]))
         (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
-        gap = math.hypot(out_x, out_y) - offset
+        gap = math.hypot(out_x, out_y) - offset - steep * arc
         if contact is not None:
             gap += half * abs(arc - contact.arc_position)
         if side * (x * out_y - y * out_x) > 0.0 and gap < best:
@@ -80,11 +82,12 @@ def _node(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Array:
     return np.array(scene.pin(spec.node).position(exact.load_parameter))
 
 
-def _foot(exact: Equilibrium, beam: str, node: Array, low: float, high: float) -> float:
-    """Arc position of the closest point between two arc positions, to 1e-6 of their distance."""
+def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:
+    """Arc position of the least gap between two arc positions, to 1e-6 of their distance."""
+    low, high = between
     for _ in range(8):
         arcs = np.linspace(low, high, 11)
-        away = np.hypot(*(exact.shape(beam, arcs).position - node).T)
+        away = np.hypot(*(exact.shape(beam, arcs).position - node).T) - steep * arcs
         k = int(np.argmin(away))
         low, high = float(arcs[max(k - 1, 0)]), float(arcs[min(k + 1, 10)])
     return (low + high) / 2.0

@@ -37,14 +37,14 @@ def certify(
     scene : Scene
         The scene that was solved.
     at : sequence of int, optional
-        Indices of the load parameters to judge; negative ones count from the end. The default are the last one and the ones
-        next to events. Between neighbours without an event the path is followed too.
+        Indices of the load parameters to judge; negative ones count from the end. The default are the last one of every stage and the
+        ones next to events. Between neighbours without an event the path is followed too.
     allowance : float, optional
         Largest difference allowed; the default is `default_allowance`.
     """
     began = perf_counter()
-    unknown = unstated(scene, "the referee", REFEREE) or _unknown_face(scene)
-    if unknown:
+    unknown = unstated(scene, "the referee", REFEREE)
+    if unknown is not None:
         allowed = ALLOWED if allowance is None else allowance
         return Certificate(
             verdict=Verdict.NOT_JUDGED, reason=unknown, allowance=allowed, judged=(), path=(), seconds=0.0
@@ -53,7 +53,7 @@ def certify(
     allowed = default_allowance(response, scene) if allowance is None else allowance
     steps = len(response.load_parameter)
     numbers = (
-        beside_events(response)
+        tuple(sorted({*beside_events(response), *ends_of_stages(response, scene)}))
         if at is None
         else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
     )
@@ -73,15 +73,6 @@ def certify(
         verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
         seconds=perf_counter() - began,
     )  # fmt: skip
-
-
-def _unknown_face(scene: Scene) -> str:
-    """Return why the faces of a scene are not judged; empty if they are."""
-    for spec in scene.contacts:
-        beam = scene.beam(spec.beam)
-        if spec.surface == "face" and beam.height_at(0.0) != beam.height_at(1.0):
-            return f"the referee does not judge {spec.pair} on a face of a height that tapers"
-    return ""
 
 
 def _on_the_path(
@@ -159,6 +150,12 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
             if 0 <= k < steps and len(numbers) < most:
                 numbers.add(k)
     return tuple(sorted(numbers))
+
+
+def ends_of_stages(response: Response, scene: Scene) -> tuple[int, ...]:
+    """Return the indices of the load parameters at which a stage ends and another follows."""
+    ends = [float(k + 1) for k in range(len(scene.stages))]
+    return tuple(k for k, t in enumerate(map(float, response.load_parameter)) if t in ends)
 
 
 def _certified_reason(states: Sequence[Judgement], steps: int) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.faces import touching_distance
 from comparisons.referee.loads import dead_loads
 from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium
@@ -157,7 +158,9 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         arcs, line = answer.axes[spec.beam]
         place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
         apart = float(np.hypot(*(place - node_place(scene, answer, spec.node))))
-        distances[spec.pair] = max(0.0, abs(apart - scene.offset(spec)) - cut) / beam.length
+        distances[spec.pair] = (
+            max(0.0, abs(apart - touching_distance(scene, spec, answer.arcs[spec.pair])) - cut) / beam.length
+        )
     for support in scene.all_supports:
         here = np.array(scene.place(support.node))
         way = (_end(answer, support.node) - here).tolist()

@@ -172,12 +172,7 @@ def _add_stations(layout: Layout, z: Array, g: Array, k: Array) -> None:
                 k[part.force, touch.arc] -= sign
                 k[touch.arc, part.force] -= sign
             if touch.angle != NONE:
-                nu = normal(float(z[touch.angle]))
-                way = touch.offset * part.axes.T @ np.array([nu[1], -nu[0]])
-                g[touch.angle] += sign * way @ n
-                k[rows, touch.angle] += sign * way
-                k[touch.angle, rows] += sign * way
-                k[touch.angle, touch.angle] += sign * touch.offset * nu @ part.axes @ n
+                _add_offset(part, touch, sign, z, g, k)
     for there in layout.stations:
         if there.touch == NONE:
             for number, load in zip(
@@ -185,6 +180,26 @@ def _add_stations(layout: Layout, z: Array, g: Array, k: Array) -> None:
             ):
                 g[number] -= load
     _add_springs(layout, z, g, k)
+
+
+def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Array) -> None:
+    """Add ``sign c.r`` of the axis point ``r = x - offset(s) nu(phi)`` by phi, and by s where the offset depends on s."""
+    rows = np.array([part.force, part.force + 1])
+    n, nu = z[rows], normal(float(z[touch.angle]))
+    tau = np.array([nu[1], -nu[0]])
+    offset = touch.away(float(z[touch.arc]))
+    way = offset * part.axes.T @ tau
+    g[touch.angle] += sign * way @ n
+    k[rows, touch.angle] += sign * way
+    k[touch.angle, rows] += sign * way
+    k[touch.angle, touch.angle] += sign * offset * nu @ part.axes @ n
+    if touch.slope:
+        lean, turned = -touch.slope * part.axes.T @ nu, touch.slope * part.axes.T @ tau
+        g[touch.arc] += sign * lean @ n
+        k[rows, touch.arc] += sign * lean
+        k[touch.arc, rows] += sign * lean
+        k[touch.angle, touch.arc] += sign * turned @ n
+        k[touch.arc, touch.angle] += sign * turned @ n
 
 
 def _add_springs(layout: Layout, z: Array, g: Array, k: Array) -> None:
@@ -232,7 +247,7 @@ def _apart(layout: Layout, z: Array, part: Part) -> Array:
     for there, sign in ((a, -1.0), (b, 1.0)):
         if there.touch != NONE and layout.touches[there.touch].angle != NONE:
             touch = layout.touches[there.touch]
-            moved = moved - sign * touch.offset * normal(float(z[touch.angle]))
+            moved = moved - sign * touch.away(float(z[touch.arc])) * normal(float(z[touch.angle]))
     apart = np.asarray(part.axes.T @ moved)
     if a.touch == NONE and b.touch == NONE:
         return apart

@@ -1,7 +1,8 @@
 """Coulomb friction at a contact: the rows of slip and stick, and the couple of a face.
 
-With the mean tangent ``(r'_- + r'_+)/2 = a t``, its left normal n, the section's rotation theta from its undeformed direction, the natural
-curvature kappa0 and the whole one ``k = theta' + kappa0``, the angle phi of t, and ``lever = h/2`` and ``roll = R`` to the right of the beam, minus these values to its left::
+With the direction t of the face and its angle phi, its left normal n, the part ``a = t . (r'_- + r'_+)/2`` of the mean tangent, the
+section's rotation theta from its undeformed direction, the natural curvature kappa0 and the whole one ``k = theta' + kappa0``, and
+``lever``, the radius of the circle whose envelope is the face, and ``roll = R`` to the right of the beam, minus these values to its left::
 
     F_t = F . t,  F_n = side F . n           tangential and normal force on the beam, side = 1 for a node on the right
     m_- - m_+ = C = lever F_t                couple on the section, since F acts on the face
@@ -9,9 +10,9 @@ curvature kappa0 and the whole one ``k = theta' + kappa0``, the angle phi of t, 
     slip:   F_t = sigma mu F_n,  sigma = sign v
     stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
 
-The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began. The couple, and the row
-that defines phi as the direction of t, take the place of the two conditions of stationarity in arc position and phi, which hold without
-friction only.
+The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began; where the height tapers
+the lever in stick is the mean of the two. Without a taper t is along the mean tangent. The couple, and the row ``n . (r'_- + r'_+)/2 =
+-offset'`` of phi, take the place of the two conditions of stationarity in arc position and phi, which hold without friction only.
 """
 
 import math
@@ -118,19 +119,28 @@ def _local(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: 
         before, behind = parts[0].local(before, s), parts[1].local(behind, s)
     mean = (_tangent(flexible, frame, theta, before) + _tangent(flexible, frame, theta, behind)) / 2.0
     force = parts[0].axes @ (given[1:3] - given[3:5])
-    a = (mean[0] ** 2 + mean[1] ** 2) ** 0.5
-    drag = (force[0] * mean[0] + force[1] * mean[1]) / a
-    push = touch.right * (force[1] * mean[0] - force[0] * mean[1]) / a
-    couple = touch.lever * drag
-    stretch = a + touch.lever * (m - couple / 2.0) / flexible.EI + touch.lever * rod.curvature
+    lever = touch.lever(s)
     aligned = mean[1] * np.cos(phi) - mean[0] * np.sin(phi)
+    if touch.slope:
+        x, y = np.cos(phi), np.sin(phi)
+        a, aligned = mean[0] * x + mean[1] * y, aligned + touch.slope
+        drag = force[0] * x + force[1] * y
+        push = touch.right * (force[1] * x - force[0] * y)
+    else:
+        a = (mean[0] ** 2 + mean[1] ** 2) ** 0.5
+        drag = (force[0] * mean[0] + force[1] * mean[1]) / a
+        push = touch.right * (force[1] * mean[0] - force[0] * mean[1]) / a
+    couple = lever * drag
+    stretch = a + lever * (m - couple / 2.0) / flexible.EI + lever * rod.curvature
     hold = touch.grip.hold
     if hold is None:
         return Local(drag - touch.grip.slip * touch.grip.friction * push, couple, aligned, stretch)
     row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position / layout.length)
     if touch.angle >= 0:
         turned = theta + rod.curvature * s
-        row = row + touch.lever * _wrapped(phi - turned - hold.shear) + touch.roll * (phi - hold.direction)
+        if touch.slope:
+            lever = (lever + touch.lever(hold.arc_position / layout.length)) / 2.0
+        row = row + lever * _wrapped(phi - turned - hold.shear) + touch.roll * (phi - hold.direction)
     return Local(row, couple, aligned, stretch)
 
 

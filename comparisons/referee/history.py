@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.friction import LOOSE, Grip, Hold
 from comparisons.referee.march import corners, place, rates, reach, slip_rate, speed
 from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
@@ -23,6 +24,8 @@ _ITERATIONS = 60
 """Largest number of steps of a root."""
 _FIRST = 1e-4
 """First step of a secant, in load parameters."""
+_FEET = 40
+"""Number of corrections of a place on a face whose height tapers."""
 _CLOSE = 1e-13
 """Change of a load parameter at which a root is found."""
 _ZERO = 1e-12
@@ -258,15 +261,20 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
     beam = scene.beam(spec.beam)
     x, y = beam.direction
     there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
-    angle, arc = math.atan2(y, x), _foot(beam, there)
-    lever = scene.offset(spec) - scene.radius(spec)
-    beta = beam.turn * (arc / beam.length - 0.5)
+    left, steep = 1.0 if spec.side == "left" else -1.0, face_slope(scene, spec)
+    arc = _foot(beam, there)
+    for _ in range(_FEET if steep else 0):
+        apart = np.array(there) - np.array(beam.place(arc / beam.length))
+        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * touching_distance(scene, spec, arc)
+        arc = min(max(arc + ahead, 0.0), beam.length)
+    angle, tilt = math.atan2(y, x), left * math.asin(steep)
+    lever = left * (scene.radius(spec) - touching_distance(scene, spec, arc))
     return Hold(
         load_parameter=0.0,
         arc_position=arc,
-        stretch=1.0 + (lever if spec.side == "right" else -lever) * beam.curvature,
-        shear=angle - beam.turn / 2.0,
-        direction=angle + beta,
+        stretch=math.sqrt(1.0 - steep**2) + lever * beam.curvature,
+        shear=angle - beam.turn / 2.0 + tilt,
+        direction=angle + beam.turn * (arc / beam.length - 0.5) + tilt,
     )
 
 

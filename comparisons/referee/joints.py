@@ -52,7 +52,6 @@ def rod_of(scene: Scene, beam: BeamSpec, t: float, units: Units) -> Rod:
         axes=axes,
         stiffness=(stiffness[0], stiffness[1], stiffness[2]),
         greatest=flexibility,
-        half_height=height / (2.0 * length),
         load=W,
         breaks=places,
     )

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.friction import Grip
 from comparisons.referee.joints import inner_stations, joints, relative, rod_of, units_of
 from comparisons.referee.rods import Rod
@@ -30,10 +31,12 @@ _FREE: Mapping[str, Grip] = MappingProxyType({})
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """A closed contact between a touching point x and the axis point ``r = x - side offset nu(phi)``.
+    """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``.
 
     nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi,
-    the contact force acts along nu. With friction phi is the direction of the mean tangent by a row of its own.
+    the contact force acts along nu. With friction phi is the direction of the face by a row of its own.
+
+    Stationarity in s, ``nu . (r'_- + r'_+)/2 = -offset'``, makes nu normal to the face, see `comparisons.referee.faces`.
 
     Attributes
     ----------
@@ -41,14 +44,14 @@ class Touch:
         The pair in the scene.
     place : Position
         Position of the touching point.
-    offset : float
-        Distance of x from the axis, positive on the left of the beam.
+    offset, slope : float
+        Distance of x from the axis at the start of the beam, positive on the left of the beam, and its derivative by the arc position.
     arc, angle : int
         Indices of the unknown arc position and of phi (`NONE` without offset).
     grip : Grip or None
         How friction holds the contact; None without friction.
-    lever, roll : float
-        Distance of the face from the axis, and radius of a round pin; positive on the right of the beam.
+    roll : float
+        Radius of a round pin, positive on the right of the beam.
     """
 
     spec: ContactSpec
@@ -57,8 +60,16 @@ class Touch:
     arc: int
     angle: int
     grip: Grip | None = None
-    lever: float = 0.0
     roll: float = 0.0
+    slope: float = 0.0
+
+    def away(self, s: Any) -> Any:
+        """Offset at an arc position, real or complex."""
+        return self.offset + self.slope * s
+
+    def lever(self, s: Any) -> Any:
+        """Distance of the face from the axis at an arc position, positive on the right of the beam; real or complex."""
+        return -(self.away(s) if self.slope else self.offset) - self.roll
 
     @property
     def right(self) -> float:
@@ -191,7 +202,9 @@ class Layout:
         if there.touch == NONE:
             return place
         touch = self.touches[there.touch]
-        return place if touch.angle == NONE else place - touch.offset * normal(float(z[touch.angle]))
+        if touch.angle == NONE:
+            return place
+        return np.asarray(place - touch.away(float(z[touch.arc])) * normal(float(z[touch.angle])))
 
     def rotation(self, z: Array, station: int) -> float:
         """Rotation at a station."""
@@ -232,7 +245,8 @@ def lay_out(
             x, y = scene.pin(spec.node).position(load_parameter)
             place = Position(reference=relative(scene, (x, y), length))
         left = 1.0 if spec.side == "left" else -1.0
-        offset, roll = scene.offset(spec) / length * left, -scene.radius(spec) / length * left
+        offset = touching_distance(scene, spec, 0.0) / length * left
+        roll = -scene.radius(spec) / length * left
         turn, arc, count = count, count + 1, count + 2
         angle, count = (count, count + 1) if offset else (NONE, count)
         on_beam[spec.beam].append((closed[spec.pair], len(stations)))
@@ -245,8 +259,8 @@ def lay_out(
                 arc=arc,
                 angle=angle,
                 grip=grips.get(spec.pair),
-                lever=-offset - roll,
                 roll=roll,
+                slope=left * face_slope(scene, spec),
             )
         )
     for beam, rod in zip(scene.beams, rods, strict=True):

@@ -111,7 +111,8 @@ def slip_rate(solution: Solution, touch: Touch, rate: Array) -> float:
         return slipping
     theta, phi = float(rate[layout.stations[before.last].rotation_unknown]), float(rate[touch.angle])
     theta += before.rod.curvature * float(rate[touch.arc])
-    return slipping + touch.lever * (phi - theta) + touch.roll * phi
+    lever = float(touch.lever(float(solution.z[touch.arc])))
+    return slipping + lever * (phi - theta) + touch.roll * phi
 
 
 def _moment(solution: Solution, touch: Touch) -> float:

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -90,7 +91,7 @@ def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, w
         pin = scene.pin(spec.node)
         nodes = np.array([pin.position(float((1.0 - u) * t + u * t_after)) for u in parts])
     apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
-    if apart.max() > scene.offset(spec):
+    if apart.max() > float(np.max(_reach(line, scene, spec))):
         return False
     leaves = _whereabouts(line_after, nodes[-1], scene, spec) == "beyond"
     through = False
@@ -154,10 +155,11 @@ def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec
     side = 1.0 if spec.side == "left" else -1.0
     pieces, way = np.diff(line, axis=0), end - start
     lengths = np.hypot(*pieces.T)
-    before, after = (
-        side * _cross(pieces, node - line[:-1]) / lengths - scene.offset(spec) for node in (start, end)
+    offset = _reach(line[:-1], scene, spec)
+    before, after = (side * _cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
+    left = (
+        np.reshape(side * offset, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
     )
-    left = side * scene.offset(spec) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
     first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
     return bool(((before > near) & (after < -near) & (first != last)).any())
 
@@ -179,5 +181,20 @@ def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> s
     if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
         return "beyond"
     distance = tangent[0] * away[1] - tangent[1] * away[0]
-    gap = (distance if spec.side == "left" else -distance) - scene.offset(spec)
+    gap = (distance if spec.side == "left" else -distance) - _offset(line, scene, spec, nearest, along)
     return "behind" if gap < -near else "before"
+
+
+def _reach(line: Array, scene: Scene, spec: ContactSpec) -> Array | float:
+    """Distances at which a node touches at the points of an axis."""
+    steep = face_slope(scene, spec)
+    if not steep:
+        return scene.offset(spec)
+    arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
+    return touching_distance(scene, spec, 0.0) + steep * arcs
+
+
+def _offset(line: Array, scene: Scene, spec: ContactSpec, nearest: int, along: float) -> float:
+    """Distance at which a node touches ahead of a point of an axis."""
+    there = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
+    return float(there) + face_slope(scene, spec) * along

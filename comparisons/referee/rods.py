@@ -40,8 +40,6 @@ class Rod:
         Coefficients of EI, EA and GA as polynomials in the arc position, ascending.
     greatest : Flexibility
         The flexibilities, of a taper the largest 1/EA and 1/GA and the smallest EI.
-    half_height : ndarray
-        Coefficients of the distance of the face from the axis; zero without a height.
     load : ndarray, shape (pieces, k, 2)
         Coefficients of W on every piece, in the frame of the chord.
     breaks : ndarray, shape (pieces + 1,)
@@ -53,14 +51,13 @@ class Rod:
     axes: Array
     stiffness: tuple[Array, Array, Array]
     greatest: Flexibility
-    half_height: Array
     load: Array
     breaks: Array
 
     @cached_property
     def tapers(self) -> bool:
         """Whether the section changes along the beam."""
-        return any(len(item) > 1 for item in (*self.stiffness, self.half_height))
+        return any(len(item) > 1 for item in self.stiffness)
 
     @cached_property
     def loaded(self) -> bool:

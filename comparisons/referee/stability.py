@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.elements import fields
 from comparisons.referee.equilibrium import Solution, scales
-from comparisons.referee.layout import Part
+from comparisons.referee.layout import Part, normal
 from comparisons.referee.stations import NONE
 
 Array = NDArray[np.float64]
@@ -63,6 +63,9 @@ def _directions(solution: Solution) -> Array:
                     here.Q * d2,
                 ]
         across = np.array([-whole[1], whole[0]]) / (whole @ whole)
+        if layout.touches[station.touch].slope:
+            nu = part.rod.frame(s).T @ normal(float(z[angle]))
+            across = nu / (whole @ [nu[1], -nu[0]])
         row = np.zeros(size)
         row[station.rotation_unknown] = across @ turned
         for force, by_force in forced:

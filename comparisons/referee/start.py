@@ -181,7 +181,7 @@ def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotation
                 beam = [item.name for item in scene.beams].index(touch.spec.beam)
                 x, y = scene.beams[beam].direction
                 undeformed = math.atan2(y, x) + layout.rod(beam).angle(float(z[touch.arc]))
-                z[touch.angle] = undeformed + float(turns[beam].angle(z[touch.arc]))
+                z[touch.angle] = undeformed + float(turns[beam].angle(z[touch.arc])) + math.asin(touch.slope)
 
 
 def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:

@@ -6,13 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
+from comparisons.referee.admissible import least_gap
 from comparisons.referee.basis import DEGREE
 from comparisons.referee.elements import mesh_of, properties
 from comparisons.referee.equations import System, assemble
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.layout import lay_out
 from comparisons.scene import (
     BeamSpec,
@@ -24,6 +27,7 @@ from comparisons.scene import (
     SpringSpec,
     SupportSpec,
 )
+from tests.comparisons.referee.forged import stated
 
 MATERIAL = {"youngs_modulus": 1e6, "poissons_ratio": 0.3}
 GRAVITY = (2.0, -20.0)
@@ -176,7 +180,7 @@ def test_the_hessian_is_the_derivative_of_the_gradient() -> None:
             PinSpec(name="p", start=(0.4, 0.3), displacement=(0.0, -0.3)),
             PinSpec(name="q", start=(0.6, 0.3), displacement=(0.0, -0.3), radius=0.05),
         ),
-        contacts=(ContactSpec(node="p", beam="a", side="left"), ContactSpec(node="q", beam="a", side="left")),
+        contacts=(ContactSpec(node="p", beam="a", side="left"), ContactSpec(node="q", beam="a", side="left", surface="face")),
         hinges=(HingeSpec(beam="b", end="start", stiffness=0.3),), springs=(replace(SPRING, beam="b"),),
     )  # fmt: skip
     layout = lay_out(scene, 1.0, {"p->a": 0.45, "q->a": 0.6})
@@ -302,3 +306,61 @@ def test_a_column_on_a_spring_hinge_buckles_where_x_tan_x_is_k_L_over_EI(factor:
     assert (
         found(Scene(name="column", load_parameters=1, beams=(beam,), loads=push, hinges=hinge)).index == index
     )
+
+
+def on_a_sloping_face(side: str, turn: float, friction: float = 0.0) -> Scene:
+    """A round pin pressed on the face of a thick strip whose height tapers, from where it touches the undeformed face."""
+    beam = strip(end=(1.0, 0.0), turn=turn, height=(0.1, 0.06), poissons_ratio=0.3, density=None)
+    spec = ContactSpec(node="pin", beam="a", side=side, surface="face", friction=friction)
+    pin = PinSpec(
+        name="pin", start=(0.6, 9.0 if side == "left" else -9.0), displacement=(0.0, 1.0), radius=0.1
+    )
+    scene = Scene(name="face", load_parameters=4, beams=(beam,), pins=(pin,), contacts=(spec,))
+    s = 0.6 * beam.length
+    tilt = math.asin(face_slope(scene, spec)) * (1.0 if side == "left" else -1.0)
+    direction = math.atan2(*reversed(beam.tangent(0.6))) + tilt
+    out = touching_distance(scene, spec, s) * (1.0 if side == "left" else -1.0)
+    x, y = beam.place(0.6)
+    start = (x - out * math.sin(direction), y + out * math.cos(direction))
+    way = (0.02, -0.15 if side == "left" else 0.15)
+    return replace(scene, pins=(replace(pin, start=start, displacement=way),))
+
+
+def pressed(scene: Scene, t: float, near: Equilibrium | None) -> Equilibrium:
+    """The equilibrium at t next to one at a smaller load parameter; the first one next to a straight strip under a small force."""
+    (spec,), beam = scene.contacts, scene.beams[0]
+    if near is None:
+        stiffness = 3.0 * beam.EI / (0.6 * beam.length) ** 3
+        push = stiffness * t * np.array(scene.pins[0].displacement) * [0.0, 1.0]
+        rough = {
+            "arcs": {spec.pair: 0.6 * beam.length},
+            "forces": {spec.pair: (float(push[0]), float(push[1]))},
+        }
+        return found(scene, undeformed(scene, t, **rough))
+    return found(scene, replace(answer_state(stated(scene, [near]), scene, 0), load_parameter=t))
+
+
+@pytest.mark.parametrize(("side", "turn"), [("left", 0.7), ("right", 0.0)])
+def test_the_work_on_a_face_that_tapers_is_the_strain_energy_to_1e_10(side: str, turn: float) -> None:
+    scene = on_a_sloping_face(side, turn)
+    points, weights = leggauss(8)
+    way, work, near = np.array(scene.pins[0].displacement), 0.0, None
+    for t, w in zip((1.0 + points) / 2.0, weights / 2.0, strict=True):
+        near = pressed(scene, float(t), near)
+        work += w * float(near.contacts["pin->a"].force @ way)
+        assert near.index == 0
+    exact = pressed(scene, 1.0, near)
+    assert exact.strain_energy == pytest.approx(work, rel=1e-10)
+    assert exact.contacts["pin->a"].push > 10.0
+    gap, arc = least_gap(scene, exact, scene.contacts[0])
+    # of the order of the square of the kink by shear, which lies between the two directions at the contact
+    assert -1e-12 < gap < 1e-6
+    assert arc == pytest.approx(exact.contacts["pin->a"].arc_position, abs=1e-3)
+
+
+def test_the_face_of_an_undeformed_taper_is_a_line_at_half_the_height() -> None:
+    scene = on_a_sloping_face("left", 0.0)
+    x, y = scene.pins[0].points[0]
+    slope = 0.02
+    from_line = (y - (0.05 - slope * x)) / math.hypot(1.0, slope)
+    assert from_line == pytest.approx(0.1, rel=1e-14)
