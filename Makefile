@@ -24,9 +24,9 @@ test-all: lint
 results: setup
 	$(PYTEST) --write-results
 
-# branches of elements, contact, stepping and exact answers; the modules and the bar are in pyproject.toml
+# branches of elements, contact, stepping and exact answers, by the tests of both tiers; the modules and the bar are in pyproject.toml
 coverage: setup
-	$(PYTEST) -m "not slow" --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
+	$(PYTEST) --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
 
 # a random sample of mutants of the modules in pyproject.toml; a mutant may collect without end, so memory has a limit
 mutation: setup

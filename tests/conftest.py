@@ -20,11 +20,31 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--write-results", action="store_true", help="write measured numbers into the pages")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Begin the long tests first, so that none is left to one worker at the end; keep those of measured numbers if these are to be written."""
+    """Leave parameters to the slow tier, and begin the long tests first, so that none is left to one worker at the end.
+
+    Only the tests of measured numbers are kept if these are to be written.
+    """
+    _leave_to_the_slow_tier(items, whole=config.args_source is pytest.Config.ArgsSource.TESTPATHS)
     items.sort(key=lambda item: item.get_closest_marker("long") is None)
     if config.getoption("write_results"):
         items[:] = [item for item in items if "stated" in getattr(item, "fixturenames", ())]
+
+
+def _leave_to_the_slow_tier(items: list[pytest.Item], *, whole: bool) -> None:
+    """Mark the parameters as slow that a test's marks ``slow_at`` name by their ids; of the whole suite, every id must be there."""
+    left: dict[str, set[str]] = {}
+    for item in items:
+        named = {name for mark in item.iter_markers("slow_at") for name in mark.args}
+        if isinstance(item, pytest.Function) and named:
+            rest = left.setdefault(item.nodeid.partition("[")[0], set(named))
+            rest.discard(item.callspec.id)
+            if item.callspec.id in named:
+                item.add_marker(pytest.mark.slow)
+    unknown = {test: names for test, names in left.items() if names}
+    if whole and unknown:
+        raise pytest.UsageError(f"slow_at: no such parameters: {unknown}")
 
 
 @pytest.fixture(scope="session")

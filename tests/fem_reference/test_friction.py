@@ -304,6 +304,7 @@ def test_block_sticks_up_to_the_cone_with_the_stiffness_of_a_bar():
     np.testing.assert_allclose(support.force[:, 0], -contact.vector[:, 0], rtol=0, atol=1e-6 * mu * N[0])
 
 
+@pytest.mark.slow_at("0.1", "0.5")
 @pytest.mark.parametrize("mu", ROD)
 def test_rod_of_the_reference_has_the_published_digits(mu):
     force, s, _ = ROD[mu]
@@ -314,6 +315,7 @@ def test_rod_of_the_reference_has_the_published_digits(mu):
         assert (half.force, half.s) == pytest.approx((1.440282590723e-3, 0.613373425413), rel=1e-11)
 
 
+@pytest.mark.slow_at("0.1", "0.3")
 @pytest.mark.parametrize("mu", ROD)
 def test_strip_with_friction_is_the_rod_at_every_load_parameter(mu):
     """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured."""
@@ -332,7 +334,8 @@ def test_strip_with_friction_is_the_rod_at_every_load_parameter(mu):
     assert np.all(result.index == -1)
 
 
-@pytest.mark.parametrize("radius", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("radius", [0.0, 0.05])
 def test_friction_on_a_face_has_the_lever_of_half_the_height(radius):
     """The rod with the moment ``T h / 2`` at the contact: forces within 2e-3 in both slips, positions within 3e-4; 1.5e-3 measured."""
     result = rounded(20, radius, mesh=(50, 2))
@@ -349,6 +352,7 @@ def test_friction_on_a_face_has_the_lever_of_half_the_height(radius):
     assert compared == 19
 
 
+@pytest.mark.slow_at("0.1", "0.5")
 @pytest.mark.parametrize("mu", ROD)
 def test_friction_changes_the_strip_of_the_scenes_material_as_it_changes_the_rod(mu):
     """Saint Venant's law is softer than the rod's by 3.6e-3 at the end, with friction and without; friction differs by 5e-4."""
@@ -394,7 +398,8 @@ def rounded(n, radius, settings=None, mesh=(30, 1), mu=0.3):
     return fr.solve(scene, load_parameters, settings)
 
 
-@pytest.mark.parametrize("radius", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("radius", [0.0, 0.05])
 def test_answer_does_not_depend_on_the_load_steps(radius):
     """Force and position within 1e-10; dissipated energy within 1e-4 of 80 load parameters; even with steps of .5 at most."""
     many = rounded(80, radius).contacts[PAIR]
@@ -407,6 +412,7 @@ def test_answer_does_not_depend_on_the_load_steps(radius):
         np.testing.assert_allclose(few.slip_changes, many.slip_changes, rtol=0, atol=3e-6 if radius else 1e-8)
 
 
+@pytest.mark.slow_at("0.0")
 @pytest.mark.parametrize("radius", [0.0, 0.05])
 def test_first_touch_within_a_step_is_located(radius):
     """A pin meets a strip obliquely: the slip counts from there, with 1, 8 or 50 load parameters."""
@@ -421,6 +427,7 @@ def test_first_touch_within_a_step_is_located(radius):
     assert histories[-1].slip[-1] == pytest.approx(-0.153, abs=0.01)
 
 
+@pytest.mark.slow_at("0.0-axis-1e-10", "0.03-face-1e-10", "0.03-face-None")
 @pytest.mark.parametrize("penetration", [None, 1e-10])
 @pytest.mark.parametrize(("radius", "surface"), [(0.0, "axis"), (0.03, "face")])
 def test_pin_that_rubs_to_and_fro(radius, surface, penetration):
@@ -480,6 +487,7 @@ def test_limit_load_of_three_point_bending(mu, limit, at):
     assert slips * at == pytest.approx(5 * mu * 0.01**2 / 12, rel=1e-2)
 
 
+@pytest.mark.slow_at("0.1-0.890538486811")
 @pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.890538486811), (0.3, 1.007848170943)])
 def test_dead_load_on_a_rough_support_ends_at_its_limit_point(mu, limit):
     """Within 1e-4 of the elastica; 4e-5 measured."""
@@ -524,6 +532,7 @@ def bending(mu, depths, n, load=0.0):
     return fr.solve(problem, loads(n), throw=not load)
 
 
+@pytest.mark.slow_at("0.1")
 @pytest.mark.parametrize("mu", [0.1, 0.5])
 def test_end_of_a_strip_rubs_on_another(mu):
     """Steps do not matter, and action and reaction cancel: the reactions of both clamps balance the load."""

@@ -36,6 +36,13 @@ def check_penetration_and_work(problem, panels, stated):
 
 
 @surfaces
+@pytest.mark.slow_at(
+    "biot-linear-axis",
+    "biot-linear-face",
+    "neo-hookean-axis",
+    "st-venant-kirchhoff-axis",
+    "st-venant-kirchhoff-face",
+)
 @pytest.mark.parametrize("material", fr.MATERIALS)
 def test_augmented_lagrangian_reaches_the_requested_penetration(problem, surface, material, stated):
     check_penetration_and_work(augmented(problem, surface, material=material), 10, stated)
@@ -79,6 +86,7 @@ def test_penetration_falls_with_the_penalty_over_ten_decades(problem, surface):
 
 
 @surfaces
+@pytest.mark.slow_at("axis")
 def test_default_penalty_is_as_good_as_augmented_lagrangian(problem, surface):
     default = fr.solve(problem(contact={"surface": surface, "penalty": None}), loads(20)).contacts[PAIR]
     exact = fr.solve(augmented(problem, surface), loads(20)).contacts[PAIR]
@@ -99,12 +107,13 @@ FINE = [(25, 2), (50, 2), (100, 2), (200, 4)]
 
 
 @pins
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("meshes", "allowed"),
     [
         pytest.param([(nx, 2) for nx in (40, 43, 47, 54, 60)], SCATTER, id="5 meshes"),
-        pytest.param([(nx, 2) for nx in range(40, 61)], SCATTER, id="21 meshes", marks=pytest.mark.slow),
-        pytest.param(FINE, 5e-4, id="coarse and fine", marks=pytest.mark.slow),
+        pytest.param([(nx, 2) for nx in range(40, 61)], SCATTER, id="21 meshes"),
+        pytest.param(FINE, 5e-4, id="coarse and fine"),
     ],
 )
 def test_answers_scatter_little_between_meshes(problem, surface, radius, meshes, allowed):

@@ -45,6 +45,7 @@ def check_against_rod(result, surface, allowed):
 
 
 @surfaces
+@pytest.mark.slow_at("face")
 def test_ks_cantilever_agrees_with_the_rod(request, surface):
     result = request.getfixturevalue(f"ks_{surface}")
     assert result.cutbacks == 0
@@ -219,6 +220,7 @@ def test_one_load_step_follows_a_path_that_turns(problem):
     assert one.reached == pytest.approx(many.reached, abs=1e-5)
 
 
+@pytest.mark.slow_at("1")
 @pytest.mark.parametrize("n", [1, 7])
 def test_pin_that_jumps_past_the_clamp_is_not_taken_for_an_open_contact(problem, n):
     """A KS path drawn on to x = -0.1, where the undeformed strip is not: the contact is followed until it slips."""

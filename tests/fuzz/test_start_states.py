@@ -99,6 +99,14 @@ def check(element: str, examples: int) -> dict[Status, int]:
     return counts
 
 
+@pytest.mark.slow_at(
+    "euler-bernoulli-cantilever",
+    "euler-bernoulli-cantilever-as-printed",
+    "euler-bernoulli-simple",
+    "euler-bernoulli-simple-as-printed",
+    "timoshenko",
+    "timoshenko-as-printed",
+)
 @pytest.mark.parametrize("element", tsm.ELEMENTS)
 def test_newton_from_random_starts(element: str) -> None:
     counts = check(element, 40)

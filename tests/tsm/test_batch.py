@@ -163,7 +163,8 @@ def test_any_cantilever_ends_as_it_does_alone() -> None:
     assert batch.cutbacks.any()
 
 
-@pytest.mark.parametrize("element", ["mixed", pytest.param("mixed-no-bow", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("element", ["mixed", "mixed-no-bow"])
 def test_default_tolerance_bounds_the_difference(element: str) -> None:
     rng = np.random.default_rng(5)
     structures = [pushed(rng, element) for _ in range(10)]

@@ -75,6 +75,7 @@ def test_slip_off_frees_the_beam():
     assert np.isnan(result.contacts["p->b"].gap[4:]).all()
 
 
+@pytest.mark.slow_at("exact")
 @pytest.mark.parametrize("element", ["mixed", "exact"])
 def test_a_beam_that_a_pin_slips_off_is_straight_again_from_whichever_end_it_is_stated(element):
     section = tsm.Section(EA=3e6, GA=1e6, EI=1.0)
@@ -154,6 +155,15 @@ def test_a_passed_pin_is_armed_again_when_it_returns():
     assert result.contacts["p->b"].force[-1] > 0
 
 
+@pytest.mark.slow_at(
+    "end0-exact",
+    "end0-timoshenko",
+    "end1-exact",
+    "end1-mixed",
+    "end1-timoshenko",
+    "end2-exact",
+    "end2-timoshenko",
+)
 @pytest.mark.parametrize("element", ["exact", "mixed", "timoshenko"])
 @pytest.mark.parametrize("end", [(-0.7, -0.4), (-0.19, -0.0667), (1.4, -0.1)])
 def test_a_pin_that_is_past_an_end_after_one_step_met_the_beam_on_its_way(element, end):
@@ -169,6 +179,7 @@ def test_a_pin_that_is_past_an_end_after_one_step_met_the_beam_on_its_way(elemen
         assert (one.status, kinds(one)) == (many.status, kinds(many))
 
 
+@pytest.mark.slow_at("path0-exact", "path1-exact", "path2-exact", "path3-exact")
 @pytest.mark.parametrize("element", ["exact", "mixed"])
 @pytest.mark.parametrize(
     "path",
@@ -371,6 +382,7 @@ def test_a_beam_that_springs_back_leaves_the_pin_above(element, elements):
     assert stopped.load_parameter[-1] < slip.load_parameter
 
 
+@pytest.mark.slow_at("5")
 @pytest.mark.parametrize("count", [1, 5, 8])
 def test_an_end_that_a_long_step_carries_through_a_beam_touches_it(count):
     """Far from the origin, where round-off is large, a step ends with the end behind the beam: not taken for a way around."""

@@ -262,6 +262,7 @@ def integral_over_the_element(density, theta, field, xi, l0):
     return l0 * sum(c * sp.integrate(sp.expand(field**power), (xi, 0, 1)) for (power,), c in terms)
 
 
+@pytest.mark.slow
 def test_the_six_coefficients_are_those_of_the_theory():
     """Reissner's functional at Timoshenko's rotation, by sympy up to the fourth degree in N, V and the rotation.
 

@@ -27,6 +27,7 @@ def balance(result: tsm.Result) -> float:
     return float(np.abs(result.work - result.strain_energy - lost - released).max() / result.work.max())
 
 
+@pytest.mark.slow_at("0.05", "0.1", "0.2", "0.5")
 @pytest.mark.parametrize("friction", [0.05, 0.1, 0.2, 0.3, 0.5])
 def test_one_exact_element_is_the_elastica_with_friction(friction: float) -> None:
     result = ks(friction, STIFF).solve(50)
@@ -74,9 +75,8 @@ def test_a_pin_on_the_left_is_the_mirror_image() -> None:
     assert left.arc_position == pytest.approx(right.arc_position, rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    "friction", [pytest.param(0.1, marks=pytest.mark.slow), 0.3, pytest.param(0.5, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
 def test_mixed_elements_converge_with_the_fourth_order(friction: float) -> None:
     exact = ks(friction).solve(10).contacts[PAIR].force
     errors = [
@@ -87,12 +87,13 @@ def test_mixed_elements_converge_with_the_fourth_order(friction: float) -> None:
     assert np.diff(np.log2(errors)).max() <= -3.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("face", "radius"),
     [
         (0.0, 0.0),
-        pytest.param(0.01, 0.0, marks=pytest.mark.slow),
-        pytest.param(0.01, 0.03, marks=pytest.mark.slow),
+        (0.01, 0.0),
+        (0.01, 0.03),
     ],
 )
 def test_the_answer_does_not_depend_on_the_load_steps(face: float, radius: float) -> None:
@@ -136,13 +137,14 @@ def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() 
     assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "stated", "defect"),
     [
         (32, (3976, 1478, 0.32, 0, 0.048), 4.0e-8),
-        pytest.param(8, (1523, 755, 0.79, 0, 0.022), 1.7e-5, marks=pytest.mark.slow),
-        pytest.param(26, (590, 160, 0.71, 0.027, 0.032), 7.9e-5, marks=pytest.mark.slow),
-        pytest.param(9, (67, 19, 0.78, 0, 0.043), 8.6e-4, marks=pytest.mark.slow),
+        (8, (1523, 755, 0.79, 0, 0.022), 1.7e-5),
+        (26, (590, 160, 0.71, 0.027, 0.032), 7.9e-5),
+        (9, (67, 19, 0.78, 0, 0.043), 8.6e-4),
     ],
 )
 def test_a_long_roll_of_a_thick_rod_shows_in_the_work(
@@ -160,6 +162,7 @@ def test_a_long_roll_of_a_thick_rod_shows_in_the_work(
     assert balance(scene.solve(10)) == pytest.approx(defect, rel=0.05)
 
 
+@pytest.mark.slow
 def test_mixed_elements_keep_the_work_but_for_their_jumps_at_nodes() -> None:
     assert balance(ks(0.3).solve(10, "mixed", 10)) <= 5e-7
 
@@ -192,6 +195,7 @@ def test_a_thousand_cycles_do_not_drift() -> None:
     assert np.diff(lost).min() > 0
 
 
+@pytest.mark.slow_at("mixed-8")
 @pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 8)])
 def test_no_friction_is_the_frictionless_contact(element: str, elements: int) -> None:
     scene = ks(0.0)
@@ -206,6 +210,7 @@ def test_no_friction_is_the_frictionless_contact(element: str, elements: int) ->
     assert np.abs(little.contacts[PAIR].force / result.contacts[PAIR].force - 1).max() > 1e-9
 
 
+@pytest.mark.slow_at("0.2")
 @pytest.mark.parametrize(
     "friction",
     [0.0, pytest.param(0.1, marks=pytest.mark.slow), 0.2, pytest.param(0.3, marks=pytest.mark.slow)],
@@ -235,6 +240,20 @@ def test_limit_loads_of_three_point_bending(friction: float) -> None:
         assert load[0] < load[1] > load[2]
 
 
+@pytest.mark.slow_at(
+    "0.64-exact-2-0.0-0.0",
+    "0.64-exact-2-0.02-0.03",
+    "0.64-exact-2-0.03-0.0",
+    "0.64-mixed-6-0.0-0.0",
+    "0.64-mixed-6-0.02-0.03",
+    "0.64-mixed-6-0.03-0.0",
+    "0.9-exact-2-0.0-0.0",
+    "0.9-exact-2-0.02-0.03",
+    "0.9-exact-2-0.03-0.0",
+    "0.9-mixed-6-0.0-0.0",
+    "0.9-mixed-6-0.02-0.03",
+    "0.9-mixed-6-0.03-0.0",
+)
 @pytest.mark.parametrize(("face", "radius"), [(0.0, 0.0), (0.03, 0.0), (0.02, 0.03)])
 @pytest.mark.parametrize(("element", "elements"), [("exact", 2), ("mixed", 6)])
 @pytest.mark.parametrize("at", [0.4, 0.64, 0.9])
@@ -279,6 +298,7 @@ def test_a_batch_with_friction_is_solved_one_by_one() -> None:
         assert batch.force[PAIR][n] == pytest.approx(alone, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
     structure = ks(0.3).structure()
     traced = tsm.trace(structure, arc_length=0.02, steps=400, throw=False)
@@ -320,6 +340,7 @@ def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact(element: str,
     assert not result.contacts[PAIR].force.any()
 
 
+@pytest.mark.slow_at("10")
 @pytest.mark.parametrize("elements", [5, 10])
 def test_work_is_kept_past_a_corner_at_which_the_contact_slips_on(elements: int) -> None:
     path = ((0.5, 0.0), (0.5, 0.1), (0.6, 0.1), (0.5, 0.1))

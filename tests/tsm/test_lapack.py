@@ -29,6 +29,7 @@ assert lapack.lapack() is sys.modules["scipy.linalg.lapack"]
 """
 
 
+@pytest.mark.slow_at("alone", "imported")
 @pytest.mark.parametrize("code", [ALONE, IMPORTED, ELSEWHERE], ids=["alone", "imported", "elsewhere"])
 def test_the_routines_are_those_of_the_package(code: str) -> None:
     """Their file alone, and the package imported after it; the package where it is there already, or where there is no such file."""

@@ -41,6 +41,15 @@ def along(direction, p, x, lever, xi, force, step=STEP):
     )
 
 
+@pytest.mark.slow_at(
+    "False-axis",
+    "False-face",
+    "False-round",
+    "False-round on the face",
+    "True-face",
+    "True-round",
+    "True-round on the face",
+)
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("stick", [False, True])
 def test_tangent_is_the_derivative_of_every_row(stick, place):
@@ -242,6 +251,7 @@ def test_rows_of_two_contacts_are_the_cones_of_their_tilted_tangents():
             assert residual[10] + shared[3 * own + 2] == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow_at("face", "round on the face")
 @pytest.mark.parametrize("place", ["face", "round", "round on the face"])
 def test_a_stick_dissipates_of_third_order_in_its_size(place):
     """Work of F_t on the slip rate along a stick that rolls, for a path of the element's ends and of the node, and for its half."""

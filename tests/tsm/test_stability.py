@@ -222,6 +222,7 @@ def joined_column(load: float, elements: tuple[str, str], pin: float | None) -> 
     )
 
 
+@pytest.mark.slow_at("0.3", "0.8")
 @pytest.mark.parametrize("pin", [None, 0.3, 0.8])
 def test_index_does_not_depend_on_the_mixture_of_elements(pin: float | None) -> None:
     seen = set()

@@ -215,6 +215,7 @@ def test_jammed(element):
     assert stopped == pytest.approx(exact.events[-1].load_parameter, abs=1e-4)
 
 
+@pytest.mark.slow_at("mixed")
 @pytest.mark.parametrize("element", ["mixed", "exact"])
 def test_rest_unknown(element):
     """One of two pins with friction leaves the beam over its end; it falls onto the other one."""

@@ -124,6 +124,7 @@ def test_depths_outside_the_stage_are_nan(path):
     assert wide.end_depth == pytest.approx(path.end_depth, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_tip_that_slips_off_the_second_rod():
     """A pin near the clamps bends the rods far: the first one's tip runs along the second to its end."""
     scene = {"pin_x": 0.3, "spacing": 0.05}
@@ -135,6 +136,7 @@ def test_a_tip_that_slips_off_the_second_rod():
     assert np.isnan(last.tip_arc[1])
 
 
+@pytest.mark.slow
 def test_a_pair_is_lost_at_its_fold():
     """Where equilibrium ends, all unknowns go with the square root of the depth that is left."""
     scene = {"pin_x": 0.3, "spacing": 0.6}

@@ -157,6 +157,7 @@ def along_the_axis(path, k, stiffness):
     return end, (np.array(rate(0.0, end)[:2]) + tail) / 2.0
 
 
+@pytest.mark.slow_at("-1-surface0", "-1-surface2", "1-surface0", "1-surface1", "1-surface2")
 @pytest.mark.parametrize("surface", [Surface(), Surface(offset=0.06), Surface(offset=0.06, radius=0.1)])
 @pytest.mark.parametrize("side", [1, -1])
 def test_all_conditions_hold_when_integrated_from_the_clamp(surface, side):
@@ -177,6 +178,7 @@ def test_all_conditions_hold_when_integrated_from_the_clamp(surface, side):
     check_states(path, friction)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("surface", "stiffness", "allowance"),
     [(Surface(), THICK, 1e-13), (FACE, KS, 4e-12), (FACE, THICK, 3e-8)],

@@ -43,6 +43,7 @@ def stick_terms(path, k, stiffness, surface):
     return factor, path.arc_position[k], surface.offset * (phi - end[2]) + surface.radius * phi
 
 
+@pytest.mark.slow_at("surface0")
 @pytest.mark.parametrize("surface", [Surface(offset=0.05), Surface(offset=0.05, radius=0.1)])
 def test_the_stick_row_holds_when_integrated_from_the_clamp(surface):
     whole = rod_with_friction(
@@ -63,6 +64,7 @@ def test_the_stick_row_holds_when_integrated_from_the_clamp(surface):
     check_states(path, 0.5)
 
 
+@pytest.mark.slow_at("0.3-1.4e-07", "0.5-3.2e-07")
 @pytest.mark.parametrize(("friction", "defect"), [(0.1, 2.5e-8), (0.3, 1.4e-7), (0.5, 3.2e-7)])
 def test_a_held_arc_position_does_not_conserve_energy_on_a_face(monkeypatch, friction, defect):
     """With `s = s*` the work of the KS path is off by `defect`, with the stick row by less than 1e-11."""
@@ -78,6 +80,7 @@ def test_a_held_arc_position_does_not_conserve_energy_on_a_face(monkeypatch, fri
     assert balance(path)[1] == pytest.approx(defect, rel=0.05)
 
 
+@pytest.mark.slow_at("0.1-1.9e-07")
 @pytest.mark.parametrize(("radius", "defect"), [(0.01, 2.7e-9), (0.1, 1.9e-7)])
 def test_energy_of_a_stick_that_rolls(radius, defect):
     """The stick row is the trapezium of `v = 0`; over a long roll its energy shows."""
@@ -131,6 +134,7 @@ def test_without_friction_the_rod_is_the_frictionless_one(offset):
     assert balance(path)[-1] < 1e-13
 
 
+@pytest.mark.slow_at("surface0")
 @pytest.mark.parametrize("surface", [Surface(), Surface(offset=0.03, radius=0.05)])
 def test_a_pin_on_the_left_is_the_mirror_image(surface):
     pins = ks_pins([0.0, 0.4, 0.8], surface.offset + surface.radius)
@@ -280,6 +284,7 @@ def test_drawn_paths_of_the_rod(seed, shape):
     assert ended <= 1
 
 
+@pytest.mark.slow_at("1e-09-1e-06")
 @pytest.mark.parametrize(("EI", "length"), [(1e-9, 1e-6), (1e12, 1e4)])
 def test_units(EI, length):
     stiffness = {"EA": 300.0 * EI / length**2, "GA": 80.0 * EI / length**2, "EI": EI, "length": length}

@@ -30,6 +30,7 @@ LOADED = replace(
 )
 
 
+@pytest.mark.slow_at("ks-tied-tip")
 @pytest.mark.parametrize("scene", [KS, TIED], ids=lambda scene: scene.name)
 def test_it_is_the_rod_of_quadrature(scene: Scene) -> None:
     network = solve_network(scene, "rod")

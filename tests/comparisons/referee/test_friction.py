@@ -44,6 +44,7 @@ def all_along(scene: Scene, response: Response) -> Certificate:
     return certify(response, scene, at=range(len(response.load_parameter)))
 
 
+@pytest.mark.slow_at("0.3-ks-face")
 @pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
 @pytest.mark.parametrize("friction", [0.3, *(pytest.param(mu, marks=pytest.mark.slow) for mu in (0.1, 0.5))])
 def test_exact_elements_are_certified_to_round_off_all_along(name: str, friction: float) -> None:
@@ -67,7 +68,8 @@ def test_twenty_mixed_elements_are_certified_all_along(name: str, friction: floa
     assert found.certified, found.line()
 
 
-@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
 def test_the_rod_of_quadrature_is_certified(name: str) -> None:
     scene = rough(name, 0.3)
     found = all_along(scene, solve(scene, "rod"))
@@ -87,15 +89,9 @@ def test_the_solid_is_certified_all_along(name: str) -> None:
     assert 1e-3 < max(item.distance.force for item in found.judged if item.distance) < 6e-3
 
 
-@pytest.mark.parametrize("element", ["exact", pytest.param("mixed", marks=pytest.mark.slow)])
-@pytest.mark.parametrize(
-    "name",
-    [
-        "two-pins",
-        pytest.param("three-point-bending", marks=pytest.mark.slow),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("double-beam", "touch-again")),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("element", ["exact", "mixed"])
+@pytest.mark.parametrize("name", ["two-pins", "three-point-bending", "double-beam", "touch-again"])
 def test_several_contacts_are_certified(name: str, element: str) -> None:
     scene = rough(name, 0.2, 12)
     response = answer(scene, element, 20)
@@ -160,6 +156,7 @@ def test_the_equations_are_differentiated(slip: int, seed: int) -> None:
     assert np.abs(by - by.T).max() > 1e-2
 
 
+@pytest.mark.slow
 def test_without_events_the_referee_finds_them_itself() -> None:
     scene = rough("ks-face", 0.3, 20)
     response = answer(scene)
@@ -193,6 +190,7 @@ def test_slips_and_sticks_between_two_load_parameters_are_found() -> None:
     assert spent == pytest.approx(response.contacts[PAIR].friction.dissipated[0], rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_model_without_states_of_friction_is_judged_by_its_forces() -> None:
     scene = rough("ks-cantilever", 0.3, 20)
     response = answer(scene)
@@ -202,7 +200,8 @@ def test_a_model_without_states_of_friction_is_judged_by_its_forces() -> None:
     assert f"friction of {PAIR} taken from the direction of its force" in found.line()
 
 
-@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
 def test_the_dissipation_is_that_of_the_exact_elements(name: str) -> None:
     """Two quadratures of different programs; work less dissipation is the strain energy."""
     scene = rough(name, 0.3)
@@ -371,11 +370,15 @@ FAULTS: dict[str, tuple[Callable[[Response], Response], Verdict, str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_answer_that_is_spoilt_is_certified() -> None:
     assert certify(answer(FAULTY), FAULTY).certified
     assert all_along(FAULTY, answer(FAULTY)).certified
 
 
+@pytest.mark.slow_at(
+    "some-coefficient", "some-held elsewhere from the event on", "some-stick outside the cone"
+)
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["some", "all"])
 def test_seeded_faults_are_refused(fault: str, every: bool) -> None:
@@ -423,6 +426,14 @@ def drawn_on_a_face(*, round_pin: bool) -> Scene:
     )  # fmt: skip
 
 
+@pytest.mark.slow_at(
+    "axis-0.1-1.0-from a touch",
+    "axis-0.1-1.0-from the start",
+    "face-0.1-20.0-from a touch",
+    "face-0.1-20.0-from the start",
+    "face-None-20.0-from a touch",
+    "face-None-20.0-from the start",
+)
 @pytest.mark.parametrize("gap", [0.0, 0.003], ids=["from the start", "from a touch"])
 @pytest.mark.parametrize(
     ("surface", "radius", "friction"),

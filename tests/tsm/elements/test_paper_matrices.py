@@ -194,6 +194,7 @@ def force_errors(formulation, near, end, samples=30):
     return np.median(errors)
 
 
+@pytest.mark.slow_at("(5)-(6)-i--2")
 @pytest.mark.parametrize(
     ("formulation", "end", "power"),
     [("(5)-(6)", "i", -2), ("(5)-(6)", "j", -2), ("(7)-(8)", "i", -1), ("(7)-(8)", "j", -3)],
@@ -237,6 +238,7 @@ def negative_eigenvalues(function, length, xi):
     return int((np.linalg.eigvalsh(K / np.outer(scale, scale)) < 0).sum())
 
 
+@pytest.mark.slow
 def test_printed_matrix_is_indefinite_at_every_position():
     """One negative eigenvalue for any a as long as l0 < 6 sqrt(2) units of length; none when corrected."""
     for length in (0.05, 0.25, 1.0, 8.48):

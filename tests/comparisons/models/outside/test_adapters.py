@@ -135,6 +135,7 @@ STATED = {
 }
 
 
+@pytest.mark.slow_at("calculix-tip", "exudyn-roll", "exudyn-tip", "felupe-tip", "opensees-portal")
 @pytest.mark.parametrize(
     ("name", "scene"),
     [pytest.param(name, scene, marks=needs(name)) for name, scenes in SCENES.items() for scene in scenes],
@@ -178,6 +179,7 @@ def test_opensees_with_friction_has_a_known_error_under_the_pin() -> None:
 
 
 @needs("opensees")
+@pytest.mark.slow_at("20")
 @pytest.mark.parametrize("steps", [20, 60, 200])
 def test_opensees_with_friction_loses_the_contact_in_long_steps_and_reports_success(
     steps: int, tmp_path: Path

@@ -106,6 +106,7 @@ def test_an_entry_point_without_a_model_is_named(name: str, line: str, place: Pa
     assert found.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_functions_are_a_model(place: Path) -> None:
     """A stiff strip that does not bend is refused by the referee; a stop and an exception have their names, and output goes aside."""
     solved = crossval(place, "solve", "roll-up", "--model", "stiff", "--elements", "4", "--quiet")

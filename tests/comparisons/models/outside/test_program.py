@@ -293,6 +293,7 @@ def test_solve_and_gate_have_it(
     assert main(["certify", "a.json", "--scene", "ks.toml"]) == 1
 
 
+@pytest.mark.slow
 def test_a_study_has_it_and_sees_a_changed_program(program: Make, tmp_path: Path) -> None:
     file = program("contact['gap'] = [0.0] * 5")
     case = Case(scene=KS, model=file)
