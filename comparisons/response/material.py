@@ -2,9 +2,9 @@
 
 Along a uniform Reissner rod without distributed load
 
-    H = m^2/2EI + N + N^2/2EA + Q^2/2GA
+    H = m^2/2EI + k_0 m + N + N^2/2EA + Q^2/2GA
 
-is constant between contacts. A contact force F on the axis changes it by ``H_- - H_+ = F . (r'_- + r'_+)/2``, the tangential force times
+with the natural curvature k_0 is constant between contacts. A contact force F on the axis changes it by ``H_- - H_+ = F . (r'_- + r'_+)/2``, the tangential force times
 a factor that differs from 1 by a strain. At a free end H = 0. At the clamp of a beam with one free end H is therefore the sum of the
 tangential contact forces, positive away from the clamp: physical friction or, without friction, an error of the contact's direction.
 """
@@ -62,10 +62,13 @@ def material_forces(response: Response, scene: Scene, *, strains: bool = True) -
         if support is None:
             continue
         EA, GA = (beam.EA, beam.GA) if strains else (math.inf, math.inf)
-        turn = math.atan2(*beam.direction[::-1]) + response.load_parameter * (clamp.motion[2] or 0.0)
-        x, y = (-1.0 if clamp.end == "start" else 1.0) * support.force.T
+        way, at = (-1.0, 0.0) if clamp.end == "start" else (1.0, 1.0)
+        turn = math.atan2(*beam.tangent(at)[::-1]) + response.load_parameter * (clamp.motion[2] or 0.0)
+        x, y = way * support.force.T
         N, Q = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
         found[name] = support.moment**2 / (2.0 * beam.EI) + N + N**2 / (2.0 * EA) + Q**2 / (2.0 * GA)
+        if beam.turn:
+            found[name] += beam.curvature * way * support.moment
     return found
 
 
@@ -122,12 +125,12 @@ def frictions_found(response: Response, scene: Scene) -> dict[str, Array]:
     """Return the coefficients of friction that the reactions of the clamps show, shape (s,) by beam, positive away from the clamp.
 
     In slip a coefficient is that of the contact or its negative, in stick it is smaller. A beam with several contacts, whose tangential
-    forces only have a sum, is left out, and so is a contact without friction.
+    forces only have a sum, is left out, and so are a contact without friction and a beam with natural curvature.
     """
     found = {}
     for name, material_force in response.material_force.items():
         own = [contact for contact in scene.contacts if contact.beam == name]
-        if len(own) == 1 and own[0].friction:
+        if len(own) == 1 and own[0].friction and not scene.beam(name).turn:
             force, lever = response.contacts[own[0].pair].force, scene.offset(own[0]) - scene.radius(own[0])
             found[name] = friction_coefficient(force, material_force, scene.beam(name), lever=lever)
     return found

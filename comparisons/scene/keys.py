@@ -29,7 +29,7 @@ ONE_ROD: Final[frozenset[str]] = frozenset()
 """Keys that the exact answers by quadrature state, for one beam under a pin or with a tied tip."""
 PROGRAMS: Final[frozenset[str]] = frozenset()
 """Keys that the resolved scene states, which programs of others read."""
-MATERIAL: Final[frozenset[str]] = frozenset()
+MATERIAL: Final = frozenset({"turn"})
 """Keys under which the material force is defined."""
 ACCURACY: Final[frozenset[str]] = frozenset()
 """Keys for which a resolution can be chosen."""

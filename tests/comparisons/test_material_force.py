@@ -89,6 +89,22 @@ def test_exact_elements_have_no_friction_at_drawn_cantilevers() -> None:
     assert worst <= 1e-10
 
 
+@pytest.mark.parametrize("clamp", ["start", "end"])
+def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
+    """Its H has the part of the natural curvature: without it the friction is more than one percent."""
+    beam = replace(KS.beams[0], turn=0.8 if clamp == "start" else -0.8, clamped=("start",))
+    pin = replace(KS.pins[0], start=beam.place(0.9), displacement=(-0.3, 0.4))
+    contact = KS.contacts[0]
+    if clamp == "end":
+        beam = replace(beam, start=beam.end, end=beam.start, clamped=("end",), turn=0.8)
+        contact = replace(contact, side="left")
+    scene = replace(KS, beams=(beam,), pins=(pin,), contacts=(contact,))
+    response = solve(scene, "tsm", Options(element="exact"))
+    assert largest(response, scene) <= 1e-10
+    (support,) = response.supports.values()
+    assert abs(beam.curvature * support.moment[-1]) > 0.01 * response.contacts[PAIR].force[-1]
+
+
 @pytest.mark.slow
 def test_exact_elements_have_no_friction_at_many_drawn_cantilevers() -> None:
     worst, count = exact_frictions(150)

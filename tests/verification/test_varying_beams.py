@@ -1,12 +1,16 @@
 """Loads along a beam, natural curvature and taper against shooting and against numbers known in closed form."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import tsm
 from tests.verification.rod_by_shooting import Rod, free, pinned
+from tsm.elements.collocation import collocation
+from tsm.rods.shape import plain_shape
 
 E, G, WIDTH, HEIGHT = 1.2e5, 4.5e4, (0.1, 0.06), (0.1, 0.05)
 """EI is 1 at the clamp; EA is 1200."""
@@ -173,3 +177,112 @@ def test_small_weight_bends_a_cantilever_by_the_eighth():
         left.append(abs(-result.tips["b"][-1][1] / linear - 1))
     assert left[0] < 1e-3
     assert math.log10(left[0] / left[1]) == pytest.approx(2.0, abs=0.01)
+
+
+def test_tapered_cantilever_with_a_flexible_root_by_quadrature():
+    """The specimen of ASME V&V 10.1: a tapered cantilever, loaded along its outer half, at a root that turns by its moment.
+
+    The tip sinks by the work of a unit force, ``int M m/EI + V v/GA ds + M_0 m_0/k``; what is left falls with the square of the load.
+    """
+    load, root = 1e-3, 5.0
+    q = -load
+
+    def sections(x):
+        height, width = ((1 - x) * a + x * b for a, b in (HEIGHT, WIDTH))
+        return E * width * height**3 / 12, 5 / 6 * G * width * height
+
+    def moment(x):
+        outer = min(1 - x, 0.5)
+        return q * outer * ((1 - x) - outer / 2)
+
+    def density(x):
+        EI, GA = sections(x)
+        return moment(x) * (1 - x) / EI + q * min(1 - x, 0.5) / GA
+
+    linear = quad(density, 0, 1, points=[0.5], epsabs=1e-15, epsrel=1e-13)[0] + moment(0.0) / root
+    left = []
+    for factor in (10.0, 1.0):
+        loads = ((((0.0, factor * q),), 0.5, 1.0),)
+        held = tsm.Support(beam="b", end="start", rotation=None)
+        spring = tsm.Spring(beam="b", end="start", rotation=root)
+        given = replace(structure(loads=loads, tapered=True), supports=(held,), springs=(spring,))
+        left.append(abs(tsm.solve(given, [1.0]).tips["b"][-1][1] / (factor * linear) - 1))
+    assert left[1] < 1e-7
+    assert math.log10(left[0] / left[1]) == pytest.approx(2.0, abs=0.02)
+
+
+@pytest.mark.slow
+def test_largest_span_of_a_heavy_strip_on_two_points():
+    """Curtis, Griffiths and Vella: up to the half span 1/e of its half length a strip bears any weight on two points without friction.
+
+    Beyond, the weight f has a limit, with ``a - 1/e = c f^(-1/2) + ...``: the half span is extrapolated to infinite weight.
+    """
+    spans, limits = [], []
+    for beyond in (0.012, 0.008, 0.006, 0.004):
+        span, weight = 1 / math.e + beyond, 1.1 * (1.167 / beyond) ** 2
+        stiff = tsm.Section(EA=1e9 * weight, GA=1e9 * weight, EI=1.0)
+        beam = tsm.Beam(
+            name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=stiff, elements=4, element="exact"
+        )
+        half = tsm.Structure(
+            beams=(beam,),
+            supports=(tsm.Support(beam="b", end="start", uy=None),),
+            pins=(tsm.Pin(name="p", path=((span, 0.0), (span, 1e-9))),),
+            contacts=(tsm.ContactPair(node="p", beam="b"),),
+            line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),),
+        )
+        result = tsm.solve(half, [1.0], throw=False)
+        assert result.status is tsm.Status.LIMIT_POINT
+        spans.append(span)
+        limits.append(result.critical[-1].load_parameter * weight)
+    least = np.polyfit(np.array(limits) ** -0.5, spans, 3)[-1]
+    assert least == pytest.approx(1 / math.e, abs=1e-6)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_balance_of_the_material_force(key):
+    """``H = m^2/2EI + k0 m + N + N^2/2EA + Q^2/2GA`` changes by its explicit derivative: the sections', and ``- q . r'`` by the load."""
+    result = tsm.solve(structure(**KEYS[key], tip=(0.3, 0.9, -0.2)), [1.0])
+    model, state = result.model, result.equilibria[-1].state
+    shape = plain_shape(model.rods, state, model.rods.enter(state))
+    steps, rises = [], []
+    for s in range(len(shape.length)):
+        nodes = collocation(48).c
+        ends = [shape.within(s, np.array([x])) for x in (0.0, 1.0)]
+        inside = shape.within(s, nodes)
+        values = []
+        for at, part in ((ends[0], [0.0]), (inside, nodes), (ends[1], [1.0])):
+            x = (model.beams["b"].arcs[s] + shape.length[s] * np.array(part)) / model.beams["b"].beam.length
+            values.append(_material_force(KEYS[key], at, x))
+        (first, _), (_, explicit), (last, _) = values
+        steps.append(last[0] - first[0])
+        rises.append(shape.length[s] * collocation(48).w @ explicit)
+    assert np.abs(np.subtract(steps, rises)).max() <= 1e-11
+    if key == "natural curvature":
+        assert np.abs(rises).max() == 0.0
+    else:
+        assert np.abs(rises).max() > 0.1
+
+
+def _material_force(given, at, x):
+    """H, and its explicit derivative by the arc length, from a rod of unit length."""
+    specimen = rod(**given)
+    stiffness = np.array([specimen.stiffness(part) for part in x]).T
+    h = 1e-6
+    EA_slope, GA_slope, EI_slope = np.array(
+        [
+            1 / np.array(specimen.stiffness(part + h)) - 1 / np.array(specimen.stiffness(part - h))
+            for part in x
+        ]
+    ).T / (2 * h)
+    c, sn = np.cos(at.angle), np.sin(at.angle)
+    N, Q, m = at.force[:, 0] * c + at.force[:, 1] * sn, at.force[:, 1] * c - at.force[:, 0] * sn, at.moment
+    EA, GA, EI = stiffness
+    value = m**2 / (2 * EI) + specimen.turn * m + N + N**2 / (2 * EA) + Q**2 / (2 * GA)
+    load = np.zeros((len(x), 2))
+    for density, begin, end in specimen.loads:
+        load += np.array([density(part) if begin < part < end else (0.0, 0.0) for part in x])
+    along, across = 1 + N / EA, Q / GA
+    explicit = (EI_slope * m**2 + EA_slope * N**2 + GA_slope * Q**2) / 2
+    explicit -= load[:, 0] * (along * c - across * sn) + load[:, 1] * (along * sn + across * c)
+    return value, explicit
