@@ -1,6 +1,6 @@
 """One scene through every model: table, pictures and files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,7 @@ from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Count, Watch, uncounted, unwatched
+from comparisons.models.theory import bending
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import json_text
 from comparisons.referee import Verdict
@@ -22,6 +23,7 @@ from comparisons.scene import Scene, to_toml
 from comparisons.show.budget_plot import plot_budget, write_budget
 from comparisons.show.compare_report import write_comparison_page
 from comparisons.show.export import check_series, write_series
+from comparisons.show.findings import BUDGET
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import render_panels
 from comparisons.show.stress import beam_panel, solid_panel
@@ -155,21 +157,51 @@ def compare(
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
     runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
-    responses = _solve_all(scene, [*runs, *RUNS], report, watching)
-    reference = responses[ROD.label]
-    rows = [
-        Row(
-            label=label,
-            response=response,
-            errors=None if response is reference else _errors(response, reference, scene),
-        )
-        for label, response in responses.items()
-    ]
+    left_out: dict[str, str] = {}
+
+    def leave_out(name: str, reason: str) -> None:
+        left_out[name] = reason
+
+    runs = [*runs, *RUNS]
+    responses = _solve_all(scene, runs, report, watching, leave_out)
+    rows = [_row(run, responses, scene) for run in runs if run.label in responses]
     with staging("measuring the error budget") as count:
-        budget = _budget(scene, rows, report, count)
+        try:
+            budget = _budget(scene, rows, count)
+        except ModelError as error:
+            budget = None
+            leave_out(BUDGET, str(error))
+            report(f"budget.json: left out, {error}")
     with staging("drawing and writing files") as count, alone_in(folder):
-        files = _write_all(scene, rows, budget, folder, report, count)
+        files = _write_all(scene, rows, budget, left_out, folder, report, count)
     return Comparison(rows=rows, files=files)
+
+
+def _row(run: Run, responses: Mapping[str, Response], scene: Scene) -> Row:
+    """Return the row of a run with its errors and their cause."""
+    model, response, reference = find(run.model), responses[run.label], responses[ROD.label]
+    return Row(
+        label=run.label,
+        response=response,
+        errors=None if response is reference else _errors(response, reference, scene),
+        family=model.family(scene, run.options),
+        resolution=model.resolution(run.options),
+        cause=_cause(model, run.options, scene, reference),
+    )
+
+
+def _cause(model: Model, options: Options, scene: Scene, reference: Response) -> str:
+    """Return the largest part of the error that theory allows, without its formula; empty but for a cantilever along x."""
+    (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
+    if (
+        others
+        or beam.direction != (1.0, 0.0)
+        or ends != [f"{beam.name}.start"]
+        or not len(reference.load_parameter)
+    ):
+        return ""
+    parts = model.error_parts(scene, options, bending(beam, reference))
+    return max(parts, key=lambda why: parts[why]).partition(":")[0]
 
 
 def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
@@ -181,7 +213,13 @@ def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
     return {**found, "path": {name: largest(values) for name, values in reached.items()}}
 
 
-def _solve_all(scene: Scene, runs: Sequence[Run], report: Report, watching: Watching) -> dict[str, Response]:
+def _solve_all(
+    scene: Scene,
+    runs: Sequence[Run],
+    report: Report,
+    watching: Watching,
+    leave_out: Callable[[str, str], None],
+) -> dict[str, Response]:
     responses: dict[str, Response] = {}
     for number, run in enumerate(runs, 1):
         try:
@@ -189,6 +227,7 @@ def _solve_all(scene: Scene, runs: Sequence[Run], report: Report, watching: Watc
                 response = certified(solve(scene, run.model, run.options, watch), scene)
         except ModelError as error:
             report(f"[{number}/{len(runs)}] {run.label}: left out, {error}")
+            leave_out(find(run.model).family(scene, run.options), str(error).removeprefix(f"{run.model}: "))
             continue
         responses[run.label] = response
         outcome = (
@@ -200,23 +239,25 @@ def _solve_all(scene: Scene, runs: Sequence[Run], report: Report, watching: Watc
     return responses
 
 
-def _budget(scene: Scene, rows: list[Row], report: Report, count: Count) -> Budget | None:
-    """Return the error budget; None, with the reason, where the solid or the rod is not in contact throughout."""
+def _budget(scene: Scene, rows: list[Row], count: Count) -> Budget:
+    """Return the error budget.
+
+    Raises
+    ------
+    ModelError
+        If there is no complete answer of the solid, or no budget of the scene.
+    """
     solid = next((row.response for row in rows if row.label == SOLID.label), None)
     if solid is None or not solid.completed:
-        report("budget.json: left out, it takes the solid")
-        return None
-    try:
-        return error_budget(scene, count)
-    except ModelError as error:
-        report(f"budget.json: left out, {error}")
-        return None
+        raise ModelError("it takes the solid")
+    return error_budget(scene, count)
 
 
 def _write_all(
     scene: Scene,
     rows: list[Row],
     budget: Budget | None,
+    left_out: Mapping[str, str],
     folder: Path,
     report: Report,
     count: Count,
@@ -241,7 +282,9 @@ def _write_all(
     count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
     files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
-    page = write_comparison_page(scene, rows, budget, files, series, folder, reference=ROD.label)
+    page = write_comparison_page(
+        scene, rows, budget, files, series, folder, reference=ROD.label, left_out=left_out
+    )
     files = [page, *files]
     write_text(folder / "summary.json", _summary(scene, rows, [path.relative_to(folder) for path in files]))
     return files

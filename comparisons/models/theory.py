@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models.options import Options
-from comparisons.scene import Scene
+from comparisons.response import Response
+from comparisons.scene import BeamSpec, Scene
 
 if TYPE_CHECKING:
     from tsm.elements import ElementType
@@ -64,6 +65,26 @@ class Bending:
     curvature: float = 0.0
     turn: float = 0.0
     nearest: float = 1.0
+
+
+def bending(beam: BeamSpec, exact: Response) -> Bending:
+    """Return the bending of `beam`, clamped along +x, in the answer `exact`."""
+    if not len(exact.load_parameter):
+        return Bending()
+    clamp = exact.supports[f"{beam.name}.start"]
+    force, moment = -clamp.force, np.abs(clamp.moment)
+    loaded = np.hypot(*force.T) > 0.0
+    # beyond a right angle the moment is largest where the axis points along the force, and there m^2 = 2 F EI
+    turn = np.abs(np.arctan2(-force[loaded, 0], force[loaded, 1]))
+    inner = np.where(turn > np.pi / 2, np.sqrt(2 * np.hypot(*force[loaded].T) * beam.EI), 0.0)
+    largest_moment = max(float(moment.max(initial=0.0)), float(inner.max(initial=0.0)))
+    arcs = [np.fmin.reduce(contact.arc_position, initial=beam.length) for contact in exact.contacts.values()]
+    return Bending(
+        force=float(np.hypot(*force.T).max(initial=0.0)) * beam.length**2 / beam.EI,
+        curvature=largest_moment * beam.length / beam.EI,
+        turn=float(turn.max(initial=0.0)),
+        nearest=float(min(arcs, default=beam.length)) / beam.length,
+    )
 
 
 def chord_term(turn: Any, order: int) -> Any:
@@ -154,6 +175,6 @@ def elastica_errors(scene: Scene, bent: Bending) -> dict[str, float]:
     beam = scene.beams[0]
     soft = beam.EI / beam.length**2 * (1 / beam.EA + 1 / beam.GA)
     return {
-        "stretch and shear, EI/s^2 (1/EA + 1/GA) with the nearest s": CHANGE**2 * soft / bent.nearest**2,
+        "stretch and shear: EI/s^2 (1/EA + 1/GA) with the nearest s": CHANGE**2 * soft / bent.nearest**2,
         "round-off": ROUND_OFF,
     }

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from comparisons.budget import PARTS, Budget, budget_rows
 from comparisons.scene import Scene
+from comparisons.show.findings import findings
 from comparisons.show.pages import (
     Section,
     definitions,
@@ -28,6 +29,7 @@ def write_comparison_page(
     folder: Path,
     *,
     reference: str,
+    left_out: Mapping[str, str],
 ) -> Path:
     """Write ``report.html`` to `folder`, with what is in `files` there; return its path.
 
@@ -43,8 +45,10 @@ def write_comparison_page(
         The exported series of VTU files, by the label of the run.
     reference : str
         The label of the exact rod.
+    left_out : mapping of str
+        Why a run or the budget is left out, as `comparisons.show.findings.findings` takes it.
     """
-    lead = f"One scene, {len(rows)} runs, each against the {reference} over {scene.load_parameters} load parameters."
+    lead = " ".join(findings(scene, rows, reference, budget, left_out))
     sections = [_errors(rows, reference), _motion(scene, rows, series, folder, reference)]
     states = states_section({row.label: row.response for row in rows})
     if states is not None:

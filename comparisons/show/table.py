@@ -12,11 +12,30 @@ from comparisons.response import Response
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One run and its errors; the reference itself has none."""
+    """One run and its errors.
+
+    Attributes
+    ----------
+    label : str
+        Label of the run.
+    response : Response
+        Its response.
+    errors : Errors or None
+        Its errors; the reference itself has none.
+    family : str
+        What the runs that differ in resolution only share.
+    resolution : float
+        Number of elements along a beam; nan without a mesh, or where the scene gives the number.
+    cause : str
+        The largest part of the error that theory allows the model; empty where theory has no estimate for the scene.
+    """
 
     label: str
     response: Response
     errors: Errors | None
+    family: str = ""
+    resolution: float = np.nan
+    cause: str = ""
 
 
 HEADER = (

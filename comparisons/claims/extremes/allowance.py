@@ -1,36 +1,12 @@
 """The allowed error of a model in a cell, fixed before any run."""
 
-import numpy as np
-
 from comparisons.cases.case import Case
 from comparisons.claims.claim import Allowance
 from comparisons.models import MODELS
 from comparisons.models.theory import Bending
-from comparisons.response import Response
-from comparisons.scene import BeamSpec
 
 LARGEST = 0.2
 """Largest allowed error for any model; an answer with a larger error should have stopped."""
-
-
-def bending(beam: BeamSpec, exact: Response) -> Bending:
-    """Return the bending of `beam`, clamped along +x, in the answer `exact`."""
-    if not len(exact.load_parameter):
-        return Bending()
-    clamp = exact.supports[f"{beam.name}.start"]
-    force, moment = -clamp.force, np.abs(clamp.moment)
-    loaded = np.hypot(*force.T) > 0.0
-    # beyond a right angle the moment is largest where the axis points along the force, and there m^2 = 2 F EI
-    turn = np.abs(np.arctan2(-force[loaded, 0], force[loaded, 1]))
-    inner = np.where(turn > np.pi / 2, np.sqrt(2 * np.hypot(*force[loaded].T) * beam.EI), 0.0)
-    largest_moment = max(float(moment.max(initial=0.0)), float(inner.max(initial=0.0)))
-    arcs = [np.fmin.reduce(contact.arc_position, initial=beam.length) for contact in exact.contacts.values()]
-    return Bending(
-        force=float(np.hypot(*force.T).max(initial=0.0)) * beam.length**2 / beam.EI,
-        curvature=largest_moment * beam.length / beam.EI,
-        turn=float(turn.max(initial=0.0)),
-        nearest=float(min(arcs, default=beam.length)) / beam.length,
-    )
 
 
 def allowance(case: Case, bent: Bending) -> Allowance:

@@ -8,12 +8,12 @@ import numpy as np
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
 from comparisons.claims.claim import Allowance, Finding
-from comparisons.claims.extremes.allowance import LARGEST, allowance, bending
+from comparisons.claims.extremes.allowance import LARGEST, allowance
 from comparisons.claims.extremes.units import in_units_of
 from comparisons.errors import difference
 from comparisons.exact.end_loads import tip_under_moment
 from comparisons.models import MODELS, TSM
-from comparisons.models.theory import FLOOR, chord_term, element_lengths, ordinal
+from comparisons.models.theory import FLOOR, bending, chord_term, element_lengths, ordinal
 from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec
 from tsm.elements import ClosedForm

@@ -1,6 +1,7 @@
 """What pages hold: the numbers of the other files, whole markup, nothing from elsewhere."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,6 +63,19 @@ def test_the_page_of_a_comparison_is_alone(compared: Path) -> None:
     (data,) = block(html).values()
     for pattern in data["vtu"].values():
         assert all((compared / pattern.replace("{}", f"{k:04d}")).is_file() for k in range(1, 11))
+
+
+def test_the_page_begins_with_the_findings(compared: Path) -> None:
+    """Before any table, with the numbers of the table."""
+    html = (compared / "report.html").read_text()
+    lead = re.search(r'<p class="lead">(.*?)</p>', html, re.DOTALL)
+    assert lead
+    assert lead.start() < html.index("<table")
+    runs = {run["label"]: run for run in json.loads((compared / "summary.json").read_text())["runs"]}
+    worst = max(runs["solid"]["errors"]["path"][name] for name in ("force", "arc", "moment", "tip"))
+    assert f"The solid Q2 is off by at most {100 * worst:.2g} %" in lead[1]
+    assert "In the error budget, beams and solid differ most in the contact force" in lead[1]
+    assert lead[1].endswith("The referee certified every answer.")
 
 
 @pytest.mark.slow

@@ -1,0 +1,214 @@
+"""The findings of a comparison in sentences, each made from the data."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
+from math import inf, isfinite, log
+
+import numpy as np
+
+from comparisons.budget import TIMES, Budget
+from comparisons.models import find
+from comparisons.referee import Verdict
+from comparisons.scene import Scene
+from comparisons.show.table import Row
+
+BUDGET = "error budget"
+"""Key of the error budget among what is left out."""
+SHOWN = ("force", "arc", "moment", "tip")
+"""Quantities of which the largest error is stated."""
+AGREES = 1e-9
+"""Error below which two answers agree."""
+LEAST_PART = 0.05
+"""Part of the difference of beams and solid, over the largest part, below which it is not named."""
+
+
+def findings(
+    scene: Scene,
+    rows: Sequence[Row],
+    reference: str,
+    budget: Budget | None,
+    left_out: Mapping[str, str],
+) -> list[str]:
+    """Return what a comparison found, in sentences.
+
+    The sentences state in this order: what was compared; the largest error of each model, over all runs of a type of elements, with its
+    cause; runs that stopped; what was left out; who states no stability; what the referee certified.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    rows : sequence of Row
+        All runs.
+    reference : str
+        The label of the exact rod.
+    budget : Budget or None
+        What the difference of beams and solid is made of.
+    left_out : mapping of str
+        Reasons by what is left out: the family of a run, or `BUDGET`.
+    """
+    others = [row for row in rows if row.label != reference]
+    return [
+        _compared(scene, rows, reference),
+        *(
+            sentence
+            for family, own in groupby(others, key=lambda row: row.family)
+            for sentence in _off(family, list(own), scene, budget, reference)
+        ),
+        *_stopped(rows),
+        *_left_out(left_out),
+        *_stability(rows),
+        _certified(rows),
+    ]
+
+
+def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
+    models = dict.fromkeys(find(row.response.model).label for row in rows if row.label != reference)
+    last = max(float(row.response.load_parameter.max(initial=0.0)) for row in rows)
+    count = f"{len(rows) - 1} run{'' if len(rows) == 2 else 's'}"
+    return (
+        f"{count} of {_listed(models)} {'is' if len(rows) == 2 else 'are'} compared with the {reference} on {scene.name} at "
+        f"{scene.load_parameters} load parameters, up to {last:.4g}. Errors of forces and moments are relative to the largest value, "
+        "errors of positions to the length."
+    )
+
+
+def _off(family: str, rows: list[Row], scene: Scene, budget: Budget | None, reference: str) -> Iterable[str]:
+    """Yield how far the runs of a family are off, and why."""
+    known = [row for row in rows if row.errors is not None and isfinite(_worst(row, scene)[0])]
+    if not known:
+        return
+    name = f"The {family}" if family[0].islower() else family
+    stated = _stated(known, scene)
+    explained = budget is not None and find(known[0].response.model).continuum
+    if max(_worst(row, scene)[0] for row in known) < AGREES:
+        yield f"{name} agrees with the {reference} to {stated}."
+    else:
+        cause = "" if explained else next((row.cause for row in known if row.cause), "")
+        because = f". Theory expects most of it from this cause: {cause}" if cause else ""
+        yield f"{name} is off by at most {stated}{_falling(known, scene)}{because}."
+    if explained and budget is not None:
+        yield _parts(budget)
+    for row in known:
+        if inf in (row.errors or {})["path"].values():
+            yield f"{row.label} and the {reference} disagree on whether a contact is closed."
+
+
+def _stated(rows: Sequence[Row], scene: Scene) -> str:
+    """Return the errors of runs that differ in resolution; a quantity is named where it changes."""
+    words, before = [], ""
+    for row in rows:
+        error, quantity = _worst(row, scene)
+        words.append(_size(error) + ("" if quantity == before else f" ({quantity})") + _resolved(row))
+        before = quantity
+    return _listed(words)
+
+
+def _worst(row: Row, scene: Scene) -> tuple[float, str]:
+    """Return the largest finite error over the path, and its quantity; nan without one."""
+    names = {
+        "force": "contact force" if scene.contacts else "support force",
+        "arc": "arc position",
+        "moment": "support moment",
+        "tip": "tip",
+    }
+    path = {} if row.errors is None else row.errors["path"]
+    found = [(path[name], names[name]) for name in SHOWN if name in path and isfinite(path[name])]
+    return max(found, default=(np.nan, ""))
+
+
+def _resolved(row: Row) -> str:
+    if not isfinite(row.resolution):
+        return ""
+    return f" with {row.resolution:.0f} element{'' if row.resolution == 1 else 's'}"
+
+
+def _falling(rows: list[Row], scene: Scene) -> str:
+    """Return the measured order of runs with several resolutions."""
+    first, last = (min(rows, key=lambda row: row.resolution), max(rows, key=lambda row: row.resolution))
+    coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
+    if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
+        return ""
+    order = log(coarse / fine) / log(last.resolution / first.resolution)
+    return f"; the error falls with the power {order:.1f} of the length of the elements"
+
+
+def _parts(budget: Budget) -> str:
+    """Return what makes the largest difference of the force between beams and solid."""
+    quantity, k = max(
+        ((name, k) for name in budget.total for k in range(len(TIMES)) if "force" in name),
+        key=lambda item: np.nan_to_num(abs(budget.total[item[0]][item[1]])),
+    )
+    parts = {name: float(values[k]) for name, values in budget.parts[quantity].items()}
+    largest = max(map(abs, parts.values()))
+    shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * largest), key=lambda n: -abs(parts[n]))
+    words = _listed(f"{_size(parts[name])} {name}" for name in shown)
+    kind, _, column = quantity.partition(" ")
+    name = f"{kind.replace('_', ' ')} {column}".strip()
+    return (
+        f"In the error budget, beams and solid differ most in the {name} at load parameter {TIMES[k]:g}: by "
+        f"{_size(float(budget.total[quantity][k]))}, made of {words}."
+    )
+
+
+def _stopped(rows: Sequence[Row]) -> Iterable[str]:
+    for row in rows:
+        if not row.response.completed:
+            reached = float(row.response.load_parameter.max(initial=0.0))
+            yield (
+                f"{row.label} did not complete ({row.response.status}: {row.response.message}); its errors are those up to load "
+                f"parameter {reached:.4g}."
+            )
+
+
+def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
+    reasons = dict.fromkeys(reason for name, reason in left_out.items() if name != BUDGET)
+    for reason in reasons:
+        yield f"Not stated by {_listed(name for name in left_out if left_out[name] == reason)}: {reason}."
+    if BUDGET in left_out:
+        yield f"There is no error budget: {left_out[BUDGET]}."
+
+
+def _stability(rows: Sequence[Row]) -> Iterable[str]:
+    indices = [(row.family, -1 if row.response.index is None else row.response.index) for row in rows]
+    silent = dict.fromkeys(family for family, index in indices if not np.any(np.greater_equal(index, 0)))
+    unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
+    if silent:
+        yield f"Stability is not stated by {_listed(silent)}."
+    if unstable:
+        yield f"Unstable equilibria are on the path of {_listed(unstable)}."
+
+
+def _certified(rows: Sequence[Row]) -> str:
+    certified, rest = [], []
+    for row in rows:
+        certificate = row.response.certificate
+        if certificate is not None and certificate.certified:
+            certified.append(row.label)
+        elif certificate is None:
+            rest.append(f"{row.label} was not judged")
+        else:
+            refused = certificate.verdict is not Verdict.NOT_JUDGED
+            rest.append(f"{row.label} was {'refused' if refused else 'not judged'} ({certificate.reason})")
+    if not rest:
+        return "The referee certified every answer."
+    return f"The referee certified {len(certified)} of {len(rows)} answers; {'; '.join(rest)}."
+
+
+def _size(value: float) -> str:
+    """Return a relative error in percent, or as a power of ten where it is small.
+
+    >>> _size(0.0041), _size(-3e-12)
+    ('0.41 %', '-3e-12')
+    """
+    return f"{100.0 * value:.2g} %" if abs(value) >= 1e-6 else f"{value:.0e}"
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Return names as a list in a sentence.
+
+    >>> _listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
