@@ -137,7 +137,7 @@ def test_models_on_different_branches_end_with_status_3(
         if model != "tsm" or not other:
             return response
         support = response.supports["cantilever.start"]
-        return replace(response, supports={"cantilever": replace(support, moment=-support.moment)})
+        return replace(response, supports={"cantilever.start": replace(support, moment=-support.moment)})
 
     monkeypatch.setattr(compared, "RUNS", (compared.MIXED, compared.ROD))
     monkeypatch.setattr(compared, "solve", answer)
