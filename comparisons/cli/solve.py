@@ -3,13 +3,14 @@
 import sys
 from math import isnan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
 
 from comparisons.cli import values
 from comparisons.cli.options import ModelNames, add_options, argument, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
-from comparisons.files import writable_file, writable_folder, write_text
+from comparisons.files import OutputError, writable_file, writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from comparisons.response import Response
     from comparisons.scene import Scene
 
+PICTURES = (".png", ".svg", ".pdf")
+"""Formats of `--plot` by the end of the file's name."""
+
 
 def add_to(commands: "Commands") -> None:
     """Add the commands to the parser."""
@@ -31,7 +35,9 @@ def add_to(commands: "Commands") -> None:
 
     solve = commands.add_parser("solve", help="solve a scene with one model", epilog=EPILOG)
     solve.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    solve.add_argument("--model", choices=ModelNames(), help="left to the scene with --accuracy, else needed")
+    solve.add_argument(
+        "--model", choices=ModelNames(), help=f"left to the scene with --accuracy, else {TSM.name}"
+    )
     solve.add_argument(
         "--accuracy",
         type=values.part,
@@ -50,7 +56,20 @@ def add_to(commands: "Commands") -> None:
         help="load parameters to hold against the exact equilibrium: the last of every stage and those beside events (the default), all, none",
     )
     solve.add_argument("--json", metavar="FILE", help="write the response as JSON; - is standard output")
+    solve.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="write all histories as CSV: a row a load parameter, columns with units",
+    )
+    solve.add_argument(
+        "--plot",
+        type=Path,
+        metavar="FILE",
+        help="draw shape, section forces and forces: " + ", ".join(PICTURES),
+    )
     solve.add_argument("--vtk", type=Path, metavar="DIR", help="write VTU files and a PVD file")
+    solve.add_argument("--times", action="store_true", help="print the time of each stage")
     solve.add_argument("--quiet", action="store_true", help="no progress bar")
     solve.set_defaults(run=run)
 
@@ -63,37 +82,31 @@ def list_scenes(_: "argparse.Namespace") -> int:
 
 
 def run(given: "argparse.Namespace") -> int:
-    """Solve, write what was asked for, and print a summary."""
+    """Solve, write what was asked for, and print the page."""
+    stages = _Stages()
     scene = load_scene(given.scene)
-    file = None if given.json in (None, "-") else writable_file(Path(given.json))
-    if given.vtk is not None:
-        from comparisons.show.export import check_series
-
-        check_series(
-            writable_folder(given.vtk), TSM.name if given.model is None else find(given.model).name, scene
-        )
-    from comparisons.models import certified, solve
-    from comparisons.response.to_json import as_json, summary
+    _check_files(given, scene)
+    stages.end("read")
+    from comparisons.models import certified
 
     answer = _answer(scene, given)
     if answer is None:
-        with watching(given.model, quiet=given.quiet) as watch:
-            response = solve(scene, given.model, chosen(given), watch)
-        more = {}
+        response, rule = _solved(scene, given)
+        more, lines = {}, []
     else:
-        scene = answer.found.scene
-        response, more = answer.response, {"accuracy": answer.as_dict()}
+        scene, response, rule = answer.found.scene, answer.response, ""
+        more, lines = {"accuracy": answer.as_dict()}, list(answer.lines())
+    stages.end("set up", less=response.wall_seconds)
     response = certified(response, scene, given.certify)
-    if given.json == "-":
-        sys.stdout.write(as_json(response, **more))
-    elif file is not None:
-        write_text(file, as_json(response, **more))
-    if given.vtk is not None:
-        from comparisons.show.export import write_series
-
-        write_series(given.vtk, response, scene)
+    stages.end("certify")
+    _write(given, response, scene, more)
     if given.json != "-":
-        print(summary(response, scene.units, [*_found(response, scene), *(answer.lines() if answer else ())]))
+        from comparisons.response.page import text
+
+        print(text(response, [*_found(response, scene), *lines, ("program", _program())], rule))
+    stages.end("write")
+    if given.times:
+        print(f"\n{stages.line(response)}", file=sys.stderr if given.json == "-" else sys.stdout)
     status = exit_status(scene, [("", response)])
     if answer is None or answer.reached or status != DONE:
         return status
@@ -101,6 +114,85 @@ def run(given: "argparse.Namespace") -> int:
         f"crossval: ACCURACY_NOT_REACHED: estimated error {answer.found.estimate:.2g}, asked {answer.accuracy:g}"
     )
     return STOPPED
+
+
+class _Stages:
+    """Wall times of the stages of one command [s]."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self.began = perf_counter()
+
+    def end(self, stage: str, *, less: float = 0.0) -> None:
+        """End a stage; `less` seconds of it are those of another one."""
+        now = perf_counter()
+        self.seconds[stage] = max(now - self.began - less, 0.0)
+        self.began = now
+
+    def line(self, response: "Response") -> str:
+        """Return the times in one line, with that of the solution and what it took."""
+        spent = {**self.seconds, "solve": response.wall_seconds}
+        times = ", ".join(
+            f"{stage} {spent[stage]:.3f}" for stage in ("read", "set up", "solve", "certify", "write")
+        )
+        return f"seconds: {times}; {response.iterations} Newton iterations, {response.cutbacks} cut-backs"
+
+
+def _check_files(given: "argparse.Namespace", scene: "Scene") -> None:
+    """Raise `OutputError` for a file that cannot be written, before anything is computed."""
+    if given.json not in (None, "-"):
+        writable_file(Path(given.json))
+    if given.csv is not None:
+        writable_file(given.csv)
+    if given.plot is not None and writable_file(given.plot).suffix not in PICTURES:
+        raise OutputError(f"{given.plot}: must end in {', '.join(PICTURES)}")
+    if given.vtk is not None:
+        from comparisons.show.export import check_series
+
+        check_series(
+            writable_folder(given.vtk), TSM.name if given.model is None else find(given.model).name, scene
+        )
+
+
+def _solved(scene: "Scene", given: "argparse.Namespace") -> "tuple[Response, str]":
+    """Return the answer of the model, and the rule by which its element was chosen."""
+    from comparisons.models import solve
+
+    name = given.model or TSM.name
+    model = find(name)
+    options, rule = model.suited(chosen(given))
+    with watching(model.name, quiet=given.quiet) as watch:
+        return solve(scene, name, options, watch), rule
+
+
+def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", more: dict[str, Any]) -> None:
+    """Write the files that were asked for."""
+    if given.json is not None:
+        from comparisons.response.to_json import as_json
+
+        if given.json == "-":
+            sys.stdout.write(as_json(response, **more))
+        else:
+            write_text(Path(given.json), as_json(response, **more))
+    if given.csv is not None:
+        from comparisons.response.table import csv_history
+
+        write_text(given.csv, csv_history(response, scene.units))
+    if given.plot is not None and len(response.load_parameter):
+        from comparisons.show.answer import plot_answer
+
+        plot_answer(response, given.plot)
+    if given.vtk is not None:
+        from comparisons.show.export import write_series
+
+        write_series(given.vtk, response, scene)
+
+
+def _program() -> str:
+    """Return the name and the version of this program."""
+    from importlib import metadata
+
+    return f"tsm-crossval {metadata.version('tsm-crossval')}"
 
 
 def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
@@ -113,7 +205,7 @@ def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:
         known = [value for value in found.tolist() if not isnan(value)]
         if known:
             rows.append(
-                (f"{beam} friction found", f"{abs(known[-1]):.9g} at the clamp, {given[beam]:g} given")
+                ("friction", f"{abs(known[-1]):.6g} by the reactions of {beam}, {given[beam]:g} in the scene")
             )
     return rows
 
@@ -124,8 +216,6 @@ def _answer(scene: "Scene", given: "argparse.Namespace") -> "Answer | None":
         for option in ("quantity", "explain"):
             if getattr(given, option):
                 raise ModelError(f"--{option}: belongs to --accuracy")
-        if given.model is None:
-            raise ModelError("--model: must be given without --accuracy")
         return None
     for option in ("elements", "integration_tolerance", "mesh", "branch"):
         if getattr(given, option) is not None:

@@ -7,18 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.response import Array, ContactHistory, Response
+from comparisons.response.round_off import force_round_off, least_force
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
 
 BALANCE = 1e-6
 """Largest unbalanced force, relative to the largest force that acts. Newton's tolerances are far below."""
-LAST_PLACES, UNRESOLVED = 8 * float(np.finfo(float).eps), 1e-4
-"""Round-off of a balance, over EA, and its limit, over the largest force. Stored positions have an error of a few units in the last
-place. A stretch computed from them has the same error, and the axial force has EA times this error. The balance may miss by this
-much more, but by no more than the limit."""
-
-LEAST = 1e-4
-"""Smallest force, over ``EI/L^2``, that `BALANCE` is relative to: Newton's methods end at a residual of 1e-10."""
-
 
 _PANELS, _NODES = 20, 4
 """Panels, and nodes in each, of the quadrature of a load along a beam."""
@@ -43,7 +36,7 @@ def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
     outer = _sum([*supports, *loads], len(response.load_parameter))
     pushing, magnitude, pins = _pins(response, scene, outer)
     largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
-    scale = BALANCE * largest + min(LAST_PLACES * max(beam.EA for beam in scene.beams), UNRESOLVED * largest)
+    scale = BALANCE * largest + force_round_off(scene, largest)
     missing = np.hypot(*outer.force.T)
     off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
     length = max(beam.length for beam in scene.beams)
@@ -67,7 +60,7 @@ def _largest(scene: Scene, actions: list[Action]) -> float:
     length = max(beam.length for beam in scene.beams)
     forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
     moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
-    return max(*forces, *moments, LEAST * min(beam.EI / beam.length**2 for beam in scene.beams))
+    return max(*forces, *moments, least_force(scene))
 
 
 def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.0) -> Action:

@@ -113,6 +113,10 @@ class Model(ABC):
         """Text by which stored studies know the model; it changes with whatever outside this package changes its answers."""
         return self.name
 
+    def suited(self, options: Options) -> tuple[Options, str]:
+        """Return the options of one answer where some are left to the model, and the rule by which it chose; nothing is chosen here."""
+        return options, ""
+
     def run_label(self, options: Options) -> str:  # noqa: ARG002 - others have settings
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
         return self.label

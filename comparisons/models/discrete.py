@@ -23,6 +23,7 @@ from comparisons.response import (
     FrictionHistory,
     Grid,
     Response,
+    Sections,
     SupportHistory,
 )
 from comparisons.scene import Scene
@@ -58,6 +59,11 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     def grid(k: int) -> Grid:
         return _beam_grid(scene, result, k)
 
+    def sections(beam: str, k: int) -> Sections:
+        stations = result.stations(beam, k)
+        N, V, M = stations.forces.reshape(-1, 3).T
+        return Sections(arc=stations.arc.ravel(), N=N, V=V, M=M)
+
     response = _response(TSM, scene, result, cache(result.axis_line), grid)
     return replace(
         response,
@@ -70,6 +76,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
         integration_error=result.integration_error,
         work=result.work if result.model.rubbed else None,
         deformation=None if result.deformation is None else Deformation(**vars(result.deformation)),
+        sections=sections,
     )
 
 
@@ -176,6 +183,10 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         }
         return Grid(points=result.mesh_points, cells=result.mesh_cells, point_data=data)
 
+    def sections(beam: str, k: int) -> Sections:
+        found = fem_reference.section_forces(result, beam, k)
+        return Sections(arc=found.stations, N=found.N, V=found.V, M=found.M)
+
     response = _response(SOLID, scene, result, axis_line, grid)
     contacts = {
         contact.name: replace(
@@ -197,6 +208,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
         material_force=j_integrals(scene, result),
         deformation=deformation,
+        sections=sections,
     )
 
 

@@ -13,7 +13,15 @@ from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
 from comparisons.referee.energy import dissipated
 from comparisons.referee.history import History
-from comparisons.response import Array, ContactHistory, FrictionHistory, Grid, Response, SupportHistory
+from comparisons.response import (
+    Array,
+    ContactHistory,
+    FrictionHistory,
+    Grid,
+    Response,
+    Sections,
+    SupportHistory,
+)
 from comparisons.scene import Scene
 
 POINTS = 401
@@ -80,6 +88,7 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
         events=None,
         integration_error=0.0,
         deformation=None,
+        sections=lambda beam, k: _sections(scene, beam, states[k]),
         index=np.array([state.index for state in states], dtype=np.int64),
         wall_seconds=perf_counter() - began,
     )
@@ -140,6 +149,16 @@ def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:
 def _axis(scene: Scene, beam: str, state: Equilibrium) -> tuple[Array, Array]:
     arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
     return arc, state.shape(beam, arc).position
+
+
+def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:
+    """Return the section forces, from both sides of the contacts, where they jump."""
+    length, pairs = scene.beam(beam).length, [spec.pair for spec in scene.contacts if spec.beam == beam]
+    jumps = [state.contacts[pair].arc_position for pair in pairs if pair in state.contacts]
+    sides = [np.nextafter(arc, side) for arc in jumps for side in (0.0, length)]
+    arc = np.unique(np.concatenate([np.linspace(0.0, length, POINTS), sides]))
+    shape = state.shape(beam, arc)
+    return Sections(arc=arc, N=shape.N, V=shape.Q, M=shape.moment)
 
 
 def _grid(scene: Scene, state: Equilibrium) -> Grid:

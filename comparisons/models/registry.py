@@ -72,7 +72,12 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
             forces = material_forces(response, scene, strains=chosen.rod)
             response = replace(response, material_force=forces)
         reported = response.completed or response.reported_success
-        return replace(verified(response, scene), reported_success=reported)
+        return replace(
+            verified(response, scene),
+            reported_success=reported,
+            setting=chosen.setting(scene, given),
+            definition=scene,
+        )
     except ValueError as error:
         raise ModelError(f"{chosen.name}: {error}") from error
     except ImportError as error:

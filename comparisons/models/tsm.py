@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import nan
 from typing import TYPE_CHECKING
 
@@ -43,6 +44,17 @@ class Tsm(Model):
         if name not in ELEMENTS:
             raise ModelError(f"element = {name}: must be one of {', '.join(ELEMENTS)}")
         return ELEMENTS[name]
+
+    def suited(self, options: Options) -> tuple[Options, str]:
+        """Return the options with the element that suits: `exact`, unless a number of elements is asked for."""
+        from tsm.elements import EXACT, MIXED
+
+        if options.element is not None:
+            return options, ""
+        if options.elements is not None:
+            return replace(options, element=MIXED.name), f"{MIXED.name}, since a number of elements is given"
+        rule = f"{EXACT.name}, since no number of elements is given: one a beam, without a mesh error"
+        return replace(options, element=EXACT.name), rule
 
     @property
     def reference(self) -> Options:

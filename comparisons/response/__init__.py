@@ -12,6 +12,7 @@ from comparisons.response.record import (
     FrictionHistory,
     Grid,
     Response,
+    Sections,
     SupportHistory,
 )
 
@@ -27,5 +28,6 @@ __all__ = [
     "FrictionHistory",
     "Grid",
     "Response",
+    "Sections",
     "SupportHistory",
 ]

@@ -2,13 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from comparisons.referee.certificate import Certificate
+    from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -190,8 +193,30 @@ class Grid:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Sections:
+    """Section forces along a beam at stations from its start to its end; a place where they jump is stated twice, from both sides.
+
+    Attributes
+    ----------
+    arc : ndarray, shape (m,)
+        Distance along the undeformed axis, not falling.
+    N, V : ndarray, shape (m,)
+        Axial force, positive in tension, and shear force, positive to the left of the beam's direction on the part before the section.
+    M : ndarray, shape (m,)
+        Bending moment on the part before the section, anticlockwise.
+    """
+
+    arc: Array
+    N: Array
+    V: Array
+    M: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Response:
     """The response of one model to one scene at s load parameters.
+
+    It prints itself in a line, and in a notebook as the page that ``crossval solve`` prints.
 
     Attributes
     ----------
@@ -247,6 +272,13 @@ class Response:
         without such a clamp, and for a solid of another program.
     reported_success : bool
         Whether the model itself reported a complete solution, whatever the checks found.
+    sections : callable, optional
+        ``sections(beam, k)``: the section forces of a beam at load parameter k. None for a model that does not state them, and for a
+        stored response.
+    setting : str
+        Elements or mesh of the model, as ``mixed 20``; empty for a model without settings.
+    definition : Scene, optional
+        The scene itself. None for a response that was read from a file.
     """
 
     model: str
@@ -276,43 +308,41 @@ class Response:
     material_force: dict[str, Array] = field(default_factory=dict)
     reported_success: bool = False
     springs: dict[str, SupportHistory] = field(default_factory=dict)
+    sections: Callable[[str, int], Sections] | None = None
+    setting: str = ""
+    definition: "Scene | None" = None
 
-    @property
-    def false_success(self) -> bool:
-        """Whether the model reported a complete solution that a check or the referee refused: it said success and was wrong."""
-        return self.reported_success and not self.completed
+    def __repr__(self) -> str:
+        reached = len(self.load_parameter)
+        last = f", the last {self.load_parameter[-1]:g}" if reached else ""
+        named = " ".join(filter(None, (self.model, self.setting)))
+        return f"<Response {self.scene} by {named}: {self.status}, {reached} load parameters{last}>"
 
-    @property
-    def stage(self) -> NDArray[np.int64]:
-        """Number of the stage, from 1, at every load parameter (s,); at a boundary, the stage that ends there."""
-        return np.maximum(np.ceil(self.load_parameter), 1.0).astype(np.int64)
+    def _repr_html_(self) -> str:
+        from comparisons.response.page import html
 
-    @property
-    def iterations(self) -> int:
-        """Newton iterations of the whole path."""
-        return int(self.newton_iterations.sum())
+        return html(self)
 
+    def page(self) -> str:
+        """Return the page that ``crossval solve`` prints: status, reactions, contacts, extremes and events."""
+        from comparisons.response.page import text
 
-def unanswered(status: str, message: str) -> Response:
-    """Return an empty response, without load parameters and beams, for a model that gave no answer."""
+        return text(self)
 
-    def nothing(*_: object) -> NoReturn:
-        raise AssertionError("no load parameter was reached")
+    def table(self) -> dict[str, NDArray[Any]]:
+        """Return the histories by name, each of shape (s,): what ``pandas.DataFrame`` takes. See `comparisons.response.table`."""
+        from comparisons.response.table import table
 
-    return Response(
-        model="",
-        scene="",
-        status=status,
-        message=message,
-        completed=False,
-        load_parameter=np.empty(0),
-        contacts={},
-        supports={},
-        tips={},
-        newton_iterations=np.empty(0, dtype=np.int64),
-        cutbacks=0,
-        unknowns=0,
-        wall_seconds=np.nan,
-        axis_line=nothing,
-        grid=nothing,
-    )
+        return table(self)
+
+    def plot(self, scene: "Scene | None" = None) -> "Figure":
+        """Return a picture: deformed shape, section forces along each beam, and forces over the load parameter; needs matplotlib.
+
+        Parameters
+        ----------
+        scene : Scene, optional
+            The scene that was solved, for a response that was read from a file.
+        """
+        from comparisons.show.answer import picture
+
+        return picture(self, scene)

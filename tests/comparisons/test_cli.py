@@ -80,7 +80,6 @@ def test_solve_writes_json_and_vtk(scene: str, tmp_path: Path, capsys: pytest.Ca
 
 BAD = {
     "no command": [],
-    "no model": ["solve", "SCENE"],
     "unknown model": ["solve", "SCENE", "--model", "nosuch"],
     "no elements": ["solve", "SCENE", "--model", "tsm", "--elements", "0"],
     "negative elements": ["solve", "SCENE", "--model", "tsm", "--elements", "-3"],
@@ -94,6 +93,8 @@ BAD = {
         "tsm",
         "--integration-tolerance",
         "1e-9",
+        "--element",
+        "mixed",
     ],
     "tolerance as text": [
         "solve",
@@ -122,6 +123,8 @@ BAD = {
     "coarse mesh": ["solve", "SCENE", "--model", "solid", "--mesh", "1x1"],
     "missing file": ["solve", "nosuch.toml", "--model", "tsm"],
     "json without folder": ["solve", "SCENE", "--model", "tsm", "--json", "DIR/none/a.json"],
+    "csv without folder": ["solve", "SCENE", "--csv", "DIR/none/a.csv"],
+    "picture of another format": ["solve", "SCENE", "--plot", "DIR/a.gif"],
     "json is a folder": ["solve", "SCENE", "--model", "tsm", "--json", "DIR"],
     "vtk is a file": ["solve", "SCENE", "--model", "tsm", "--vtk", "SCENE"],
     "out is a file": ["compare", "SCENE", "--out", "SCENE"],
@@ -244,7 +247,6 @@ def test_solve_to_an_accuracy(scene: str, capsys: pytest.CaptureFixture[str]) ->
         (["--accuracy", "1e-3", "--model", "rod"], 2, "model = rod: has no resolution to choose"),
         (["--model", "tsm", "--quantity", "force"], 2, "--quantity: belongs to --accuracy"),
         (["--model", "tsm", "--explain"], 2, "--explain: belongs to --accuracy"),
-        ([], 2, "--model: must be given without --accuracy"),
         (["--accuracy", "0"], 2, "must lie between 0 and 1"),
     ],
 )

@@ -12,7 +12,7 @@ from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.models import solve
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.response import Response, SupportHistory
-from comparisons.response.to_json import as_json, summary
+from comparisons.response.to_json import as_json
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec
 
 STIFF = {"youngs_modulus": 1e6, "shear_modulus": 1e6, "area": 1.0, "second_moment": 1e-6}
@@ -99,7 +99,7 @@ def test_a_portal_frame_is_in_balance_and_its_roller_is_free(frame: Response) ->
     assert abs(foot[0] - 5.0) > 1e-3
     corner = [frame.axis_line(beam, 4)[1][end] for beam, end in (("left", -1), ("girder", 0))]
     np.testing.assert_allclose(corner[0], corner[1], atol=1e-14)
-    assert "left.start support moment" in summary(frame, "N, m")
+    assert "left.start" in frame.page()
 
 
 def changed(node: str, **changes: Callable[[np.ndarray], np.ndarray]) -> Callable[[Response], Response]:

@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.models import solve
-from comparisons.response.to_json import as_json, summary
+from comparisons.response.to_json import as_json
 from comparisons.scene import read_scene
 from tests.comparisons.many_beams import MANY, chain
 
@@ -36,7 +36,8 @@ def whole(text: str) -> None:
     response = solve(scene, "tsm")
     assert response.status == "COMPLETED"
     as_json(response)
-    summary(response, scene.units)
+    response.page()
+    response.table()
 
 
 @pytest.mark.parametrize("kind", MANY)

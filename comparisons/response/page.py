@@ -1,0 +1,308 @@
+"""The page of an answer: status, reactions, contacts, extremes, tips and events, as text and as HTML.
+
+Numbers have six significant digits, fewer where the last ones are round-off; a number below the round-off of its quantity is 0
+(`comparisons.response.round_off`).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+
+from comparisons.response.along import ALONG, FIRST, Extreme, extremes_along
+from comparisons.response.events import event_words, last_force, peak_force
+from comparisons.response.record import ContactHistory, Response
+from comparisons.response.round_off import RoundOff, round_off
+from comparisons.response.table import unit_names
+
+PLAIN = dict.fromkeys(("force", "length", "moment", "energy", "stress"), "")
+WORDS = {
+    "axial_force": "axial force",
+    "shear_force": "shear force",
+    "bending_moment": "bending moment",
+    "tensile_stress": "nominal axial stress, tension",
+    "compressive_stress": "nominal axial stress, compression",
+    "displacement": "displacement of the axis",
+}
+assert WORDS.keys() == ALONG.keys(), "every quantity along a beam has its words"
+PLACE = 4
+"""Significant digits of the place of an extreme, which is not sharp where the extreme is flat."""
+NOT_JUDGED = "not judged; crossval certify judges it"
+
+Row = tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block:
+    """A table of a page: title, names of the columns and rows. The head of the page has neither title nor names."""
+
+    title: str = ""
+    columns: Row = ()
+    rows: Sequence[Row]
+
+
+def text(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> str:
+    """Return the page as text.
+
+    Parameters
+    ----------
+    response : Response
+        The answer. Without its `definition` the numbers have no units, and no extremes along the beams are stated.
+    more : sequence of (str, str)
+        Labels and texts that are added to the head.
+    rule : str
+        Why the setting of the model was chosen.
+    """
+    return "\n\n".join(_lines(block, response.scene) for block in blocks(response, more, rule))
+
+
+def html(response: Response) -> str:
+    """Return the page as HTML."""
+    return "".join(_markup(block, response.scene) for block in blocks(response))
+
+
+def blocks(response: Response, more: Sequence[tuple[str, str]] = (), rule: str = "") -> Iterator[Block]:
+    """Yield the tables of the page; see `text`."""
+    yield Block(rows=[*_head(response, rule), *more])
+    if not len(response.load_parameter):
+        return
+    page = _Page(response)
+    for block in (page.reactions(), page.contacts(), page.tips(), page.extremes(), page.events()):
+        if block.rows:
+            yield block
+
+
+def _head(response: Response, rule: str) -> Iterator[Row]:
+    scene = response.definition
+    if scene is not None:
+        counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
+        parts = [f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts if count]
+        yield "scene", f"{', '.join(parts)}, {len(scene.times)} load parameters, units {scene.units}"
+    yield (
+        "model",
+        ", ".join(filter(None, (response.model, response.setting, f"{response.unknowns} unknowns"))),
+    )
+    if rule:
+        yield "element", rule
+    reached = len(response.load_parameter)
+    asked = f" of {len(scene.times)}" if scene is not None else ""
+    stage = f" in stage {response.stage[-1]}" if reached and response.stage[-1] > 1 else ""
+    last = f", the last {response.load_parameter[-1]:.6g}{stage}" if reached else ""
+    yield "status", f"{response.status}: {response.message} ({reached}{asked} load parameters{last})"
+    yield "stability", stability(response)
+    yield "certificate", _certificate(response)
+
+
+def stability(response: Response) -> str:
+    """Say in a few words where a response is stable."""
+    if response.index is None:
+        return "not stated by this model"
+    unstable, unknown = response.index > 0, response.index < 0
+    parts = []
+    if unstable.any():
+        first = response.load_parameter[np.argmax(unstable)]
+        parts.append(f"UNSTABLE from load parameter {first:.6g} on, index up to {response.index.max()}")
+    elif not unknown.all():
+        parts.append("stable")
+    if unknown.any():
+        rubbed = any(contact.friction is not None for contact in response.contacts.values())
+        what = "not judged, since a contact has friction," if rubbed else "index not defined"
+        parts.append(f"{what} at {int(unknown.sum())} of {len(unknown)} load parameters")
+    return "; ".join(parts)
+
+
+def _certificate(response: Response) -> str:
+    found = response.certificate
+    if found is None:
+        return NOT_JUDGED
+    differences = [item.distance.largest for item in found.judged if item.distance is not None]
+    if not found.certified or not differences:
+        return found.line()
+    name, size = max(differences, key=lambda one: one[1])
+    apart = f"{size:.1e} ({name})" if size > FIRST else f"less than {FIRST:g}"
+    rubbed = any(item.index < 0 for item in found.judged)
+    kind = "admissible, stability not judged (friction)" if rubbed else "stable and admissible"
+    count = f"{len(found.judged)} of {len(response.load_parameter)} load parameters"
+    return f"CERTIFIED at {count}: {apart} from an exact equilibrium, {kind}"
+
+
+class _Page:
+    """The tables of an answer that reached a load parameter."""
+
+    def __init__(self, response: Response) -> None:
+        scene = response.definition
+        self.response, self.scene = response, scene
+        self.round_off = RoundOff() if scene is None else round_off(response, scene)
+        self.units = PLAIN if scene is None else unit_names(scene.units)
+        self.now = f"at load parameter {response.load_parameter[-1]:.6g}"
+        self.staged = bool(response.stage[-1] > 1)
+
+    def number(self, value: float, kind: str) -> str:
+        return self.round_off.text(float(value), kind)
+
+    def named(self, name: str, kind: str) -> str:
+        """Return the name of a column with its unit."""
+        return f"{name} [{self.units[kind]}]" if self.units[kind] else name
+
+    def with_unit(self, value: float, kind: str) -> str:
+        return f"{self.number(value, kind)} {self.units[kind]}".rstrip()
+
+    def reactions(self) -> Block:
+        scene = self.scene
+        held = {} if scene is None else {item.node: ", ".join(item.held) for item in scene.all_supports}
+        held |= {} if scene is None else {f"{item.node}, spring": ", ".join(item.held) for item in scene.springs}
+        last = {
+            node: (*support.force[-1], support.moment[-1]) for node, support in self.response.supports.items()
+        }
+        springs = self.response.springs.items()
+        last |= {f"{node}, spring": (*spring.force[-1], spring.moment[-1]) for node, spring in springs}
+        rows = [
+            (
+                node,
+                held.get(node, ""),
+                self.number(x, "force"),
+                self.number(y, "force"),
+                self.number(m, "moment"),
+            )
+            for node, (x, y, m) in last.items()
+        ]
+        if len(rows) > 1:
+            x, y = (sum(values[i] for values in last.values()) for i in (0, 1))
+            rows.append(("sum", "", self.number(x, "force"), self.number(y, "force"), ""))
+        columns = (
+            "support",
+            "holds",
+            self.named("x", "force"),
+            self.named("y", "force"),
+            self.named("moment", "moment"),
+        )
+        return Block(title=f"Reactions on the beams {self.now}", columns=columns, rows=rows)
+
+    def contacts(self) -> Block:
+        contacts = self.response.contacts
+        rubbed = any(contact.friction is not None for contact in contacts.values())
+        columns = [
+            "contact", "state", self.named("force", "force"), self.named("x", "force"), self.named("y", "force"),
+            self.named("arc position", "length"),
+        ]  # fmt: skip
+        if rubbed:
+            columns += [self.named(name, "force") for name in ("tangential", "normal")]
+            columns += [self.named("dissipated", "energy")]
+        rows = [self._contact(pair, contact, rubbed=rubbed) for pair, contact in contacts.items()]
+        return Block(title=f"Contact forces on the beams {self.now}", columns=tuple(columns), rows=rows)
+
+    def _contact(self, pair: str, contact: ContactHistory, *, rubbed: bool) -> Row:
+        x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
+        row = [pair, self._state(pair, contact), self.number(contact.force[-1], "force")]
+        row += [self.number(x, "force"), self.number(y, "force")]
+        row += [self.number(contact.arc_position[-1], "length")]
+        friction = contact.friction
+        if friction is not None:
+            row += [self.number(values[-1], "force") for values in (friction.tangential, friction.normal)]
+            row += [self.number(friction.dissipated[-1], "energy")]
+        elif rubbed:
+            row += ["", "", ""]
+        return tuple(row)
+
+    def _state(self, pair: str, contact: ContactHistory) -> str:
+        if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
+            return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
+        if np.isfinite(contact.slip_off):
+            return f"slipped off at {contact.slip_off:.6g}"
+        last = last_force(self.response, pair)
+        return "never touched" if last is None else f"open from {last.load_parameter:.6g} on"
+
+    def tips(self) -> Block:
+        rows = []
+        for beam, tip in self.response.tips.items():
+            row = [
+                beam if self.scene is None else f"{beam}.{self.scene.tip(beam)}",
+                *(self.number(value, "length") for value in tip[-1]),
+            ]
+            if self.scene is not None:
+                rest = self.scene.place(f"{beam}.{self.scene.tip(beam)}")
+                row += [self.number(value, "length") for value in tip[-1] - rest]
+            rows.append(tuple(row))
+        names = ("x", "y") if self.scene is None else ("x", "y", "displacement x", "displacement y")
+        columns = ("tip", *(self.named(name, "length") for name in names))
+        return Block(title=f"Tips {self.now}", columns=columns, rows=rows)
+
+    def extremes(self) -> Block:
+        rows = [row for pair in self.response.contacts for row in self._contact_forces(pair)]
+        if self.scene is not None:
+            rows += self._along(extremes_along(self.response, self.scene))
+        columns = ("quantity", "value", "load parameter", "place")
+        return Block(title="Extremes over the load parameters", columns=columns, rows=rows)
+
+    def _contact_forces(self, pair: str) -> Iterator[Row]:
+        """Yield the largest contact force, and the last one of a contact that is open again."""
+        peak, last = peak_force(self.response, pair), last_force(self.response, pair)
+        found = {"largest": peak}
+        if self.response.contacts[pair].force[-1] == 0.0:
+            found = {"largest and last": peak} if peak == last else {**found, "last": last}
+        for which, here in found.items():
+            if here is not None:
+                arc = f"arc position {self.with_unit(here.arc_position, 'length')}"
+                what = f"contact force {pair}, {which}"
+                yield what, self.with_unit(here.force, "force"), f"{here.load_parameter:.6g}", arc
+
+    def _along(self, along: dict[str, dict[str, Extreme]]) -> Iterator[Row]:
+        for name, kind in ALONG.items():
+            own = {beam: extremes[name] for beam, extremes in along.items() if name in extremes}
+            if not own:
+                continue
+            values = np.array([extreme.value for extreme in own.values()])
+            sizes = np.abs(values)
+            k, b = np.argwhere((sizes >= (1.0 - FIRST) * sizes.max()).T)[0]
+            beam = list(own)[b]
+            place = self._place(beam, float(own[beam].arc_position[k]))
+            at = f"{self.response.load_parameter[k]:.6g}"
+            value = self.with_unit(values[b, k], kind)
+            yield (WORDS[name], value, at, place) if values[b, k] else (WORDS[name], value, "", "")
+
+    def _place(self, beam: str, arc: float) -> str:
+        assert self.scene is not None, "extremes along a beam are those of a scene"
+        length = self.scene.beam(beam).length
+        if min(arc, length - arc) < FIRST * length:
+            return f"{beam}.{'start' if arc < length / 2 else 'end'}"
+        return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
+
+    def events(self) -> Block:
+        events = self.response.events or ()
+        told = [(event, event_words(event, self.with_unit)) for event in events]
+        rows = [
+            (f"{event.load_parameter:.6g}", *([f"{event.stage}"] if self.staged else []), words)
+            for event, words in told
+            if words
+        ]
+        columns = ("load parameter", *(["stage"] if self.staged else []), "")
+        return Block(title="Events", columns=columns, rows=rows)
+
+
+def _lines(block: Block, scene: str) -> str:
+    """Return a table as lines: columns of numbers to the right, the others to the left."""
+    rows = [block.columns, *block.rows] if block.columns else list(block.rows)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    right = [_numeric(column) for column in zip(*block.rows, strict=True)]
+    lines = [
+        "  ".join(
+            cell.rjust(width) if numeric else cell.ljust(width)
+            for cell, width, numeric in zip(row, widths, right, strict=True)
+        )
+        for row in rows
+    ]
+    return "\n".join([block.title or scene, *(f"  {line}".rstrip() for line in lines)])
+
+
+def _numeric(cells: Sequence[str]) -> bool:
+    """Whether a column has nothing but numbers, with or without units, and dashes."""
+    return all(not cell or cell[0] in "-0123456789" for cell in cells)
+
+
+def _markup(block: Block, scene: str) -> str:
+    heading = f"<h4>{escape(block.title or scene)}</h4>"
+    head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)
+    names = f"<thead><tr>{head}</tr></thead>" if head else ""
+    return f"{heading}<table>{names}<tbody>{body}</tbody></table>"
