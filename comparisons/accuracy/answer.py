@@ -119,7 +119,7 @@ class Answer:
         """Return the choice and the estimates in words."""
         mark = "" if self.reached else ", NOT REACHED"
         rows = [
-            ("model", f"{self.model}: {self.found.resolution}"),
+            ("resolution", f"{self.model}: {self.found.resolution}"),
             (
                 "estimated error",
                 f"{self.found.estimate:.2g} of {self.quantity}, asked {self.accuracy:g}{mark}",

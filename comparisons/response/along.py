@@ -146,4 +146,4 @@ def _vertex(x: Array, values: Array, value: float, place: float) -> tuple[float,
     ]
     best = max(turns, key=lambda at: abs(curve(at)), default=0.0)
     found = float(curve(best))
-    return (found, place + best * scale) if abs(found) > abs(value) else (value, place)
+    return (found, float(place + best * scale)) if abs(found) > abs(value) else (value, place)

@@ -79,10 +79,8 @@ def _head(response: Response, rule: str) -> Iterator[Row]:
         counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
         parts = [f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts if count]
         yield "scene", f"{', '.join(parts)}, {len(scene.times)} load parameters, units {scene.units}"
-    yield (
-        "model",
-        ", ".join(filter(None, (response.model, response.setting, f"{response.unknowns} unknowns"))),
-    )
+    size = f"{response.unknowns} unknowns" if response.unknowns else ""
+    yield "model", ", ".join(filter(None, (response.model, response.setting, size)))
     if rule:
         yield "element", rule
     reached = len(response.load_parameter)
@@ -151,7 +149,9 @@ class _Page:
     def reactions(self) -> Block:
         scene = self.scene
         held = {} if scene is None else {item.node: ", ".join(item.held) for item in scene.all_supports}
-        held |= {} if scene is None else {f"{item.node}, spring": ", ".join(item.held) for item in scene.springs}
+        held |= (
+            {} if scene is None else {f"{item.node}, spring": ", ".join(item.held) for item in scene.springs}
+        )
         last = {
             node: (*support.force[-1], support.moment[-1]) for node, support in self.response.supports.items()
         }

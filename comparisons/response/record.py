@@ -346,3 +346,43 @@ class Response:
         from comparisons.show.answer import picture
 
         return picture(self, scene)
+
+    @property
+    def false_success(self) -> bool:
+        """Whether the model reported a complete solution that a check or the referee refused: it said success and was wrong."""
+        return self.reported_success and not self.completed
+
+    @property
+    def stage(self) -> NDArray[np.int64]:
+        """Number of the stage, from 1, at every load parameter (s,); at a boundary, the stage that ends there."""
+        return np.maximum(np.ceil(self.load_parameter), 1.0).astype(np.int64)
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations of the whole path."""
+        return int(self.newton_iterations.sum())
+
+
+def unanswered(status: str, message: str) -> Response:
+    """Return an empty response, without load parameters and beams, for a model that gave no answer."""
+
+    def nothing(*_: object) -> NoReturn:
+        raise AssertionError("no load parameter was reached")
+
+    return Response(
+        model="",
+        scene="",
+        status=status,
+        message=message,
+        completed=False,
+        load_parameter=np.empty(0),
+        contacts={},
+        supports={},
+        tips={},
+        newton_iterations=np.empty(0, dtype=np.int64),
+        cutbacks=0,
+        unknowns=0,
+        wall_seconds=np.nan,
+        axis_line=nothing,
+        grid=nothing,
+    )

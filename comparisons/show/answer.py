@@ -13,7 +13,7 @@ from comparisons.scene import Scene
 from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.symbols import inward, placed, support_name, support_symbol
+from comparisons.show.symbols import held_components, inward, placed, support_name, support_symbol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -142,7 +142,7 @@ def _supports(axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]],
     named = set()
     for support in scene.all_supports:
         at = lines[support.beam][1][0 if support.end == "start" else -1]
-        symbol = placed(support_symbol(support, inward(scene, support)), at, SYMBOL * extent)
+        symbol = placed(support_symbol(held_components(support), inward(scene, support)), at, SYMBOL * extent)
         words = support_name(support)
         label = None if words in named else words
         named.add(words)

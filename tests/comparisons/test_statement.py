@@ -38,7 +38,7 @@ def beams() -> Response:
 def test_json_has_the_stated_fields_and_every_digit(beams: Response) -> None:
     data = json.loads(as_json(beams))
     assert list(data) == [
-        "status", "message", "reported_success", "model", "continuum", "outside", "scene", "load_parameter",
+        "status", "message", "reported_success", "model", "continuum", "outside", "scene", "load_parameter", "stage",
         "contacts", "supports", "material_force", "tips", "axes",
         "events", "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
     ]  # fmt: skip
@@ -73,6 +73,7 @@ def test_events_are_listed_where_the_model_locates_them(rod: Response) -> None:
         "arc_position",
         "force",
         "released",
+        "stage",
     ]
     touch, *passes, slip = events
     assert (touch["kind"], touch["pair"], touch["element"]) == ("touch", PAIR, 8)
