@@ -20,7 +20,7 @@ from comparisons.scene.tables import (
     check_table,
     check_tables,
     in_order,
-    meant,
+    misnamed_keys,
     read_tables,
     read_text,
 )
@@ -94,7 +94,7 @@ def _scene(tables: dict[str, Any]) -> tuple[Scene, list[FieldError]]:
     kinds = ("scene", *LISTS)
     mistakes = list(check_keys(tables, kinds, required=("scene", "beam")))
     lists, wrong = _lists(LISTS, tables, mistakes)
-    wrong |= {*meant(tables, kinds), *({"beam"} - tables.keys())}
+    wrong |= {*misnamed_keys(tables, kinds), *({"beam"} - tables.keys())}
     mistakes += check_table(tables, "scene")
     own = {item.name for item in fields(Scene)} - LIST_FIELDS
     head = tables.get("scene")
@@ -164,7 +164,7 @@ def _whole_or_partial(
     if whole and not mistakes:
         with suppress(FieldError):
             return kind(**given), []
-    misspelt = dict.fromkeys(meant(table, own), MISSING)
+    misnamed = dict.fromkeys(misnamed_keys(table, own), MISSING)
     missing = {name for name in required if name not in table}
-    record, found = examined(kind, {**defaults, **misspelt, **given}, {*wrong, *misspelt, *missing})
+    record, found = examined(kind, {**defaults, **misnamed, **given}, {*wrong, *misnamed, *missing})
     return record, [*mistakes, *(item.within(prefix) if item.key in own else item for item in found)]

@@ -239,6 +239,8 @@ def mesh_text(value: object) -> tuple[int, int]:
 
 def point(value: object) -> Point:
     """Accept a point or vector [x, y] of the plane."""
+    if isinstance(value, list | tuple) and len(value) == 3:
+        raise RuleError("must be two numbers [x, y], a third dimension is not modelled")
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise RuleError("must be two numbers [x, y]")
     x, y = (number(item) for item in value)

@@ -1,11 +1,9 @@
 """Reader of TOML input files: it checks the keys and lists the mistakes in the order of the file, each in one line."""
 
-import difflib
 import re
 import tomllib
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from itertools import islice
 from typing import Any
 
 from comparisons.files import read_regular
@@ -86,32 +84,28 @@ def check_keys(
     table: dict[str, Any], known: Collection[str], required: Iterable[str] = ()
 ) -> Iterator[FieldError]:
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
-    meant = set()
-    for key in _unknown(table, known):
-        near = nearest(key, known)
-        meant.add(near)
-        hint = f"did you mean {near}?" if near else "known are " + ", ".join(sorted(known))
-        yield FieldError(key if key.isprintable() else repr(key), table[key], f"unknown key, {hint}")
+    unknown = [key for key in table if key not in known]
+    if unknown:
+        from comparisons.scene.words import hint
+
+        for key in unknown[:MOST]:
+            rule = f"unknown key, {hint(key, known)}"
+            yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
+    misnamed = misnamed_keys(table, known)
     for key in required:
-        if key not in table and key not in meant:
+        if key not in table and key not in misnamed:
             yield FieldError(key, MISSING, "must be given")
 
 
-def _unknown(table: dict[str, Any], known: Collection[str]) -> Iterator[str]:
-    """Return the keys of a table that are not known, `MOST` at most."""
-    return islice((key for key in table if key not in known), MOST)
+def misnamed_keys(table: dict[str, Any], known: Collection[str]) -> set[str]:
+    """Return the known keys that are not in `table`, but there by another name or misspelt."""
+    unknown = [key for key in table if key not in known]
+    if not unknown:
+        return set()
+    from comparisons.scene.words import meant
 
-
-def meant(table: dict[str, Any], known: Collection[str]) -> set[str]:
-    """Return the known keys that are not in `table`, for which a key of `table` is a misspelling."""
-    near = {nearest(key, known) for key in _unknown(table, known)}
-    return {key for key in near if key is not None and key not in table}
-
-
-def nearest(key: str, known: Iterable[str]) -> str | None:
-    """Return the known key that is spelt most like `key`, if one is near."""
-    near = difflib.get_close_matches(key, sorted(known), n=1, cutoff=0.5)
-    return near[0] if near else None
+    found = {meant(key, known) for key in unknown[:MOST]}
+    return {key for key in found if key is not None and key not in table}
 
 
 def check_table(tables: dict[str, Any], name: str) -> Iterator[FieldError]:

@@ -4,11 +4,12 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
-from docs.extensions import messages, response, scene_file, statuses
+from docs.extensions import messages, response, scene_file, scope, statuses
 
 PAGES = {
     "scene-file.md": scene_file.page,
     "messages.md": messages.page,
+    "scope.md": scope.page,
     "statuses.md": statuses.page,
     "response.md": response.page,
     "resolved-scene.md": response.scene_page,

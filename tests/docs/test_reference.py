@@ -1,6 +1,7 @@
 """The pages that are made from the code say what the code does."""
 
 import json
+import re
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -13,9 +14,11 @@ from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.models.outside.request import request
 from comparisons.models.outside.status import ProgramStatus
-from comparisons.scene import LoadSpec, built_in_scenes, load_scene, to_toml
-from comparisons.scene.read import LISTS, STAGE_LISTS
-from docs.extensions import response, scene_file, statuses
+from comparisons.scene import SPECIAL, LoadSpec, Scene, built_in_scenes, load_scene, to_toml
+from comparisons.scene.keys import special_keys
+from comparisons.scene.read import LIST_FIELDS, LISTS, STAGE_LISTS
+from comparisons.scene.words import NOT_MODELLED
+from docs.extensions import response, scene_file, scope, statuses
 from docs.extensions.generated import PAGES, write_pages
 
 FINDINGS = Path(__file__).parents[1] / "comparisons" / "findings"
@@ -32,6 +35,51 @@ def test_every_key_of_a_scene_is_listed() -> None:
         rows = [line for line in sections[header].splitlines() if line.startswith("| `")]
         assert [row.split("`")[1] for row in rows] == [item.name for item in fields(record)]
         assert all(row.rstrip(" |").rpartition("|")[2].strip() for row in rows), "a key without a meaning"
+
+
+NUMERICS = {
+    *(
+        "elements",
+        "nodes",
+        "mesh",
+        "solid_clamp",
+        "solid_mesh_file",
+        "solid_element",
+        "penalty",
+        "penetration",
+    ),
+    *(
+        "name",
+        "units",
+        "load_parameters",
+        "beam",
+        "end",
+        "keep",
+        "node",
+        "free",
+        "start",
+        "stiffness",
+        "surface",
+    ),
+}
+"""Keys that say what something is called, where it is or how it is computed."""
+
+
+def test_every_key_answers_a_question() -> None:
+    page = scope.page()
+    named = set(re.findall(r"`(?:\[\[)?(\w+)", page.partition("## What is not modelled")[0]))
+    keys = {item.name for record in (*LISTS.values(), Scene) for item in fields(record)} - LIST_FIELDS
+    assert keys - NUMERICS <= named
+    assert set(LISTS) - {"beam"} <= named
+    assert all(f"`{word}`" in page for topic in NOT_MODELLED for word in topic.words.split())
+
+
+def test_a_question_has_a_scene_that_says_it() -> None:
+    questions = [item for group in scope.GROUPS.values() for item in group]
+    assert {key for item in questions for key in special_keys(item.scene)} == set(SPECIAL)
+    friction = next(item for item in questions if item.wish == "friction")
+    assert friction.scene.contacts[0].friction > 0
+    assert len({to_toml(item.scene) for item in questions}) == len(questions) - 1, "two pins answer twice"
 
 
 def test_every_status_is_listed() -> None:
