@@ -26,6 +26,6 @@ def exit_status(scene: "Scene", responses: "list[tuple[str, Response]]") -> int:
     """Name every solution that stopped and what was reached; return the exit status."""
     stopped = [(label, response) for label, response in responses if not response.completed]
     for label, response in stopped:
-        reached = f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
+        reached = f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
         report(f"crossval: {label}{response.status}: {response.message}; {reached}")
     return STOPPED if stopped else DONE

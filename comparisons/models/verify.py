@@ -73,7 +73,7 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
     - the forces and moments of supports, pins and loads on the whole structure balance, for a model of this package.
     """
     if not np.array_equal(response.load_parameter, scene.times):
-        yield f"{len(response.load_parameter)} of {scene.load_parameters} load parameters reached"
+        yield f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
         return
     for name, values in _numbers(response):
         if not np.all(np.isfinite(values)):

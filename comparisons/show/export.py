@@ -165,7 +165,7 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
     count = len(scene.beams) + bool(scene.contacts) + bool(scene.all_supports)
     names = [
         name
-        for k in range(scene.load_parameters)
+        for k in range(len(scene.times))
         for name in (_set(model, k), *(_file(model, k, number) for number in range(count)))
     ]
     check_free(folder, names, _lists(folder, model))

@@ -37,7 +37,8 @@ def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     """
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
-    yield f"{scene.name}: {', '.join(parts)}, {scene.load_parameters} load parameters, in {scene.units}"
+    stages = f" in {1 + len(scene.stages)} stages" if scene.stages else ""
+    yield f"{scene.name}: {', '.join(parts)}, {len(scene.times)} load parameters{stages}, in {scene.units}"
     for name in dict.fromkeys((*MODELS, *offered(), *others)):
         try:
             model = find(name)

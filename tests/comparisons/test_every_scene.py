@@ -10,12 +10,15 @@ from comparisons.referee import Verdict
 from comparisons.scene import Scene, built_in_scenes, load_scene
 
 NOT_BY_THE_SOLID = {
+    "beam-on-springs": "a spring",
     "cantilever-critical-area": "more than an eighth of the length",
+    "hinged-truss": "a hinge",
+    "hysteresis-stages": "a stage after the first one",
     "ks-printed-shear": "a Poisson's ratio between",
     "lees-frame": "a Poisson's ratio between",
     "williams-toggle": "a Poisson's ratio between",
 }
-"""Scenes that no solid is: a section higher than a beam's, and beams that do not shear."""
+"""Scenes that no solid is: a section higher than a beam's, beams that do not shear, and keys that the solid does not state."""
 WITH_ELASTICA = {"cantilever-critical-area", "ks-cantilever", "ks-printed-shear", "touch-again"}
 """Scenes of one cantilever under one pin on its axis."""
 WITHOUT_FRICTION = "contacts without friction only"

@@ -11,11 +11,11 @@ import pytest
 import fem_reference
 import tsm
 from comparisons.cli import main
-from comparisons.models.options import Options
+from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.request import request
 from comparisons.models.outside.status import ProgramStatus
-from comparisons.scene import SPECIAL, LoadSpec, Scene, built_in_scenes, load_scene, to_toml
-from comparisons.scene.keys import special_keys
+from comparisons.scene import SPECIAL, LoadSpec, Scene, built_in_scenes, load_scene, to_toml, unstated
+from comparisons.scene.keys import PROGRAMS, special_keys
 from comparisons.scene.read import LIST_FIELDS, LISTS, STAGE_LISTS
 from comparisons.scene.words import NOT_MODELLED
 from docs.extensions import response, scene_file, scope, statuses
@@ -138,6 +138,10 @@ def test_every_kind_of_event_is_in_the_schema() -> None:
 @pytest.mark.parametrize("scene", [*built_in_scenes(), *map(str, sorted(FINDINGS.glob("*.toml")))])
 def test_a_resolved_scene_obeys_its_schema(scene: str) -> None:
     found = load_scene(scene)
+    if unstated(found, "the resolved scene", PROGRAMS) is not None:
+        with pytest.raises(ModelError, match="the resolved scene does not state"):
+            request(found, Options(), found.times)
+        return
     data = json.loads(request(found, Options(elements=7), found.times))
     jsonschema.Draft202012Validator.check_schema(response.SCENE)
     jsonschema.Draft202012Validator(response.SCENE).validate(data)
