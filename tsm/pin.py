@@ -164,7 +164,7 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
         (1.0, 1.0)
         """
-        stage = stage_of(end, len(self.polylines))
+        stage = stage_of(end, len(self.polylines)) if self.onward else 0
         if stage == 0:
             return self.polylines[0].velocity(begin, end)
         if begin < stage:
@@ -192,5 +192,5 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))).position(0.75)
         (2.0, 1.0)
         """
-        stage = stage_of(load_parameter, len(self.polylines))
+        stage = stage_of(load_parameter, len(self.polylines)) if self.onward else 0
         return self.polylines[stage].position(load_parameter - stage if stage else load_parameter)

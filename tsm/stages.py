@@ -15,7 +15,7 @@ def stage_of(load_parameter: float, stages: int) -> int:
     >>> [stage_of(t, 2) for t in (0.0, 0.5, 1.0, 1.5, 2.0)]
     [0, 0, 0, 1, 1]
     """
-    return min(max(math.ceil(load_parameter) - 1, 0), stages - 1)
+    return 0 if stages == 1 else min(max(math.ceil(load_parameter) - 1, 0), stages - 1)
 
 
 class Increments:
