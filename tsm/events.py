@@ -214,7 +214,7 @@ def margins(
                 inside = cone(model, state, equilibrium.system, k) / model.force_scale
                 upcoming.append(Margin(kind=EventKind.SLIP, pair=k, value=inside))
             if pair.pair.offset > 0:
-                room = 1.0 - pair.pair.offset * curvature(model, equilibrium, k)
+                room = 1.0 - abs(pair.reach_at(arc)) * curvature(model, equilibrium, k)
                 upcoming.append(Margin(kind=EventKind.LINE_CONTACT, pair=k, value=room))
         elif state.armed[k]:
             seen = pair.group.project(pair, state)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from tsm.along import Along, gauss_nodes, kind_of
-from tsm.elements import ClosedForm
+from tsm.elements import EXACT, ClosedForm, Integrated
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
 from tsm.groups import GROUPS, ClosedFormGroup, ElementGroup, ExactGroup
@@ -340,6 +340,11 @@ class Model:
                 raise ValueError(
                     f"ContactPair({pair.name}).friction = {pair.friction!r}: "
                     f'elements "{target.beam.element}" have contacts without friction only'
+                )
+            if pair.end_offset is not None and not isinstance(element_type, Integrated):
+                raise ValueError(
+                    f"ContactPair({pair.name}).end_offset = {pair.end_offset!r}: belongs to a beam that tapers or has elements "
+                    f'"{EXACT.name}"'
                 )
             self.pairs.append(
                 PairModel(

@@ -95,8 +95,19 @@ class PairModel:
 
     @property
     def reach(self) -> float:
-        """Offset of the contact surface from the axis, positive to the right of the beam's direction."""
+        """Offset of the contact surface from the axis, at the start where it varies, positive to the right of the beam's direction."""
         return self.side * self.pair.offset
+
+    @property
+    def steep(self) -> float:
+        """Derivative of the offset by the arc position, positive where the surface on the right moves away from the axis."""
+        if self.pair.end_offset is None:
+            return 0.0
+        return self.side * (self.pair.end_offset - self.pair.offset) / self.target.beam.length
+
+    def reach_at(self, arc: float) -> float:
+        """Offset at an arc position, positive to the right of the beam's direction."""
+        return self.reach + self.steep * arc if self.steep else self.reach
 
     @property
     def rubs(self) -> bool:

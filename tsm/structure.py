@@ -154,6 +154,9 @@ class ContactPair:
         Coulomb's coefficient mu: the tangential force is at most mu times the normal force, and equal to it in slip.
     radius : float
         Radius of a round pin that does not turn, the part of `offset` that is not the beam's [length]. It matters with friction only.
+    end_offset : float or None
+        Distance at the end of the beam where it differs from `offset`, which then holds at the start; it is linear between them. The
+        contact surface is the envelope of circles with these radii about the points of the axis. Without friction only.
     """
 
     node: str
@@ -163,6 +166,7 @@ class ContactPair:
     keep: bool = False
     friction: float = 0.0
     radius: float = 0.0
+    end_offset: float | None = None
 
     def __post_init__(self) -> None:
         _check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
@@ -181,6 +185,16 @@ class ContactPair:
             0 <= self.radius <= self.offset,
             self.name, "radius", self.radius, "must lie between 0 and the offset",
         )  # fmt: skip
+        if self.end_offset is not None:
+            positive = min(self.offset, self.end_offset) > 0 and _finite(self.end_offset)
+            _check(positive, self.name, "end_offset", self.end_offset, "must be positive, and offset too")
+            _check(
+                not self.friction,
+                self.name,
+                "friction",
+                self.friction,
+                "must be 0 on a surface with an end_offset",
+            )
 
     @property
     def name(self) -> str:
@@ -242,6 +256,15 @@ class Structure:
             _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
             own = pair.node.rpartition(".")[0] == pair.beam
             _check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
+            if pair.end_offset is not None:
+                flat = abs(pair.end_offset - pair.offset) < self.beam(pair.beam).length
+                _check(
+                    flat,
+                    pair.name,
+                    "end_offset",
+                    pair.end_offset,
+                    "must differ from offset by less than the length",
+                )
 
     @property
     def stages(self) -> int:

@@ -161,14 +161,15 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     a kink of F/GA at a contact. Near the contact, a round pin is therefore inside the beam by half of the kink times the distance from the
     contact. This depth is allowed, for kinks up to `kink`.
     """
-    offset, beam, contact = scene.offset(spec), scene.beam(spec.beam), response.contacts[spec.pair]
+    beam, contact = scene.beam(spec.beam), response.contacts[spec.pair]
     depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
-    if offset == 0.0:
+    if scene.offset(spec) == 0.0:
         return depth
     for k, t in enumerate(response.load_parameter):
         owner, dot, _ = spec.node.partition(".")
         node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
         arc, place = response.axis_line(spec.beam, k)
+        offset = np.array([scene.offset(spec, part) for part in arc / beam.length])
         away, along = node - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:
@@ -181,5 +182,5 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
             ahead[-1] < 0.0,
         ]
         facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
-        depth[k] = np.max(offset - distance[least & facing], initial=0.0)
+        depth[k] = np.max((offset - distance)[least & facing], initial=0.0)
     return depth

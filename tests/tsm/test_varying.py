@@ -72,6 +72,7 @@ SCENES = {
     "with friction": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
     "leaning": leaning,
     "mixed": lambda: as_mixed(pushed(offset=0.03)),
+    "on a face": lambda: pushed(offset=0.04, end_offset=0.02),
 }
 
 
@@ -116,7 +117,7 @@ def symmetric(newton, equilibrium):
     return whole, model.units / math.sqrt(model.force_scale * model.length)
 
 
-@pytest.mark.parametrize("name", ["two pins", "with offset", "leaning", "near a node"])
+@pytest.mark.parametrize("name", ["two pins", "with offset", "leaning", "near a node", "on a face"])
 def test_second_variation_answers_loads_as_the_tangent_does(name):
     """A force or moment on a node moves nodes and contacts by the symmetric matrix as by the tangent, which is not symmetric."""
     near = replace(pushed(), beams=(hook().beams[0].divided(0.504133),))
@@ -266,6 +267,18 @@ def test_beams_that_are_refused(change, said):
 def test_loads_that_are_refused(load, said):
     with pytest.raises(ValueError, match=said):
         hook(line_loads=(tsm.LineLoad(**{"beam": "b", "force": ((0.0, -1.0),), **load}),))
+
+
+def test_faces_that_are_refused():
+    pair = {"node": "p", "beam": "b", "offset": 0.04, "end_offset": 0.02}
+    with pytest.raises(ValueError, match="must be 0 on a surface with an end_offset"):
+        tsm.ContactPair(**pair, friction=0.3)
+    with pytest.raises(ValueError, match="must differ from offset by less than the length"):
+        pushed(offset=0.04, end_offset=2.0)
+    straight = replace(pushed(offset=0.04, end_offset=0.02), line_loads=())
+    mixed = replace(straight.beams[0], turn=0.0, end_section=None, element="mixed")
+    with pytest.raises(ValueError, match="belongs to a beam that tapers or has elements"):
+        tsm.solve(replace(straight, beams=(mixed,)), [1.0])
 
 
 def test_point_force_inside_a_beam():

@@ -100,11 +100,13 @@ def free(rod: Rod, guess: Array) -> Shot:
     return Shot(clamp=clamp, tip=end(clamp)[:3], force=np.zeros(2), arc=math.nan)
 
 
-def pinned(rod: Rod, pin: tuple[float, float], reach: float, guess: Array) -> Shot:
-    """Equilibrium with a pin at a distance to the right of the axis.
+def pinned(rod: Rod, pin: tuple[float, float], reach: tuple[float, float], guess: Array) -> Shot:
+    """Equilibrium with a pin at a distance from the axis, given at clamp and tip and linear between.
 
-    `guess` has force and moment at the clamp, force of the pin on the rod, arc position.
+    The distance to the pin, less the distance that is given, is zero and stationary along the rod. `guess` has force and moment at the
+    clamp, force of the pin on the rod, arc position.
     """
+    rise = (reach[1] - reach[0]) / rod.length
 
     def ends(z: Array) -> tuple[Array, Array, Array]:
         before = rod.carry(np.array([0.0, 0.0, rod.direction, z[2], *z[:2]]), 0.0, z[5])
@@ -114,8 +116,9 @@ def pinned(rod: Rod, pin: tuple[float, float], reach: float, guess: Array) -> Sh
     def residual(z: Array) -> Array:
         before, after, tip = ends(z)
         mean = rod.tangent(z[5], before) + rod.tangent(z[5], after)
-        surface = before[:2] + reach * np.array([mean[1], -mean[0]]) / np.hypot(*mean)
-        return np.array([*(tip[[4, 5, 3]] - np.array(rod.tip)), *(surface - pin), z[3:5] @ mean])
+        away = -z[3:5] / np.hypot(*z[3:5])
+        surface = before[:2] + (reach[0] + rise * z[5]) * away
+        return np.array([*(tip[[4, 5, 3]] - np.array(rod.tip)), *(surface - pin), away @ mean / 2 + rise])
 
     z = _solved(residual, guess)
     return Shot(clamp=z[:3], tip=ends(z)[2][:3], force=z[3:5], arc=float(z[5]))

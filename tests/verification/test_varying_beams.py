@@ -114,10 +114,31 @@ def test_exact_against_shooting(key, pin):
         assert touch is not None
         guess = np.array([*guess, *touch.force, result.contacts["p->b"].arc_position[-1]])
         place = result.model.structure.pins[0].path[-1]
-        shot = pinned(rod(**given), place, offset, guess + 1e-3)
+        shot = pinned(rod(**given), place, (offset, offset), guess + 1e-3)
     else:
         shot = free(rod(**given, tip=tip), guess + 1e-3)
     assert apart(result, shot) <= 1e-9
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_face_at_a_changing_distance_against_shooting(key):
+    """The distance falls from .08 to .02; the contact force leans by its slope from the normal of the axis."""
+    given, reach = KEYS[key], (0.08, 0.02)
+    scene = structure(**given, pin=(-0.1, 0.3), offset=0.05)
+    beam = scene.beams[0]
+    (x, y), angle = beam.point(0.6), beam.direction(0.6)
+    depth = reach[0] + 0.6 * (reach[1] - reach[0])
+    x, y = x + depth * math.sin(angle), y - depth * math.cos(angle)
+    pin = tsm.Pin(name="p", path=((x + 0.02, y - 0.01), (x - 0.1, y + 0.3)))
+    pair = replace(scene.contacts[0], offset=reach[0], end_offset=reach[1])
+    result = tsm.solve(replace(scene, pins=(pin,), contacts=(pair,)), [0.5, 1.0])
+    assert result.status is tsm.Status.COMPLETED
+    support, touch = result.supports["b.start"], result.equilibria[-1].state.touches[0]
+    arc = result.contacts["p->b"].arc_position[-1]
+    guess = np.array([*-support.force[-1], -support.moment[-1], *touch.force, arc])
+    shot = pinned(rod(**given), pin.path[-1], reach, guess + 1e-3)
+    assert apart(result, shot) <= 1e-9
+    assert result.events[0].kind is tsm.EventKind.TOUCH
 
 
 @pytest.mark.parametrize("key", KEYS)

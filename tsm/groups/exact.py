@@ -151,7 +151,7 @@ class ExactGroup(ElementGroup):
 
     def _project(self, pair: PairModel, state: State, shape: RodShape) -> Projection:
         """Nearest of the points along the axis, and Newton's method from there."""
-        model, target = self.model, pair.target
+        model, target, steep = self.model, pair.target, pair.side * pair.steep
         node = np.array(model.node_position(pair, state.q, state.load_parameter))
         first, xi = int(model.place[target.first]), np.linspace(0, 1, _SAMPLES)
         points = (
@@ -167,15 +167,22 @@ class ExactGroup(ElementGroup):
             tangent, bend = tangent_at(self.rods, first + e, inside, at)
             apart = at.position[0] + (arc - inside) * tangent - node
             slope = float(tangent @ tangent) + (float(bend @ apart) if inside == arc else 0.0)
-            step = float(apart @ tangent) / slope if slope > 0 else 0.0
+            along = float(apart @ tangent)
+            if steep:
+                distance = float(np.hypot(*apart))
+                slope, along = slope - steep * along / distance, along - steep * distance
+            step = along / slope if slope > 0 else 0.0
             arc -= min(max(step, -l0 / _SAMPLES), l0 / _SAMPLES)
             e, place = slide(target.lengths, e, arc / l0)
             arc = place * target.lengths[e]
             if abs(step) < PROJECTED * l0:
                 break
         height = float(apart[1] * tangent[0] - apart[0] * tangent[1]) / float(np.hypot(*tangent))
-        beyond = overshoot(target, arc_position(target, target.first + e, place))
-        return Projection(target.first + e, place, pair.side * height - pair.pair.offset, beyond)
+        arc = arc_position(target, target.first + e, place)
+        if steep:
+            height = math.copysign(float(np.hypot(*apart)), height)
+        gap = pair.side * height - pair.side * pair.reach_at(arc)
+        return Projection(target.first + e, place, gap, overshoot(target, arc))
 
     def direction(self, touch: Touch, _q: Array) -> tuple[float, float]:
         """Direction of the section's normal at the contact."""

@@ -195,7 +195,9 @@ class Rods:
                 tangents[k] = self._tangents(state, k, entry.segments, s)
                 pair, touch = self.model.pairs[k], touch_of(state, k)
                 cx, cy = self.model.node_position(pair, state.q, state.load_parameter)
-                rows = contact_rows.residual((x - cx, y - cy), touch.force, tangents[k], pair.reach)
+                reach = pair.reach_at(pair.arc_position(touch))
+                apart = (x - cx, y - cy)
+                rows = contact_rows.residual(apart, touch.force, tangents[k], reach, pair.steep)
                 if touch.grip is not None:
                     rows[2] = entry.rubbing[k].residual(touch.grip, self.model.stick_stiffness)
                 contacts[k] = [*rows, arrival.end_residual[s]]
@@ -260,7 +262,8 @@ class Rods:
                 balance.tangents[pairs[k]],
             )
             rows, own = tangent[row : row + 3], self.explicit(state, pairs[k], balance, selectors[k])
-            contact_rows.differentiate(rows, touch.force, tangents, pair.reach, selectors[k, :5], own)
+            face = pair.reach_at(pair.arc_position(touch)), pair.steep
+            contact_rows.differentiate(rows, touch.force, tangents, face, selectors[k], own)
             if touch.grip is not None:
                 forms = balance.entry.rubbing[pairs[k]].differentiate(
                     touch.grip, self.model.stick_stiffness, tangents, selectors[k], out[1], own

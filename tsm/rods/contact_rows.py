@@ -2,6 +2,10 @@
 
 The surface lies at the offset from the axis, across the mean of the tangent vectors before and after the contact; the force is normal to
 that mean: ``r + offset - x_c = 0``, ``F . (r'_- + r'_+) = 0``.
+
+Where the offset o changes along the beam, the surface is the envelope of circles with the radius o about the points of the axis. With the
+sum T of the tangent vectors, its direction t and right normal n, and ``S = 2 o'/|T|``, ``C = sqrt(1 - S^2)``, its normal is ``nu = C n - S t``
+and its direction ``f = C t + S n``: ``r + o nu - x_c = 0``, ``|T| F . f = 0``. The force goes through the point of the axis.
 """
 
 from __future__ import annotations
@@ -32,7 +36,47 @@ class Explicit(NamedTuple):
     turn: Array
 
 
-def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> list[Any]:
+class Leaning(NamedTuple):
+    """Normal and direction (2,) of a surface whose offset changes along the beam, with ``|T|``, t, n and S over C."""
+
+    normal: Array
+    along: Array
+    size: Any
+    axis: Array
+    across: Array
+    steep: Any
+
+
+def leaning(tangents: Tangents, steep: float) -> Leaning:
+    """Surface at a contact; `steep` is the derivative of the offset by the arc position."""
+    axis = np.array(_sum(tangents))
+    size = (axis[0] ** 2 + axis[1] ** 2) ** 0.5
+    t = axis / size
+    n = np.array([t[1], -t[0]])
+    S = 2 * steep / size
+    C = (1 - S * S) ** 0.5
+    return Leaning(C * n - S * t, C * t + S * n, size, t, n, S / C)
+
+
+def turned(surface: Leaning, axis: Array) -> Array:
+    """Change (n,) of the angle of the surface with the sum of the tangent vectors (2, n)."""
+    turn: Array = (surface.steep * (surface.axis @ axis) - surface.across @ axis) / surface.size
+    return turn
+
+
+def by_selectors(tangents: Tangents, selectors: Array, explicit: Explicit | None) -> Array:
+    """Derivatives (2, n) of the sum of the tangent vectors, from the derivatives of angle, force before and contact force (5, n)."""
+    before, after = tangents
+    (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance
+    by = [
+        [before.turned[0] + after.turned[0], xx + ax, xy + ay, -ax, -ay],
+        [before.turned[1] + after.turned[1], xy + ay, yy + aa, -ay, -aa],
+    ]
+    vector: Array = np.array(by) @ selectors
+    return vector if explicit is None else vector + explicit.vector
+
+
+def residual(apart: Point, force: Point, tangents: Tangents, reach: float, steep: float = 0.0) -> list[Any]:
     """Residual of position (2) and direction.
 
     Parameters
@@ -43,9 +87,13 @@ def residual(apart: Point, force: Point, tangents: Tangents, reach: float) -> li
         Force on the beam.
     tangents : tuple of rod.Tangent
         Tangent vectors before and after the contact.
-    reach : float
-        Offset of the surface, positive to the right.
+    reach, steep : float
+        Offset of the surface, positive to the right, and its derivative by the arc position.
     """
+    if steep:
+        surface = leaning(tangents, steep)
+        x, y = np.array(apart) + reach * surface.normal
+        return [x, y, surface.size * (surface.along @ np.array(force))]
     (x, y), (tx, ty) = apart, _sum(tangents)
     if reach:
         part = reach / (tx * tx + ty * ty) ** 0.5
@@ -57,7 +105,7 @@ def differentiate(
     rows: Array,
     force: Point,
     tangents: Tangents,
-    reach: float,
+    face: tuple[float, float],
     selectors: Array,
     explicit: Explicit | None = None,
 ) -> None:
@@ -67,13 +115,24 @@ def differentiate(
     ----------
     rows : ndarray, shape (3, n)
         Derivatives by the unknowns; the derivatives of the axis' position are entered already.
-    force, tangents, reach
+    force, tangents
         As for `residual`.
-    selectors : ndarray, shape (5, n)
-        Derivatives of the section's angle, the internal force before, and the contact force.
+    face : tuple of 2 float
+        Offset of the surface, positive to the right, and its derivative by the arc position.
+    selectors : ndarray, shape (6, n)
+        Derivatives of the section's angle, the internal force before, the contact force, and the arc position.
     explicit : Explicit, optional
         Further derivatives of the tangent vectors.
     """
+    reach, steep = face
+    arc, selectors = selectors[5], selectors[:5]
+    if steep:
+        surface, axis = leaning(tangents, steep), by_selectors(tangents, selectors, explicit)
+        turn, F = turned(surface, axis), np.array(force)
+        rows[:2] += np.outer(surface.along, reach * turn) + np.outer(surface.normal, steep * arc)
+        rows[2] = (surface.along @ F) * (surface.axis @ axis) - surface.size * (surface.normal @ F) * turn
+        rows[2] += surface.size * (surface.along @ selectors[3:5])
+        return
     before, after = tangents
     (Fx, Fy), (tx, ty) = force, _sum(tangents)
     ux, uy = before.turned[0] + after.turned[0], before.turned[1] + after.turned[1]

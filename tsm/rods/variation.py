@@ -22,6 +22,7 @@ from tsm.elements import rod
 from tsm.elements.collocation import collocation
 from tsm.elements.properties import Array
 from tsm.rods.assembly import Rods, profile_of, touch_of
+from tsm.rods.contact_rows import Explicit, by_selectors, leaning, turned
 from tsm.rods.layout import COLUMNS, CUT, OWN
 from tsm.rods.records import RodBalance
 from tsm.rods.shape import plain_shape
@@ -266,10 +267,11 @@ def _bordered(
     fixed, inputs, directions = _stations(counts, short, pieces.hessian.shape[1])
     matrix = fixed + (inputs.transpose(0, 2, 1) @ (pieces.hessian[own] @ inputs)).sum(axis=0)
     for n, k in enumerate(pairs):
-        if model.pairs[k].reach:
+        pair, touch = model.pairs[k], touch_of(state, k)
+        if pair.reach:
             arc = rods.slopes(state, k, balance)[0] if isinstance(rods, VaryingRods) else None
-            force, tangents = touch_of(state, k).force, balance.tangents[k]
-            matrix += _surface(force, tangents, model.pairs[k].reach, directions[n], arc)
+            face = pair.reach_at(pair.arc_position(touch)), pair.steep
+            matrix += _surface(touch.force, balance.tangents[k], face, directions[n], arc)
     slots = [slot for k in pairs for slot in range(model.pairs[k].slot, model.pairs[k].slot + CUT)]
     slots += [-1] * (len(matrix) - OWN - len(slots))
     return Bordered(element, _without_force(matrix), slots, sum(short))
@@ -319,14 +321,23 @@ def _stations(counts: tuple[int, ...], short: tuple[bool, ...], width: int) -> t
 def _surface(
     force: tuple[float, float],
     tangents: tuple[rod.Tangent, rod.Tangent],
-    reach: float,
+    face: tuple[float, float],
     selectors: Array,
     by_arc: Array | None,
 ) -> Array:
     """Second derivatives of ``- reach F . nu``, nu across the sum of the tangent vectors, where F is parallel to nu.
 
-    With beta the angle of that sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
+    Where the offset changes, nu leans, and F is parallel to it too. With beta the angle of that sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
     """
+    reach, steep = face
+    if steep:
+        explicit = None if by_arc is None else Explicit(np.outer(by_arc, selectors[5]), selectors[5])
+        leant, F = leaning(tangents, steep), np.array(force)
+        turn = turned(leant, by_selectors(tangents, selectors[:5], explicit))
+        both = reach * np.outer(leant.along @ selectors[3:5], turn)
+        both += steep * np.outer(leant.normal @ selectors[3:5], selectors[5])
+        envelope: Array = reach * (leant.normal @ F) * np.outer(turn, turn) - both - both.T
+        return envelope
     before, after = tangents
     tx, ty = before.vector[0] + after.vector[0], before.vector[1] + after.vector[1]
     (xx, xy, yy), (ax, ay, aa) = before.compliance, after.compliance

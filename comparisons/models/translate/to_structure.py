@@ -1,14 +1,15 @@
 """A scene as TSM beams: Timoshenko sections on the axis, rigid joints, supports, dead loads at nodes and along the beams."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.keys import BEAMS, unstated
 
 if TYPE_CHECKING:
-    from tsm import Beam, LineLoad, Load, Section, Spring, Structure, Support
+    from tsm import Beam, ContactPair, LineLoad, Load, Section, Spring, Structure, Support
     from tsm.elements import ElementType
     from tsm.structure import End
 
@@ -30,7 +31,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     ModelError
         If there is no such element, or the scene uses a key that the beams do not state.
     """
-    from tsm import ContactPair, Hinge, Pin, Structure
+    from tsm import Hinge, Pin, Structure
     from tsm.elements import ELEMENTS, MIXED
 
     unknown = unstated(scene, "the tangent stiffness method", BEAMS)
@@ -39,10 +40,9 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
     for contact in scene.contacts:
-        if contact.surface != "axis" and isinstance(scene.beam(contact.beam).height, tuple):
+        if contact.friction and _face_slope(scene, contact):
             raise ModelError(
-                f'contact {contact.pair}: surface = "{contact.surface}": the tangent stiffness method does not state the face of a beam '
-                'whose height tapers, give surface = "axis"'
+                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers"
             )
     kind = MIXED if element is None else ELEMENTS[element]
     return Structure(
@@ -58,18 +58,34 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
             Pin(name=pin.name, path=pin.stage_points[0], onward=tuple(p[1:] for p in pin.stage_points[1:]))
             for pin in scene.pins
         ),
-        contacts=tuple(
-            ContactPair(
-                node=contact.node,
-                beam=contact.beam,
-                side="left" if contact.side == "left" else "right",
-                offset=scene.offset(contact),
-                keep=contact.keep,
-                friction=contact.friction,
-                radius=scene.radius(contact),
-            )
-            for contact in scene.contacts
-        ),
+        contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
+    )
+
+
+def _face_slope(scene: Scene, contact: ContactSpec) -> float:
+    """Derivative of the radius of the circles whose envelope is the face, ``h'/2 / sqrt(1 + (h'/2)^2)``."""
+    beam = scene.beam(contact.beam)
+    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length)
+    return steep / math.hypot(1.0, steep) if contact.surface == "face" else 0.0
+
+
+def _pair(scene: Scene, contact: ContactSpec) -> "ContactPair":
+    """Contact pair. The face of a beam whose height tapers lies at half the height from the undeformed axis, see `_face_slope`."""
+    from tsm import ContactPair
+
+    steep, beam, radius = _face_slope(scene, contact), scene.beam(contact.beam), scene.radius(contact)
+    offset = (
+        radius + beam.height_at(0.0) / 2.0 * math.sqrt(1.0 - steep**2) if steep else scene.offset(contact)
+    )
+    return ContactPair(
+        node=contact.node,
+        beam=contact.beam,
+        side="left" if contact.side == "left" else "right",
+        offset=offset,
+        end_offset=offset + steep * beam.length if steep else None,
+        keep=contact.keep,
+        friction=contact.friction,
+        radius=radius,
     )
 
 

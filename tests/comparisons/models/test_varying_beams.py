@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.models import solve
+from comparisons.models import certified, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.translate import to_structure
 from comparisons.models.verify import failures
@@ -85,6 +85,25 @@ def test_undeformed_axis_and_stresses_of_the_grid():
 def test_what_elements_and_contacts_do_not_state_is_refused_in_one_line():
     with pytest.raises(ModelError, match=r"such elements are straight and uniform.*; use "):
         solve(scene(), "tsm", Options(element="timoshenko"))
-    on_face = replace(scene(), contacts=(replace(scene().contacts[0], surface="face"),))
-    with pytest.raises(ModelError, match="does not state the face of a beam whose height tapers"):
-        solve(on_face, "tsm", EXACT)
+    rubbed = replace(scene(), contacts=(replace(scene().contacts[0], surface="face", friction=0.2),))
+    with pytest.raises(ModelError, match="does not state friction on the face of a beam whose height tapers"):
+        solve(rubbed, "tsm", EXACT)
+
+
+@pytest.mark.parametrize("element", ["exact", "mixed"])
+def test_a_round_pin_on_the_face_of_a_taper_is_certified(element):
+    """The referee makes the same face in another way. The face of a straight taper lies at half the height."""
+    round_pin = replace(scene().pins[0], radius=0.01, displacement=(0.0, -0.12))
+    thick = scene(height=(0.012, 0.004))
+    contact = replace(scene().contacts[0], surface="face")
+    on_face = replace(thick, pins=(round_pin,), contacts=(contact,))
+    given = solve(on_face, "tsm", Options(element=element))
+    answer = certified(given, on_face, allowance=1e-9 if element == "exact" else 1e-6)
+    assert (answer.certificate.verdict.name, answer.completed) == ("CERTIFIED", True)
+    straight = replace(on_face, beams=(replace(thick.beams[0], turn=0.0),))
+    pair = to_structure(straight, element=element).contacts[0]
+    axis, steep = 0.3, (pair.end_offset - pair.offset) / straight.beams[0].length
+    beyond = pair.offset + steep * axis - 0.01
+    # the envelope touches a circle ahead of its centre
+    height = straight.beams[0].height_at((axis - beyond * steep) / straight.beams[0].length)
+    assert beyond * (1 - steep**2) ** 0.5 == pytest.approx(height / 2, rel=1e-12)
