@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from comparisons.files import write_text
-from tests.benchmarks import beams, solid, start
+from tests.benchmarks import beams, comparison, solid, start
 from tests.benchmarks.measure import Gate
 from tests.stated import MARK, check, pages
 
@@ -59,6 +59,7 @@ def main() -> int:
         beams.batches,
         solid.assembly,
         solid.memory,
+        comparison.comparison,
         start.start_up,
     ):
         part(gates, times)
