@@ -15,7 +15,7 @@ from comparisons.show import budget_plot
 from comparisons.show.budget_plot import plot_budget, write_budget
 
 
-@pytest.fixture(scope="module", params=["ks-cantilever", "ks-face"])
+@pytest.fixture(scope="module", params=["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
 def budget(request: pytest.FixtureRequest) -> Budget:
     return error_budget(load_scene(request.param))
 
@@ -81,6 +81,7 @@ def test_nothing_of_the_picture_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> N
         assert 0.0 <= box.y0 <= box.y1 <= fig.bbox.height, text
 
 
+@pytest.mark.slow
 def test_a_frame_has_one_with_supports_in_place_of_contacts() -> None:
     scene = load_scene("portal-frame")
     found = error_budget(replace(scene, beams=tuple(replace(beam, mesh=(12, 1)) for beam in scene.beams)))
@@ -91,6 +92,7 @@ def test_a_frame_has_one_with_supports_in_place_of_contacts() -> None:
         assert np.abs(rest).max() < 0.1 * np.abs(total).max()
 
 
+@pytest.mark.slow
 def test_a_pair_that_touches_late_has_one_from_there_on() -> None:
     late = load_scene("ks-cantilever")
     pin = replace(late.pins[0], start=(0.8, -0.2), displacement=(0.0, 0.5))

@@ -39,6 +39,7 @@ def test_scenes_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == f"crossval {metadata.version('tsm-crossval')}\n"
 
 
+@pytest.mark.slow_at("options0", "options2")
 @pytest.mark.parametrize(
     "options",
     [
@@ -212,6 +213,7 @@ def test_installed_command_runs() -> None:
     assert "ks-cantilever" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_reader_that_stops_early_is_no_error() -> None:
     command = "crossval solve ks-cantilever --model rod --json - | head -1"
     path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}

@@ -24,6 +24,7 @@ FILES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_compare_writes_every_file_and_the_same_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -61,6 +62,7 @@ def test_compare_writes_every_file_and_the_same_numbers(
     assert force["solid"] < 6e-3
 
 
+@pytest.mark.slow
 def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None:
     beam = replace(KS.beams[0], width=None, height=None, area=4e-4, second_moment=4e-6 / 3.0)
     lines: list[str] = []
@@ -73,6 +75,7 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None
     assert (tmp_path / "tsm" / "tsm.pvd").is_file()
 
 
+@pytest.mark.slow
 def test_a_run_that_stops_is_named_and_the_rest_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -112,6 +115,7 @@ def test_a_run_that_stops_by_name_is_a_row_with_its_errors_so_far(
     assert found["end"]["force"] is None
 
 
+@pytest.mark.slow_at("False-True-")
 @pytest.mark.parametrize(
     ("other", "refereed", "status"),
     [

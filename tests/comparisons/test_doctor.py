@@ -14,6 +14,7 @@ def looked_at(capsys: Output) -> list[tuple[str, ...]]:
     return [tuple(line.split(maxsplit=2)) for line in capsys.readouterr().out.splitlines()]
 
 
+@pytest.mark.slow
 def test_everything_needed_is_here(capsys: Output) -> None:
     assert main(["doctor"]) == 0
     lines = looked_at(capsys)

@@ -63,6 +63,7 @@ def test_fields_of_each_model(response: Response) -> None:
     assert list(found) == ["cantilever", CONTACTS, SUPPORTS]
 
 
+@pytest.mark.slow
 def test_the_page_names_the_fields() -> None:
     """The table of docs/how-to/paraview.md, in a scene with friction."""
     page = (Path(__file__).parents[2] / "docs/how-to/paraview.md").read_text()
@@ -135,6 +136,7 @@ def test_pin_force_balances_the_clamp_and_points_away_from_the_pin(response: Res
     )
 
 
+@pytest.mark.slow_at("solid")
 @pytest.mark.parametrize("model", ["tsm", "solid"])
 def test_forces_between_beams_balance_the_supports(model: str) -> None:
     """Beams that touch: what acts on the lower beam is what its clamp carries, at the tip of the upper beam too."""
@@ -157,6 +159,7 @@ def test_the_displacement_of_the_touched_beam_keeps_a_contact_closed(response: R
     assert data["beam_displacement"][0] == pytest.approx(data["deformed"][0] - [arc, 0.0], abs=1e-4)
 
 
+@pytest.mark.slow_at("solid")
 def test_series_lists_its_files_and_removes_older_ones(response: Response, tmp_path: Path) -> None:
     longer = replace(SCENE, load_parameters=4)
     write_series(tmp_path, solve(longer, response.model), longer)

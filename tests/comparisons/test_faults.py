@@ -134,6 +134,7 @@ def test_interrupt_is_one_line(tmp_path: Path) -> None:
     assert not names(tmp_path / "out")
 
 
+@pytest.mark.slow
 def test_two_runs_into_one_folder(tmp_path: Path) -> None:
     """Of different lengths: the files are those of the one that wrote last, whole."""
     text = (Path(sys.modules["comparisons"].__path__[0]) / "scene/scenes/ks-cantilever.toml").read_text()
@@ -174,6 +175,7 @@ def test_two_comparisons_into_one_folder(tmp_path: Path) -> None:
 FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"
 
 
+@pytest.mark.slow_at("options0-2048-a.json")
 @pytest.mark.parametrize(
     ("options", "size", "file"),
     [(["--json", "a.json"], 2 * KIB, "a.json"), (["--vtk", "v"], KIB, "v/tsm-0001-0.vtu")],
@@ -194,6 +196,7 @@ def test_no_room_for_a_file(
     )
 
 
+@pytest.mark.slow_at("arguments1-", "arguments1-1")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("arguments", [["scenes"], [*SOLVE, "--json", "-"]])
 def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> None:
@@ -202,6 +205,7 @@ def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> No
     assert end == (2, "crossval: output: No space left on device\n")
 
 
+@pytest.mark.slow_at("2>&--end1")
 @pytest.mark.parametrize(
     ("closed", "end"),
     [
@@ -287,6 +291,7 @@ print(render_panels([beam_panel(solve(scene, "tsm"), scene, [1], "beams")], "str
 """
 
 
+@pytest.mark.slow
 def test_no_opengl(tmp_path: Path) -> None:
     """The system's OpenGL libraries are hidden behind files that are none."""
     hidden = tmp_path / "lib"
@@ -300,6 +305,7 @@ def test_no_opengl(tmp_path: Path) -> None:
     assert names(tmp_path) == {"lib", "a.png"}
 
 
+@pytest.mark.slow
 def test_no_pyvista(tmp_path: Path) -> None:
     """A package of its name that cannot be imported."""
     (tmp_path / "pyvista.py").write_text("raise ImportError('broken')\n")

@@ -25,6 +25,12 @@ def answer(name: str, options: Options, count: int | None = None) -> Response:
     return certified(solve(asked, "tsm", options), asked)
 
 
+@pytest.mark.slow_at(
+    "col20-tip1-0.0001-exact-1",
+    "col20-tip1-0.0001-mixed-1",
+    "euler2-tip0-0.05-exact-1",
+    "euler2-tip0-0.05-mixed-1",
+)
 @pytest.mark.parametrize("count", [1, 20])
 @pytest.mark.parametrize("options", [MIXED, EXACT], ids=["mixed", "exact"])
 @pytest.mark.parametrize(
@@ -46,6 +52,7 @@ def test_perfect_columns_end_at_their_bifurcation(name, load, options, count):
     assert found.critical[0].load_parameter == pytest.approx(load, rel=1e-5)
 
 
+@pytest.mark.slow_at("tied-12")
 @pytest.mark.parametrize("count", [12])
 @pytest.mark.parametrize("name", ["tied", "tied2"])
 def test_moved_tips_are_those_of_the_rod(name, count):

@@ -43,6 +43,7 @@ def test_the_error_is_that_of_the_resolution(scene: str) -> None:
     assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "20"]) == 0
 
 
+@pytest.mark.slow
 def test_a_bound_names_where_the_error_is_largest(capsys: Output) -> None:
     bounds = ["--max-error", "force=1e-12", "--max-error", "tip=1e-12"]
     assert main(["gate", "double-beam", "--elements", "4", *bounds]) == 1
@@ -60,6 +61,7 @@ def test_junit(scene: str, tmp_path: Path) -> None:
     assert "against rod" in str(suite[1][0].get("message"))
 
 
+@pytest.mark.slow
 def test_two_beams_are_measured_against_the_exact_rods(capsys: Output) -> None:
     assert main(["gate", "double-beam", "--max-error", "force=1e-3", "--elements", "10"]) == 0
     assert capsys.readouterr().out.startswith("double-beam: tsm against rod")

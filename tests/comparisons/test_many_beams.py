@@ -40,6 +40,7 @@ def whole(text: str) -> None:
     response.table()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", MANY)
 def test_calls_grow_with_the_number_of_beams(kind: str) -> None:
     """From 50 over 100 to 200: the second rise is twice the first, of quadratic work four times."""

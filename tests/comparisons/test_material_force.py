@@ -52,6 +52,7 @@ def test_the_friction_of_the_elements(stated: Callable[..., None]) -> None:
         stated(f"friction.paper-{elements}", largest(beams("timoshenko", elements)))
 
 
+@pytest.mark.slow_at("mesh1", "mesh2")
 @pytest.mark.parametrize("mesh", [(25, 1), (50, 2), (100, 4)])
 def test_the_friction_of_the_solid_by_its_j_integral(
     mesh: tuple[int, int], stated: Callable[..., None]
@@ -83,6 +84,7 @@ def exact_frictions(count: int) -> tuple[float, int]:
     return float(every.max()), len(every)
 
 
+@pytest.mark.slow
 def test_exact_elements_have_no_friction_at_drawn_cantilevers() -> None:
     worst, count = exact_frictions(20)
     assert count > 150
@@ -210,6 +212,7 @@ def test_the_true_direction_has_no_friction(true_shot: Shot) -> None:
     assert np.hypot(*shot.force) == pytest.approx(solve(KS, "rod").contacts[PAIR].force[-1], rel=1e-9)
 
 
+@pytest.mark.slow_at("projection of the last step")
 @pytest.mark.parametrize("name", FAULTS)
 def test_every_fault_of_a_contact_is_a_material_force(name: str, true_shot: Shot) -> None:
     """H is what the fault makes it, a tangential force or the moment of a lever, and a million times what the true contact has."""
@@ -313,6 +316,7 @@ def test_a_certificate_does_not_replace_the_material_force() -> None:
     assert largest(response) > 1e-2
 
 
+@pytest.mark.slow_at("axis-0.1", "axis-0.3", "axis-0.5", "face-0.1", "face-0.5")
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize("surface", ["axis", "face"])
 def test_the_clamp_shows_the_friction_of_the_contact(friction: float, surface: str) -> None:

@@ -39,6 +39,7 @@ def moved(scene: Scene, *, mirrored: bool, from_end: bool) -> Scene:
     return replace(scene, beams=(new,), pins=(pin,), contacts=(replace(scene.contacts[0], side=side),))
 
 
+@pytest.mark.slow_at("solid-False-False", "solid-False-True", "solid-True-False", "solid-True-True")
 @pytest.mark.parametrize("from_end", [False, True])
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("model", MODELS)
@@ -196,6 +197,7 @@ def test_double_beam_of_the_paper_by_tsm() -> None:
     assert list(response.contacts["upper.end->lower"].force[12:16] > 0.0) == [False, False, True, True]
 
 
+@pytest.mark.slow_at("solid")
 @pytest.mark.parametrize("model", ["tsm", "rod", "solid"])
 def test_round_pin_is_the_same_for_every_model(model: str) -> None:
     """A pin of half the height's radius on the axis: the contact of the face scene's point, to the solid's accuracy."""
@@ -211,6 +213,7 @@ def test_round_pin_is_the_same_for_every_model(model: str) -> None:
     assert np.abs(response.contacts[PAIR].gap).max() < 1e-10
 
 
+@pytest.mark.slow_at("law1")
 @pytest.mark.parametrize("law", [{"penalty": 10.0}, {"penetration": 1e-6}])
 def test_soft_contacts_with_friction_of_the_solid_pass_the_checks(law: dict[str, float]) -> None:
     """The tangential force acts on the surface, a gap away from the pin, and a stated penetration is not an open gap."""

@@ -54,6 +54,7 @@ SAID = {
 """What a command prints, beside its exit status."""
 
 
+@pytest.mark.slow_at("crossval doctor")
 @pytest.mark.parametrize(
     "line",
     [

@@ -91,6 +91,13 @@ def test_every_status_is_listed() -> None:
     )
 
 
+@pytest.mark.slow_at(
+    "double-beam --model tsm --elements 5",
+    "ks-cantilever --model rod",
+    "ks-cantilever --model solid --mesh 16x1",
+    "ks-cantilever --model tsm --elements 5",
+    "ks-tied-tip --model tsm --element exact",
+)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -113,6 +120,7 @@ def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
         jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["tsm", pytest.param("rod", marks=pytest.mark.slow), "solid"])
 def test_json_output_with_friction_obeys_its_schema(
     model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

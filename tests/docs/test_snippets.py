@@ -34,6 +34,18 @@ def test_the_pages_are_found() -> None:
     assert {kind for text in PAGES.values() for kind, _ in blocks(text)} <= known
 
 
+@pytest.mark.slow_at(
+    "how-to/accuracy.md",
+    "how-to/cards.md",
+    "how-to/ci-gate.md",
+    "how-to/element.md",
+    "how-to/material.md",
+    "how-to/paraview.md",
+    "how-to/program.md",
+    "how-to/python.md",
+    "how-to/scene.md",
+    "how-to/study.md",
+)
 @pytest.mark.parametrize("page", PAGES)
 def test_snippets(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

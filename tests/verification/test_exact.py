@@ -39,6 +39,7 @@ def ks_scene(request):
     return load_scene(request.param)
 
 
+@pytest.mark.slow_at("ks-face")
 def test_ks_at_every_load_parameter(ks_scene, stated):
     rod = solve_scene(ks_scene, "rod")
     result = tsm.solve(to_structure(ks_scene, element="exact"), steps(50))
@@ -178,6 +179,7 @@ def test_double_beam_in_few_steps(double, count):
         assert essentials(result) == DOUBLE_BEAM_EVENTS[: len(essentials(result))]
 
 
+@pytest.mark.slow_at("1", "5")
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_double_beam_events_do_not_depend_on_the_steps(double, count):
     """The whole path in one step meets what 76 steps meet."""

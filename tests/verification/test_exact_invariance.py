@@ -43,6 +43,7 @@ def extreme(length, youngs_modulus):
     return cantilever(((length, 0.0), (0.0, 2 * length / np.pi)), section=section, length=length)
 
 
+@pytest.mark.slow_at("1")
 @pytest.mark.parametrize("count", [1, 5, pytest.param(50, marks=pytest.mark.slow)])
 def test_units_do_not_matter(count, stated):
     """Lengths 1e-6 to 1e6 times Young's modulus 1e-6 to 1e15: the same iterations, the same dimensionless answer."""
@@ -142,6 +143,7 @@ def test_near_the_tip(section, elements):
         assert squares == pytest.approx([] if np.isnan(expected) else [(0.02 * expected) ** 2], abs=located)
 
 
+@pytest.mark.slow_at("ks-cantilever-1.0-20", "ks-face-1.0-20")
 @pytest.mark.parametrize(
     ("name", "t", "count"), [("ks-cantilever", 1.0, 20), ("ks-face", 1.0, 20), ("double-beam", 0.5, 3)]
 )
@@ -204,6 +206,7 @@ def test_random_pins_in_one_step_and_in_fifty():
     assert 100 <= ends.count(Status.COMPLETED) < 200
 
 
+@pytest.mark.slow_at("1", "10", "2", "3", "5")
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 10, 20])
 def test_one_step_does_not_jump_to_another_branch(count):
     """A way with two equilibria at its end: any number of steps finds the one that the path leads to."""

@@ -238,6 +238,7 @@ def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
     assert few.contacts["p0->b"].force[-1] == pytest.approx(many.contacts["p0->b"].force[-1], rel=1e-6)
 
 
+@pytest.mark.slow_at("0.00303014214-path0")
 @pytest.mark.parametrize(
     ("height", "path"),
     [

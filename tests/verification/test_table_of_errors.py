@@ -1,10 +1,13 @@
 """The table of errors is what the models leave, to the digits stated; the README has some of its rows."""
 
+from collections.abc import Callable
+
 import pytest
 
 from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
 from comparisons.errors import errors
 from comparisons.models import solve
+from comparisons.response import Response
 from comparisons.scene import load_scene
 from tests.stated import MARK, ROOT
 
@@ -21,12 +24,17 @@ ROWS = {
 }
 
 
+@pytest.fixture(scope="module")
+def rod() -> Response:
+    return solve(load_scene("ks-cantilever"), ROD.model)
+
+
 @pytest.mark.parametrize("name", ROWS)
-def test_the_table_of_errors(name, stated) -> None:
+def test_the_table_of_errors(name: str, rod: Response, stated: Callable[..., None]) -> None:
     """To half a unit of the last digit stated; what the exact elements leave is round-off, and bounded only."""
     scene, run = load_scene("ks-cantilever"), ROWS[name]
     response = solve(scene, run.model, run.options)
-    found = errors(response, solve(scene, ROD.model), scene)["path"]
+    found = errors(response, rod, scene)["path"]
     stated(f"unknowns.{name}", response.unknowns)
     stated(f"errors.{name}", *(found[column] for column in COLUMNS), bound=run.options.element == "exact")
 

@@ -81,6 +81,16 @@ def test_the_promise_is_kept_on_random_scenes(element, stated):
     stated(f"accuracy.{element or 'free'}", sum(kept), len(kept))
 
 
+@pytest.mark.slow_at(
+    "mixed-shape",
+    "timoshenko-arc",
+    "timoshenko-force",
+    "timoshenko-friction",
+    "timoshenko-moment",
+    "timoshenko-shape",
+    "timoshenko-shape_mean",
+    "timoshenko-tip",
+)
 @pytest.mark.parametrize("quantity", [name for name in QUANTITIES if name != "stress"])
 @pytest.mark.parametrize("element", ["mixed", "timoshenko"])
 def test_every_quantity(rod, quantity, element):
@@ -156,6 +166,7 @@ def test_what_a_scene_requires():
     assert "but the solid model has a full clamp at rest" in other.decisions[0]
 
 
+@pytest.mark.slow
 def test_stress_is_the_solids():
     answer = solve_to(replace(KS, load_parameters=2), 0.05, "stress")
     assert answer.model == "solid"
@@ -189,6 +200,7 @@ def test_the_solids_estimate():
     assert difference(coarse.response, fine, KS, "force") <= coarse.found.estimate
 
 
+@pytest.mark.slow_at("0.01")
 @pytest.mark.parametrize("height", [0.02, 0.01])
 def test_beam_theorys_own_error(height):
     """Within a factor of two of what a solid of the rod's own law shows."""

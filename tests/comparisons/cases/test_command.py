@@ -76,6 +76,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "tiny.sqlite"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kept", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_results_of_another_version(kept: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Half of them, wrong ones: computed anew, or kept when that is asked for; one line says which."""

@@ -61,6 +61,7 @@ def test_labels() -> None:
         Case(scene=KS, model="shell")
 
 
+@pytest.mark.slow_at("solid", "tsm")
 @pytest.mark.parametrize(
     "one", [case(elements=4), case("solid", mesh=(10, 1)), case("rod")], ids=lambda one: one.model
 )
@@ -106,6 +107,7 @@ def test_a_refused_case_is_measured_as_refused() -> None:
     assert same(found, Measurement.from_json(found.to_json()))
 
 
+@pytest.mark.slow
 def test_a_stopped_case_keeps_what_it_reached() -> None:
     soft = replace(KS, contacts=(replace(KS.contacts[0], penalty=1e-3),))
     found = measure(Case(scene=soft, model="solid", options=Options(mesh=(10, 1))), repeats=1)

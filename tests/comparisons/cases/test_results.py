@@ -50,6 +50,7 @@ def file(tmp_path: Path, measured: list[Measurement]) -> Path:
     return tmp_path / "a.sqlite"
 
 
+@pytest.mark.slow
 def test_rows_are_sorted_by_what_varies(file: Path, measured: list[Measurement]) -> None:
     found = read_results(file)
     assert varied(found) == ["elements", "integration_tolerance", "mesh", "beam.height"]

@@ -36,6 +36,7 @@ def done(path: Path, cases: list[Case], workers: Workers = THREAD) -> Tally:
         return run(cases, store, workers, repeats=1)
 
 
+@pytest.mark.slow
 def test_equal_cases_are_done_once_and_none_again(tmp_path: Path) -> None:
     path, told = tmp_path / "a.sqlite", list[Tally]()
     assert done(path, CASES[:2]).statuses == {"COMPLETED": 2}
@@ -65,6 +66,7 @@ def test_what_stops_or_is_refused_is_a_result(tmp_path: Path) -> None:
     assert again == replace(tally, seconds=again.seconds)
 
 
+@pytest.mark.slow
 def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,6 +89,7 @@ def test_a_killed_worker_costs_one_retry(tmp_path: Path, monkeypatch: pytest.Mon
     assert marker.exists()
 
 
+@pytest.mark.slow
 def test_a_case_that_raises_does_not_stop_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.sqlite"
     monkeypatch.setattr(run_module, "solve", faults.raising)

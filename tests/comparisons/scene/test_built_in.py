@@ -40,6 +40,16 @@ def test_check_draws_a_scene(name: str, tmp_path, capsys) -> None:
     assert "  tsm: yes" in capsys.readouterr().out
 
 
+@pytest.mark.slow_at(
+    "double-beam-friction-exact",
+    "double-beam-friction-mixed",
+    "hysteresis-exact",
+    "hysteresis-mixed",
+    "ks-friction-exact",
+    "ks-friction-mixed",
+    "three-point-friction-exact",
+    "three-point-friction-mixed",
+)
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("name", OTHERS)
 def test_the_end_of_a_scene_is_certified(name: str, element: str) -> None:
@@ -119,6 +129,7 @@ def rises_and_loads(scene: Scene) -> tuple[Array, Array]:
     return rise, -response.supports["left.end"].force[:, 1]
 
 
+@pytest.mark.slow
 def test_three_point_bending_with_friction() -> None:
     """The greatest loads of the elastica while the beam is drawn in and pushed back, of a strip with h/a = 1/50."""
     rise, load = rises_and_loads(replace(load_scene("three-point-friction"), load_parameters=48))
@@ -190,6 +201,7 @@ def test_a_beam_on_springs_sinks_and_turns(element: str) -> None:
     assert springs == pytest.approx(np.array([60.0 * t, 240.0 * t]), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_double_beam_with_friction() -> None:
     """Exact rods by the referee's equations."""
     scene = load_scene("double-beam-friction")

@@ -47,6 +47,7 @@ def columns(name: str) -> set[str]:
     return {cell.column for cell in matrix() if cell.axis == name}
 
 
+@pytest.mark.slow
 def test_axes_reach_their_ends() -> None:
     assert {"L 1e-09, E 1e-06", "L 1e+06, E 1e+15"} <= columns("units")
     assert {"2", "1e+06"} <= columns("slenderness")
@@ -170,6 +171,7 @@ def two_cells(allowed: Allowance | None) -> list[Cell]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("allowed", "status"), [(None, 0), (Allowance(error=1e-4, why="too little"), 1)])
 def test_the_command_fails_where_a_cell_is_wrong(
     allowed: Allowance | None,

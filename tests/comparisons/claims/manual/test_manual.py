@@ -283,6 +283,7 @@ BUILT_IN = (
 """Problems of the built-in scenes without a test of their own in `tests/verification`."""
 
 
+@pytest.mark.slow_at("crossed_beams", "portal", "three_point_bending")
 @pytest.mark.parametrize("state", BUILT_IN, ids=lambda state: str(state.__name__))
 def test_a_problem_of_a_built_in_scene_passes(state: Callable[[], Problem]):
     case, _ = answered(state(), "p.svg")

@@ -24,6 +24,7 @@ def test_mixed_comes_as_near_as_the_search_goes_at_every_tolerance():
         assert all(way.smallest <= NEAREST for way in found)
 
 
+@pytest.mark.slow
 def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance():
     """``b^-3`` and ``b^-1``: a tolerance 1e4 times sharper widens it by about 20 and 1e4."""
     for element, factor in (("euler-bernoulli-simple", 1e4 ** (1 / 3)), ("timoshenko", 1e4)):

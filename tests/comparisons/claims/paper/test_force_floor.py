@@ -43,6 +43,7 @@ def test_timoshenko_is_euler_bernoulli_until_the_distance_falls_below_the_shear_
     assert slope("timoshenko", "start", 10.0 ** -np.arange(4, 13), Psi=1e-6) == pytest.approx(-1, abs=0.2)
 
 
+@pytest.mark.slow
 def test_cantilever_form_has_the_floor_of_the_simple_one():
     """The last bit of the coordinates times one and the same K_cc: no smaller critical area from the form."""
     for end in ("start", "end"):

@@ -108,6 +108,7 @@ def check_page(folder: Path, figure: str) -> None:
         assert all(len(lines) == 2 for lines in double["runs"][0]["lines"])
 
 
+@pytest.mark.slow
 def test_fig7a(tmp_path):
     """Slip-off displacements of theory section 7; bar 5e-4 with 18 elements."""
     found = {one["start"]: one for one in run("fig7a", tmp_path)["starting_positions"]}
@@ -119,6 +120,7 @@ def test_fig7a(tmp_path):
         assert found[start]["reached_in_contact"]["mixed"] == pytest.approx(exact, rel=5e-4)
 
 
+@pytest.mark.slow
 def test_the_papers_element_converges_to_the_exact_rod():
     found = ks_shapes(quick=True, report=lambda _: None, readings=["ks-cantilever"])
     paper = [found.run("ks-cantilever", run.label) for run in PAPER]
@@ -189,6 +191,7 @@ def test_nothing_is_judged_without_its_study():
     assert "0 of 25 claims judged (27 statements)." in claims_text(Findings(quick=True))
 
 
+@pytest.mark.slow
 def test_command(tmp_path, capsys):
     assert main(["reproduce", "fig9", "--quick", "--out", str(tmp_path / "new")]) == 0
     out, err = capsys.readouterr()

@@ -30,6 +30,7 @@ def test_every_question_has_a_study() -> None:
     assert set(QUESTIONS) == set(STUDIES)
 
 
+@pytest.mark.slow
 def test_solid_becomes_the_rod_as_its_height_squared(stated) -> None:
     """Within .1 % of the force and .05 % of the arc position at h/L = .02."""
     rows = thin_beams(quiet)
@@ -43,6 +44,7 @@ def test_solid_becomes_the_rod_as_its_height_squared(stated) -> None:
     stated("solid.thin-orders", *(row["contact_force_order"] for row in rows[1:]))
 
 
+@pytest.mark.slow
 def test_study_is_printed_and_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["study", "thin-beams", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out

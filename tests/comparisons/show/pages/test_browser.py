@@ -37,6 +37,7 @@ def told(browser: Browser, folder: Path, script: str, *flags: str, width: int = 
     return found
 
 
+@pytest.mark.slow
 def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Path) -> None:
     script = "told.end = state(); slide(3); told.fourth = state(); slide(9); told.again = state();"
     found = told(browser, compared, script)
@@ -155,6 +156,7 @@ def brightness(picture: Path) -> float:
     return float(np.median(imread(picture)[..., :3]))
 
 
+@pytest.mark.slow
 def test_light_dark_and_paper(browser: Browser, compared: Path) -> None:
     page = compared / "report.html"
     light = browser.screenshot(page, height=3800)
