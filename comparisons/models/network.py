@@ -166,7 +166,7 @@ def _grid(scene: Scene, state: Equilibrium) -> Grid:
     references, deformed, lines = [], [], []
     for number, beam in enumerate(scene.beams):
         arc, line = _axis(scene, beam.name, state)
-        references.append(np.array(beam.start) + np.outer(arc, beam.direction))
+        references.append(np.array([beam.place(part) for part in arc / beam.length]))
         deformed.append(line)
         first = number * POINTS + np.arange(POINTS - 1)
         lines.append(np.stack([first, first + 1], axis=1))

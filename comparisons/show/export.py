@@ -16,7 +16,7 @@ from comparisons.show.listing import check_free, digest, listed, unchanged, with
 from comparisons.show.symbols import inward
 from comparisons.show.vtu import blocks_text, grid_text, series_text
 
-CONTACTS, SUPPORTS = "contact points", "support points"
+CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
 """Names of the blocks besides the beams; no beam has a name with a space."""
 DIMENSIONS = {
     "displacement": "L", "deformed": "L", "rotation": "rad", "N": "F", "V": "F", "M": "F L", "arc": "L", "height": "L",
@@ -39,7 +39,7 @@ def field_units(scene: Scene) -> dict[str, str]:
 
 
 def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
-    """Return the grids of a load parameter by name: every beam with its fields, then `CONTACTS` and `SUPPORTS` where there are any.
+    """Return the grids of a load parameter by name: every beam with its fields, then those of `POINTS` that the scene has.
 
     Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known.
     """
@@ -52,12 +52,14 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
 
 
 def nodes(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
-    """Return the contacts and the supports of a load parameter, as far as the scene has them."""
+    """Return the contacts, supports and hinges of a load parameter, as far as the scene has them."""
     found = {}
     if scene.contacts:
         found[CONTACTS] = contact_points(response, scene, k)
-    if scene.all_supports:
+    if scene.holding:
         found[SUPPORTS] = support_points(response, scene, k)
+    if scene.hinges:
+        found[HINGES] = hinge_points(response, scene, k)
     return found
 
 
@@ -108,22 +110,41 @@ def contact_points(response: Response, scene: Scene, k: int) -> Grid:
 
 
 def support_points(response: Response, scene: Scene, k: int) -> Grid:
-    """Return the supported ends: displacement, force and moment on the beam, and what a picture of the supports needs.
+    """Return the ends on supports and springs: displacement, force and moment on the beam, and what a picture of them needs.
 
-    `held` has 1 for each held component x, y and rotation, `inward` is the unit vector into the beam.
+    `held` has 1 for each component x, y and rotation that a support holds, 2 for one that a spring resists; `inward` is the unit vector
+    into the beam. The force of a spring is its stiffness times the displacement, its moment is nan: no rotation is stated.
     """
-    start = np.array([scene.place(support.node) for support in scene.all_supports])
-    displacement = np.array([_end(response, one.beam, one.end, k) for one in scene.all_supports]) - start
+    start = np.array([scene.place(one.node) for one in scene.holding])
+    displacement = np.array([_end(response, one.beam, one.end, k) for one in scene.holding]) - start
     reactions = [response.supports.get(one.node) for one in scene.all_supports]
+    force = [np.full(2, np.nan) if one is None else one.force[k] for one in reactions]
+    moment = [np.nan if one is None else one.moment[k] for one in reactions]
+    for spring, moved in zip(scene.springs, displacement[len(reactions) :], strict=True):
+        force.append(-np.array(spring.stiffness) * moved)
+        moment.append(np.nan if spring.rotation else 0.0)
+    kinds = [1] * len(reactions) + [2] * len(scene.springs)
     data = {
         "displacement": displacement,
         "deformed": start + displacement,
-        "reaction_force": np.array([(np.nan, np.nan) if one is None else one.force[k] for one in reactions]),
-        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in reactions]),
-        "held": np.array([[int(name in one.held) for name in COMPONENTS] for one in scene.all_supports]),
-        "inward": np.array([inward(scene, one) for one in scene.all_supports]),
+        "reaction_force": np.array(force),
+        "reaction_moment": np.array(moment),
+        "held": np.array(
+            [
+                [kind * (name in one.held) for name in COMPONENTS]
+                for kind, one in zip(kinds, scene.holding, strict=True)
+            ]
+        ),
+        "inward": np.array([inward(scene, one) for one in scene.holding]),
     }
     return _points(start, data)
+
+
+def hinge_points(response: Response, scene: Scene, k: int) -> Grid:
+    """Return the hinges: displacement."""
+    start = np.array([scene.place(one.node) for one in scene.hinges])
+    deformed = np.array([_end(response, one.beam, one.end, k) for one in scene.hinges])
+    return _points(start, {"displacement": deformed - start, "deformed": deformed})
 
 
 def _points(points: Array, data: dict[str, Array]) -> Grid:
@@ -151,7 +172,7 @@ def _moved(response: Response, scene: Scene, beam: str, k: int, arc: float) -> A
     stations, line = response.axis_line(beam, k)
     place = np.array([np.interp(arc, stations, line[:, i]) for i in (0, 1)])
     spec = scene.beam(beam)
-    return np.asarray(place - np.array(spec.start) - arc * np.array(spec.direction))
+    return np.asarray(place - np.array(spec.place(arc / spec.length)))
 
 
 def check_series(folder: Path, model: str, scene: Scene) -> None:
@@ -162,7 +183,7 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
     OutputError
         One line, with the first file in the way.
     """
-    count = len(scene.beams) + bool(scene.contacts) + bool(scene.all_supports)
+    count = len(scene.beams) + sum(map(bool, (scene.contacts, scene.holding, scene.hinges)))
     names = [
         name
         for k in range(len(scene.times))

@@ -1,6 +1,6 @@
 """What a picture of a stressed body shows: quadrilaterals with a stress, contacts with their forces, supports; and the scale of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.show.export import CONTACTS, SUPPORTS
+from comparisons.show.export import CONTACTS, HINGES, SUPPORTS
 from comparisons.show.palette import PIN
-from comparisons.show.symbols import Segments, placed, support_symbol
+from comparisons.show.symbols import Segments, hinge_symbol, placed, spring_symbol, support_symbol
 
 Body = tuple[Array, NDArray[np.int64], Array]
 """Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of a body."""
@@ -44,7 +44,7 @@ class Panel:
     states : ndarray of str, shape (p,)
         Keys of `COLOURS`.
     supports : ndarray, shape (l, 2, 2)
-        Line segments of the symbols of the supports.
+        Line segments of the symbols of supports, springs and hinges.
     """
 
     title: str
@@ -64,7 +64,7 @@ class Panel:
 
 
 def joined(title: str, bodies: Sequence[Body], drawn: Sequence[Mapping[str, NDArray[Any]]]) -> Panel:
-    """Return a panel of several bodies, and of the contacts and supports as `marks` gives them, once or several times."""
+    """Return a panel of several bodies, and of what `marks` gives, once or several times."""
     starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
     return Panel(
         title=title,
@@ -98,13 +98,28 @@ def marks(blocks: Mapping[str, Grid], size: float, factor: float = 1.0) -> dict[
         "states": np.array([_state(*one) for one in zip(forces, slip, strict=True)], dtype=str),
     }
     segments = [np.zeros((0, 2, 2))]
-    if SUPPORTS in blocks:
-        data = blocks[SUPPORTS].point_data
-        places = data["deformed"] + (factor - 1.0) * data["displacement"]
-        for held, away, place in zip(data["held"], data["inward"], places, strict=True):
-            names = tuple(name for name, one in zip(COMPONENTS, held, strict=True) if one)
-            segments.append(placed(support_symbol(names, away), place, SYMBOL * size))
+    for place, symbols in _symbols(blocks, factor):
+        segments += [placed(symbol, place, SYMBOL * size) for symbol in symbols]
     return {**found, "supports": np.concatenate(segments)}
+
+
+def _symbols(blocks: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, list[Segments]]]:
+    """Yield the places of supports, springs and hinges, and their symbols."""
+    for name in (SUPPORTS, HINGES):
+        if name not in blocks:
+            continue
+        data = blocks[name].point_data
+        places = data["deformed"] + (factor - 1.0) * data["displacement"]
+        if name == HINGES:
+            yield from ((place, [hinge_symbol()]) for place in places)
+            continue
+        for held, away, place in zip(data["held"], data["inward"], places, strict=True):
+            names, sprung = (
+                tuple(name for name, one in zip(COMPONENTS, held, strict=True) if one == kind)
+                for kind in (1, 2)
+            )
+            symbols = [support_symbol(names, away)] if names else []
+            yield place, [*symbols, *(spring_symbol(name, away) for name in sprung)]
 
 
 def _state(force: Array, slip: float) -> str:

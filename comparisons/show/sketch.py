@@ -13,15 +13,31 @@ from comparisons.models.options import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.response import Array
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
+from comparisons.scene.conditions import COMPONENTS, LoadSpec, SpringSpec
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.symbols import arc, held_components, support_name, support_symbol, support_symbols
+from comparisons.show.symbols import (
+    arc,
+    chain,
+    held_components,
+    hinge_symbol,
+    inward,
+    placed,
+    spring_symbol,
+    support_name,
+    support_symbol,
+    support_symbols,
+)
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
 SYMBOL, STROKE, ARROW, TURN, LABEL = 0.025, 0.012, 0.14, 0.05, 0.12
 """Sizes of a support, a stroke on the side of a contact, the arrow of a force, the arc of a moment and a label, over the size of the scene."""
 STROKES = 40
-"""Strokes along the side of a contact."""
+"""Strokes along the side of a contact, and pieces of an axis."""
+ROW = 11
+"""Arrows of a force per length."""
+NAME, WEIGHT = 0.25, 0.65
+"""Fractions of the length at which a beam's name and its weight stand."""
 UP = np.array([0.0, 1.0])
 
 
@@ -83,7 +99,7 @@ def draw(scene: Scene, path: Path) -> None:
 
 def _bounds(scene: Scene) -> tuple[Array, Array]:
     """Return the lowest and the highest coordinates of beams and pins."""
-    points = [point for beam in scene.beams for point in (beam.start, beam.end)]
+    points = [point for beam in scene.beams for point in _axis(beam)[0].tolist()]
     for pin in scene.pins:
         reach = pin.radius or 0.0
         points += [(x + dx, y + dx) for x, y in pin.points for dx in (-reach, reach)]
@@ -120,82 +136,141 @@ class _Sketch:
 
     def beam(self, beam: BeamSpec) -> None:
         """Draw a beam as its outline, at least a line, with its name and direction."""
-        start, end, left = np.array(beam.start), np.array(beam.end), _left(beam)
-        half = beam.height_at(0.5) / 2 * left
-        corners = np.array([start - half, end - half, end + half, start + half])
-        (outline,) = self.axes.fill(*corners.T, facecolor=BEAM, edgecolor=BEAM, alpha=0.35, linewidth=1.5)
-        (axis,) = self.axes.plot(*np.array([start, end]).T, color=BEAM, linewidth=1.0)
-        middle = (start + end) / 2
-        self._arrow(middle, middle + 0.03 * self.size * (end - start) / beam.length, BEAM)
+        axis, left = _axis(beam)
+        half = _heights(beam)[:, None] / 2 * left
+        outline = np.concatenate([axis - half, (axis + half)[::-1]])
+        (drawn,) = self.axes.fill(*outline.T, facecolor=BEAM, edgecolor=BEAM, alpha=0.35, linewidth=1.5)
+        (line,) = self.axes.plot(*axis.T, color=BEAM, linewidth=1.0)
+        middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
+        self._arrow(middle, middle + 0.03 * self.size * tangent, BEAM)
         sides = {contact.side for contact in self.scene.contacts if contact.beam == beam.name}
-        clear = -left if sides == {"left"} else left
-        self._label(beam.name, 0.75 * start + 0.25 * end + (half @ left) * clear, clear, BEAM)
+        clear = (-1.0 if sides == {"left"} else 1.0) * _across(beam.tangent(NAME))
+        self._label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * clear, clear, BEAM)
         if beam.height is None:
-            self.legend.setdefault("beam: axis, without a height", axis)
+            self.legend.setdefault("beam: axis, without a height", line)
         else:
-            self.legend.setdefault("beam, height to scale", outline)
+            self.legend.setdefault("beam, height to scale", drawn)
 
     def side(self, contact: ContactSpec) -> None:
         """Draw the surface that a node touches, with strokes on the side from which the node comes."""
         beam = self.scene.beam(contact.beam)
-        normal = (1.0 if contact.side == "left" else -1.0) * _left(beam)
-        surface = (self.scene.offset(contact) - self.scene.radius(contact)) * normal
-        line = np.array([beam.start, beam.end]) + surface
-        part = np.linspace(0.0, 1.0, STROKES + 1)[:, None]
-        feet = (1.0 - part) * line[0] + part * line[1]
+        axis, left = _axis(beam, STROKES)
+        normal = left if contact.side == "left" else -left
+        radius = self.scene.radius(contact)
+        offsets = [
+            self.scene.offset(contact, part) - radius for part in np.linspace(0.0, 1.0, len(axis)).tolist()
+        ]
+        feet = axis + np.array(offsets)[:, None] * normal
         strokes = np.stack([feet, feet + STROKE * self.size * normal], axis=1)
-        self._segments(np.concatenate([line[None], strokes]), SIDE, 0.9)
+        self._segments(np.concatenate([chain(feet), strokes]), SIDE, 0.9)
         friction = f", friction {contact.friction:g}" if contact.friction else ""
         words = f"side of contact: {contact.surface} of the beam{friction}"
         self.legend.setdefault(words, _line(SIDE, marker="|", markersize=6))
 
     def supports(self) -> None:
-        """Draw the supports and their prescribed motions."""
-        symbols = support_symbols(self.scene, SYMBOL * self.size)
-        for support, segments in zip(self.scene.all_supports, symbols, strict=True):
+        """Draw the supports, their prescribed motions, springs and hinges."""
+        scene = self.scene
+        symbols = support_symbols(scene, SYMBOL * self.size)
+        for support, segments in zip(scene.all_supports, symbols, strict=True):
             self._segments(segments, HELD, 1.1)
-            self.legend.setdefault(
-                support_name(support), _handle(support_symbol(held_components(support), UP))
-            )
-            if not support.moves:
-                continue
-            at = np.array(self.scene.place(support.node))
-            dx, dy, turn = (value or 0.0 for value in support.motion)
-            if dx or dy:
-                path = np.array([dx, dy])
-                self._arrow(at, at + path, HELD)
-                self._label(f"{hypot(dx, dy):.6g} {self.units[1]}", at + path, path, HELD)
-            if turn:
-                self._turn(support.node, turn, f"{abs(turn):.6g} rad", HELD)
-            self.legend.setdefault("motion of a support at load parameter 1", _line(HELD, marker=">"))
+            symbol = support_symbol(held_components(support), UP)
+            self.legend.setdefault(support_name(support), _handle(symbol))
+            at = np.array(scene.place(support.node))
+            for stage, motion in enumerate((support.motion, *support.onward), 1):
+                dx, dy, turn = (value or 0.0 for value in motion)
+                after = _after(stage)
+                if dx or dy:
+                    path = np.array([dx, dy])
+                    self._arrow(at, at + path, HELD)
+                    self._label(f"{hypot(dx, dy):.6g} {self.units[1]}{after}", at + path, path, HELD)
+                    at = at + path
+                if turn:
+                    self._turn(scene.place(support.node), turn, f"{abs(turn):.6g} rad{after}", HELD)
+                if dx or dy or turn:
+                    self.legend.setdefault("motion of a support", _line(HELD, marker=">"))
+        for spring in scene.springs:
+            self._spring(spring)
+        for hinge in scene.hinges:
+            symbol = hinge_symbol()
+            self._segments(placed(symbol, np.array(scene.place(hinge.node)), SYMBOL * self.size), HELD, 1.1)
+            force, length = self.units
+            stiff = f" of {hinge.stiffness:.6g} {force} {length}/rad" if hinge.stiffness else ""
+            self.legend.setdefault(f"hinge{' with a spring' if stiff else ''}{stiff}", _handle(symbol))
+
+    def _spring(self, spring: SpringSpec) -> None:
+        force, length = self.units
+        stiffness = dict(zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True))
+        for component in spring.held:
+            symbol = spring_symbol(component, inward(self.scene, spring))
+            at = np.array(self.scene.place(spring.node))
+            self._segments(placed(symbol, at, SYMBOL * self.size), HELD, 1.1)
+            unit = f"{force} {length}/rad" if component == "rotation" else f"{force}/{length}"
+            words = f"spring of {stiffness[component]:.6g} {unit} in {component}"
+            self.legend.setdefault(words, _handle(spring_symbol(component, UP)))
 
     def loads(self) -> None:
-        """Draw the forces and moments at load parameter 1 with their values."""
+        """Draw the loads of every stage with their values, and the weights of the beams."""
         force, length = self.units
-        for load in self.scene.loads:
-            if load.end is None:
-                continue
-            at, vector = np.array(self.scene.place(load.node)), np.array(load.force)
-            if vector.any():
-                tail = at - ARROW * self.size * vector / np.hypot(*vector)
-                self._arrow(tail, at, LOAD, 2.0)
-                self._label(f"{np.hypot(*vector):.6g} {force}", tail, -vector, LOAD)
-                self.legend.setdefault(
-                    "force at load parameter 1, not to scale", _line(LOAD, marker=">", linewidth=2.0)
+        for stage, loads in enumerate((self.scene.loads, *(one.load for one in self.scene.stages)), 1):
+            for load in loads:
+                if load.force_per_length is not None:
+                    self._line_load(
+                        load, f"{hypot(*load.force_per_length):.6g} {force}/{length}{_after(stage)}"
+                    )
+                    continue
+                at = (
+                    self.scene.place(load.node)
+                    if load.at is None
+                    else self.scene.beam(load.beam).place(load.at)
                 )
-            if load.moment:
-                self._turn(load.node, load.moment, f"{abs(load.moment):.6g} {force} {length}", LOAD)
-                self.legend.setdefault("moment at load parameter 1", _handle(_chain(arc(1.0)), LOAD))
+                if any(load.force):
+                    self._force(
+                        np.array(at), np.array(load.force), f"{hypot(*load.force):.6g} {force}{_after(stage)}"
+                    )
+                if load.moment:
+                    words = f"{abs(load.moment):.6g} {force} {length}{_after(stage)}"
+                    self._turn(at, load.moment, words, LOAD)
+                    self.legend.setdefault("moment", _handle(chain(arc(1.0)), LOAD))
+        for stage, gravity in enumerate((self.scene.gravity, *(one.gravity for one in self.scene.stages)), 1):
+            for beam in self.scene.beams if gravity is not None and any(gravity) else ():
+                if beam.density:
+                    weight = np.array(gravity) * _mass(beam)
+                    words = f"weight {hypot(*weight):.4g} {force}{_after(stage)}"
+                    self._force(np.array(beam.place(WEIGHT)), weight, words)
+
+    def _force(self, at: Array, force: Array, words: str) -> None:
+        along = force / np.hypot(*force)
+        tail = at - ARROW * self.size * along
+        self._arrow(tail, at, LOAD, 2.0)
+        self._label(words, tail, -along, LOAD)
+        self.legend.setdefault("force, arrow not to scale", _line(LOAD, marker=">", linewidth=2.0))
+
+    def _line_load(self, load: LoadSpec, words: str) -> None:
+        """Draw a force per length as a row of arrows along a part of a beam."""
+        beam, force = self.scene.beam(load.beam), np.array(load.force_per_length)
+        along = force / np.hypot(*force)
+        tips = np.array([beam.place(part) for part in np.linspace(*load.span, ROW).tolist()])
+        tails = tips - ARROW / 2 * self.size * along
+        for tail, tip in zip(tails, tips, strict=True):
+            self._arrow(tail, tip, LOAD, 0.9)
+        self.axes.plot(*tails.T, color=LOAD, linewidth=0.9)
+        self._label(words, tails[ROW // 2], -along, LOAD)
+        self.legend.setdefault(
+            "force per length, arrows not to scale", _line(LOAD, marker=">", linewidth=0.9)
+        )
 
     def pin(self, pin: PinSpec) -> None:
         """Draw a pin with its true radius, and its path."""
         from matplotlib.patches import Circle
 
         points = np.array(pin.points)
-        behind = (points[0] - points[1]) / np.hypot(*(points[0] - points[1]))
+        behind = points[0] - points[1] if len(points) > 1 else -UP
+        behind = behind / np.hypot(*behind)
         (path,) = self.axes.plot(*points.T, ":", color=PIN, linewidth=1.5)
-        last = points[-1] - points[-2]
-        self._arrow(points[-1] - 0.01 * self.size * last / np.hypot(*last), points[-1], PIN)
+        for stage in map(np.array, pin.stage_points):
+            if len(stage) > 1:
+                last = (stage[-1] - stage[-2]) / np.hypot(*(stage[-1] - stage[-2]))
+                self._arrow(stage[-1] - 0.01 * self.size * last, stage[-1], PIN)
         (mark,) = self.axes.plot(*points[0], "*", color=PIN, markersize=9, linestyle="none", zorder=5)
         self._label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
         if pin.radius:
@@ -219,10 +294,11 @@ class _Sketch:
         self.axes.annotate("", tip, tail, arrowprops=style)
         self.axes.update_datalim([tail, tip])
 
-    def _turn(self, node: str, turn: float, words: str, colour: str) -> None:
-        """Draw a moment or a rotation as an arc about a node, with its value on the side without the arrow of a force."""
-        at = np.array(self.scene.place(node))
-        above = any(load.node == node and load.force[1] < 0.0 for load in self.scene.loads)
+    def _turn(self, place: Sequence[float], turn: float, words: str, colour: str) -> None:
+        """Draw a moment or a rotation as an arc, with its value on the side without the arrow of a force."""
+        at = np.array(place)
+        ends = [load for load in self.scene.loads if load.end is not None and load.force[1] < 0.0]
+        above = any(np.array_equal(at, self.scene.place(load.node)) for load in ends)
         points = at + TURN * self.size * arc(turn)
         self.axes.plot(*points.T, color=colour, linewidth=2.0)
         self._arrow(points[-2], points[-1], colour, 2.0)
@@ -245,9 +321,36 @@ class _Sketch:
         )
 
 
-def _left(beam: BeamSpec) -> Any:
-    tx, ty = beam.direction
-    return np.array([-ty, tx])
+def _after(stage: int) -> str:
+    """Return the number of a stage after the first one."""
+    return f" (stage {stage})" if stage > 1 else ""
+
+
+def _parts(pieces: int) -> list[float]:
+    return [float(part) for part in np.linspace(0.0, 1.0, pieces + 1)]
+
+
+def _axis(beam: BeamSpec, pieces: int = STROKES) -> tuple[Array, Array]:
+    """Return points of the undeformed axis, and the unit vectors to its left there."""
+    parts = _parts(pieces)
+    return np.array([beam.place(part) for part in parts]), np.array(
+        [_across(beam.tangent(part)) for part in parts]
+    )
+
+
+def _heights(beam: BeamSpec, pieces: int = STROKES) -> Array:
+    return np.array([beam.height_at(part) for part in _parts(pieces)])
+
+
+def _mass(beam: BeamSpec) -> float:
+    """Return the mass of a beam; Simpson's rule is exact for a section that tapers."""
+    start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
+    return beam.length * (start + 4.0 * middle + end) / 6.0
+
+
+def _across(tangent: Sequence[float]) -> Array:
+    """Return the unit vector to the left of a tangent."""
+    return np.array([-tangent[1], tangent[0]])
 
 
 def _line(colour: str, **style: Any) -> Any:
@@ -266,8 +369,3 @@ def _handle(segments: Array, colour: str = HELD) -> Any:
     marker = Outline(vertices, [Outline.MOVETO, Outline.LINETO] * len(segments))
     size = 13 * float(np.abs(vertices).max())  # matplotlib enlarges all markers to one size
     return _line(colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none")
-
-
-def _chain(points: Array) -> Array:
-    """Return the segments between neighbouring points."""
-    return np.stack([points[:-1], points[1:]], axis=1)

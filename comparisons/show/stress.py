@@ -36,7 +36,9 @@ def solid_panel(response: Response, scene: Scene, ks: list[int], title: str) -> 
 
 
 def beam_panel(response: Response, scene: Scene, ks: list[int], title: str) -> Panel:
-    """Return the beams' deformed shapes at the load parameters numbered `ks`, as ribbons of the beams' heights (`BeamSpec.rectangle_height`).
+    """Return the beams' deformed shapes at the load parameters numbered `ks`, as ribbons.
+
+    A ribbon has the height of the section, or of the rectangle with its area and second moment.
 
     ``sigma_x = N/A - M y/I``, ``tau = V/(2 I) (h^2/4 - y^2)``, ``sigma^2 = sigma_x^2 + 3 tau^2``.
     """
@@ -52,19 +54,20 @@ def _marks(response: Response, scene: Scene, k: int) -> dict[str, Any]:
 
 
 def _ribbon(response: Response, scene: Scene, beam: BeamSpec, k: int) -> Body:
-    height = beam.rectangle_height
-    area, inertia, _ = beam.cross_section
     arc, line = response.axis_line(beam.name, k)
+    sections = np.array([beam.section(part) for part in arc / beam.length])
+    area, inertia = sections[:, 0, None], sections[:, 1, None]
     tangent = np.gradient(line, axis=0)
     tangent /= np.hypot(*tangent.T)[:, None]
     normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-    N, V, M = _section_forces(response, scene, beam, k, arc)
-    y = np.linspace(-height / 2.0, height / 2.0, LAYERS + 1)
-    points = line[:, None, :] + y[None, :, None] * normal[:, None, :]
-    sigma = N[:, None] / area - M[:, None] * y / inertia
-    tau = V[:, None] * (height**2 / 4.0 - y**2) / (2.0 * inertia)
-    first = (np.arange(len(arc) - 1)[:, None] * len(y) + np.arange(LAYERS)).ravel()
-    quads = np.stack([first, first + len(y), first + len(y) + 1, first + 1], axis=1)
+    N, V, M = (values[:, None] for values in _section_forces(response, scene, beam, k, arc))
+    height = np.sqrt(12.0 * inertia / area)  # of the rectangle with this area and second moment
+    y = height * np.linspace(-0.5, 0.5, LAYERS + 1)
+    points = line[:, None, :] + y[:, :, None] * normal[:, None, :]
+    sigma = N / area - M * y / inertia
+    tau = V * (height**2 / 4.0 - y**2) / (2.0 * inertia)
+    first = (np.arange(len(arc) - 1)[:, None] * (LAYERS + 1) + np.arange(LAYERS)).ravel()
+    quads = np.stack([first, first + LAYERS + 1, first + LAYERS + 2, first + 1], axis=1)
     return points.reshape(-1, 2), quads, np.sqrt(sigma**2 + 3.0 * tau**2).ravel()
 
 

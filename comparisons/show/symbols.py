@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from comparisons.response import Array
 from comparisons.scene import Scene, SupportSpec
-from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.conditions import COMPONENTS, SpringSpec
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
@@ -81,9 +81,41 @@ def support_symbols(scene: Scene, size: float) -> list[Segments]:
     ]
 
 
-def inward(scene: Scene, support: SupportSpec) -> Array:
-    """Return the unit vector from a support into its beam."""
-    return np.array(scene.beam(support.beam).direction) * (1.0 if support.end == "start" else -1.0)
+def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
+    """Return the unit vector from a support or a spring into its beam."""
+    beam = scene.beam(support.beam)
+    return np.array(beam.tangent(0.0)) if support.end == "start" else -np.array(beam.tangent(1.0))
+
+
+def spring_symbol(component: str, away: Array) -> Segments:
+    """Return the segments of a spring against x, y or the rotation, with the ground on the side away from the beam.
+
+    Parameters
+    ----------
+    component : str
+        One of `COMPONENTS`.
+    away : ndarray, shape (2,)
+        Unit vector from the spring into its beam.
+    """
+    if component == "rotation":
+        angle = np.linspace(0.0, 4.0 * np.pi, 41)
+        spiral = (0.25 + 0.15 * angle / np.pi)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return chain(spiral)
+    coil = np.array(
+        [(0, 0), (0, -0.4), (0.4, -0.6), (-0.4, -1.0), (0.4, -1.4), (-0.4, -1.8), (0, -2.0), (0, -2.4)]
+    )
+    return turned(np.concatenate([chain(coil), _ground(-2.4, 0.7)]), _up((component,), away))
+
+
+def hinge_symbol() -> Segments:
+    """Return a small circle."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 17)
+    return chain(0.35 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+
+
+def chain(points: Array) -> Segments:
+    """Return the segments between neighbouring points."""
+    return np.stack([points[:-1], points[1:]], axis=1)
 
 
 def arc(turn: float, points: int = 25) -> Array:

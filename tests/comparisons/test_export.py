@@ -17,10 +17,11 @@ from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import load_scene
-from comparisons.show.export import CONTACTS, SUPPORTS, blocks, field_units, write_series
+from comparisons.scene import load_scene, read_scene
+from comparisons.show.export import CONTACTS, HINGES, SUPPORTS, blocks, field_units, write_series
 from comparisons.show.listing import digest, with_digests
 from comparisons.show.vtu import grid_text
+from tests.comparisons.show.specimen import SPECIMEN
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 
@@ -70,10 +71,31 @@ def test_the_page_names_the_fields() -> None:
     rows = re.findall(r"^\| ([^|]+) \|[^|]+\| (`displacement`[^|]+)\|$", page, re.MULTILINE)
     stated = {name.strip("`"): set(re.findall(r"`(\w+)`", fields)) for name, fields in rows}
     scene = replace(load_scene("ks-friction"), load_parameters=2)
+    hinged = read_scene(SPECIMEN, "specimen")
+    assert stated[HINGES] == set(blocks(solve(hinged, "tsm"), hinged, 0)[HINGES].point_data)
     for model in ("tsm", "solid"):
         found = blocks(solve(scene, model), scene, 0)
         assert stated[f"a beam's name, model `{model}"] == set(found["cantilever"].point_data)
         assert all(stated[name] == set(found[name].point_data) for name in (CONTACTS, SUPPORTS))
+
+
+def test_springs_and_hinges_are_points_with_their_forces(tmp_path: Path) -> None:
+    scene = read_scene(SPECIMEN, "specimen")
+    response = solve(scene, "tsm")
+    found = pyvista.read(write_series(tmp_path, response, scene)[-1])
+    assert found.keys() == ["hook", "flat", "link", CONTACTS, SUPPORTS, HINGES]
+    data = found[SUPPORTS].point_data
+    assert data["held"].tolist() == [[1, 1, 1], [1, 1, 1], [2, 0, 2]]
+    top = response.axis_line("link", len(response.load_parameter) - 1)[1][-1]
+    assert data["reaction_force"][2, :2] == pytest.approx([-3.5 * (top[0] - 140.0), 0.0])
+    for name in ("flat", "link"):
+        assert response.axis_line(name, 0)[1][0] == pytest.approx(
+            blocks(response, scene, 0)[HINGES].point_data["deformed"][0]
+        )
+    # the undeformed hook is an arc
+    radius = scene.beam("hook").length / 1.6
+    centre = np.array([50.0, -np.sqrt(radius**2 - 50.0**2)])
+    assert np.hypot(*(found["hook"].points[:, :2] - centre).T) == pytest.approx(radius, rel=1e-9)
 
 
 def test_a_load_parameter_has_named_blocks_with_units(tmp_path: Path) -> None:

@@ -14,11 +14,12 @@ from comparisons.files import writable_folder
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import OPEN, SLIPS, Grid, Response
-from comparisons.scene import built_in_scenes, load_scene
+from comparisons.scene import built_in_scenes, load_scene, read_scene
 from comparisons.show import render
 from comparisons.show.export import write_series
 from comparisons.show.view import Series, film, read_series, solved_series
 from comparisons.show.view.bodies import panel
+from tests.comparisons.show.specimen import SPECIMEN
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 Output = pytest.CaptureFixture[str]
@@ -114,6 +115,20 @@ def test_supports_forces_between_beams_and_their_states_are_drawn() -> None:
         OPEN
         in panel(solved_series(solve(replace(scene, pins=(still,)), "tsm"), scene, "t").blocks(0), "t").states
     )
+
+
+def test_a_curved_and_tapered_ribbon_has_the_heights_of_its_ends() -> None:
+    scene = read_scene(SPECIMEN, "specimen")
+    blocks = solved_series(solve(scene, "tsm"), scene, "t").blocks(0)
+    one = panel({"hook": blocks["hook"]}, "t")
+    sections = one.points.reshape(-1, 5, 2)
+    heights = np.hypot(*(sections[:, -1] - sections[:, 0]).T)
+    assert heights[[0, -1]] == pytest.approx([6.0, 2.0])
+    assert np.all(np.diff(heights) < 1e-9)
+    # the first section is clamped: across the tangent of the arc
+    across = sections[0, -1] - sections[0, 0]
+    assert across @ scene.beam("hook").tangent(0.0) == pytest.approx(0.0, abs=0.02)
+    assert len(panel(blocks, "t").supports) > len(one.supports) == 0
 
 
 def test_coarse_solids_and_rods_can_be_viewed(tmp_path: Path) -> None:

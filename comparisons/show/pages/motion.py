@@ -16,6 +16,8 @@ from comparisons.show.pages.page import Section
 
 POINTS = 61
 """Points of a deformed axis."""
+ARC = 25
+"""Points of an undeformed axis that is an arc."""
 DIGITS = 5
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
@@ -150,7 +152,10 @@ def motion_section(
     data = {
         "load_parameter": times,
         "length": {"unit": length, "beam": first.length},
-        "beams": [[*beam.start, *beam.end] for beam in scene.beams],
+        "beams": [
+            [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
+            for beam in scene.beams
+        ],
         "pins": [
             {"name": pin.name, "path": pin.points, "at": [pin.position(float(t)) for t in times]}
             for pin in scene.pins

@@ -63,7 +63,7 @@ function stroke(run) {
 // What all shapes, beams and pins need, with the shape of the drawing: height over width.
 function bounds(data) {
   const all = data.runs.flatMap((run) => run.lines.flat(2));
-  for (const beam of data.beams) all.push([beam[0], beam[1]], [beam[2], beam[3]]);
+  for (const beam of data.beams) all.push(...beam);
   for (const pin of data.pins) all.push(...pin.path);
   const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
   for (const [a, b] of all) {
@@ -89,7 +89,7 @@ function drawShapes(svg, data, wanted, k) {
   const [box, height] = equal(svg, wanted);
   const unit = data.length.unit;
   const at = axes(svg, box, height, { x: `x [${unit}]`, y: `y [${unit}]` }, short);
-  for (const [a, b, c, d] of data.beams) element(at.plot, "polyline", { class: "rest", points: points([[a, b], [c, d]], at) });
+  for (const beam of data.beams) element(at.plot, "polyline", { class: "rest", points: points(beam, at) });
   const lines = data.runs.find((run) => run.label === data.focus).lines;
   for (let part = 1; part <= OTHERS; part++) {
     for (const line of lines[Math.round((part * lines.length) / OTHERS) - 1] ?? []) {

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from comparisons.response import Array, Grid
-from comparisons.show.export import CONTACTS, SUPPORTS
+from comparisons.show.export import POINTS
 from comparisons.show.panel import Body, Panel, joined, marks
 from comparisons.show.stress import QUARTERS, solid_body
 
@@ -27,7 +27,7 @@ def panel(blocks: Mapping[str, Grid], title: str, factor: float = 1.0) -> Panel:
     factor : float
         Enlargement of the displacements.
     """
-    bodies = [grid for name, grid in blocks.items() if name not in (CONTACTS, SUPPORTS)]
+    bodies = [grid for name, grid in blocks.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in bodies]), axis=0).max())
     drawn = marks(blocks, size, factor)
     shapes = [
@@ -43,25 +43,26 @@ def panel(blocks: Mapping[str, Grid], title: str, factor: float = 1.0) -> Panel:
 def _ribbons(grid: Grid, size: float, factor: float) -> Body:
     """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
     data, ends = grid.point_data, grid.cells["line"]
-    undeformed = np.diff(grid.points[ends], axis=1)
+    straight = np.diff(grid.points[ends], axis=1)
     place = (data["deformed"] + (factor - 1.0) * data["displacement"])[ends]
     chord = np.diff(data["deformed"][ends], axis=1)
     if "rotation" in data:
-        angle = data["rotation"][ends] + np.arctan2(undeformed[..., 1], undeformed[..., 0])
-        tangent = np.hypot(*chord.T).T[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        before = _end_angles(np.arctan2(straight[:, 0, 1], straight[:, 0, 0]))
+        undeformed = np.hypot(*straight.T).T[..., None] * _unit(before)
+        tangent = np.hypot(*chord.T).T[..., None] * _unit(before + data["rotation"][ends])
     else:
-        tangent = np.repeat(chord, 2, axis=1)
+        undeformed, tangent = (np.repeat(vectors, 2, axis=1) for vectors in (straight, chord))
     tangent = tangent + (factor - 1.0) * (tangent - undeformed)
     u = np.linspace(0.0, 1.0, PARTS + 1)
     blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
     line = np.einsum("bu,ebx->eux", blends, np.concatenate([place, tangent], axis=1))
     between = np.stack([1 - u, u])
     section = np.einsum("bu,eb->eu", between, _angles(tangent))
-    normal = np.stack([-np.sin(section), np.cos(section)], axis=-1)
-    half = data.get("height", np.zeros(len(grid.points)))[ends[:, 0]] / 2.0
+    normal = _unit(section + np.pi / 2.0)
+    half = np.einsum("bu,eb->eu", between, data.get("height", np.zeros(len(grid.points)))[ends]) / 2.0
     half[half == 0.0] = THIN / 2.0 * size
     across = np.linspace(-1.0, 1.0, LAYERS + 1)
-    points = line[:, :, None] + half[:, None, None, None] * across[:, None] * normal[:, :, None]
+    points = line[:, :, None] + half[..., None, None] * across[:, None] * normal[:, :, None]
     right, left = (
         np.einsum("bu,eb->eu", between, data.get(name, np.zeros(len(grid.points)))[ends])
         for name in ("axial_stress_right", "axial_stress_left")
@@ -71,6 +72,20 @@ def _ribbons(grid: Grid, size: float, factor: float) -> Body:
     corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
     quads = np.stack(corners, axis=-1).reshape(-1, 4)
     return points.reshape(-1, 2), quads, stress.ravel()
+
+
+def _end_angles(chords: Array) -> Array:
+    """Return the angles of an undeformed axis at both ends of every line, shape (e, 2), from those of the lines of an arc."""
+    chords = np.unwrap(chords)
+    between = (chords[1:] + chords[:-1]) / 2.0
+    if not len(between):
+        return np.repeat(chords[:, None], 2, axis=1)
+    first, last = 2.0 * chords[0] - between[0], 2.0 * chords[-1] - between[-1]
+    return np.stack([np.append(first, between), np.append(between, last)], axis=1)
+
+
+def _unit(angles: Array) -> Array:
+    return np.stack([np.cos(angles), np.sin(angles)], axis=-1)
 
 
 def _angles(tangent: Array) -> Array:
