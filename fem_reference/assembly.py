@@ -1,47 +1,59 @@
-"""Internal force and tangent stiffness of the solid by batched matrix products."""
+"""Internal force and tangent stiffness of the solid by matrix products over all elements.
 
-from dataclasses import dataclass, replace
+All elements have the shape functions of one reference square. Displacements become gradients, stresses nodal forces and
+moduli stiffnesses by products with matrices of the square's shape functions, after a transformation at every point by the
+inverse Jacobian.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from fem_reference.arrays import Array, Floats, Ints
-from fem_reference.factor import Band, band_of
-from fem_reference.mesh import Discretisation
+from fem_reference.mesh import Discretisation, Points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pattern:
-    """Sparsity pattern of a stiffness matrix with the map from element matrices to its entries.
+    """Sparsity pattern of a symmetric stiffness matrix with the map from element stiffnesses to LAPACK's lower band storage.
 
     Parameters
     ----------
     scatter
-        Sparse matrix from all element entries, raveled ``(e, 2 k, 2 k)``, to the stored entries of the stiffness.
-    indices, indptr
-        Row indices and column pointers of the compressed columns.
-    band
-        Map from the entries to band storage.
+        Sparse matrix from all element entries, see `element_entries`, to the entries on and below the diagonal.
+    positions
+        Positions of these entries in the raveled band ``(m, width + 1)``, column after column.
+    size, width
+        Number of unknowns m, and number of diagonals below the main one.
     """
 
     scatter: csr_matrix
-    indices: Ints
-    indptr: Ints
-    band: Band
+    positions: Ints
+    size: int
+    width: int
+
+    def band(self, elements: Array) -> Array:
+        """Assemble element entries into the band ``(width + 1, m)`` of the stiffness, in Fortran order."""
+        flat = np.zeros(self.size * (self.width + 1), dtype=elements.dtype)
+        flat[self.positions] = self.scatter @ elements
+        return flat.reshape(self.size, self.width + 1).T
 
     def matrix(self, elements: Array) -> csc_matrix:
-        """Assemble element matrices ``(e, 2 k, 2 k)`` into the stiffness ``(m, m)``."""
-        m = self.indptr.size - 1
-        return csc_matrix((self.scatter @ elements.ravel(), self.indices, self.indptr), shape=(m, m))
+        """Assemble element entries into the stiffness ``(m, m)``."""
+        values, (column, below) = self.scatter @ elements, np.divmod(self.positions, self.width + 1)
+        lower = csc_matrix((values, (column + below, column)), shape=(self.size, self.size))
+        return csc_matrix(
+            lower + lower.T - csc_matrix((values * (below == 0), (column, column)), lower.shape)
+        )
 
-    def entries(self, matrix: csr_matrix) -> Floats:
-        """Entries of a matrix ``(m, m)`` whose pattern lies in this one, in the order of ``indices``."""
-        m = self.indptr.size - 1
-        keys = np.repeat(np.arange(m, dtype=np.int64), np.diff(self.indptr)) * m + self.indices
-        given = matrix.tocoo()
-        entries = np.zeros(keys.size)
-        entries[np.searchsorted(keys, given.col.astype(np.int64) * m + given.row)] = given.data
-        return entries
+    def band_of(self, matrix: csr_matrix) -> Floats:
+        """Band ``(width + 1, m)`` of a symmetric matrix ``(m, m)`` whose pattern lies in this one."""
+        band, entries = np.zeros((self.width + 1, self.size)), matrix.tocoo()
+        low = entries.row >= entries.col
+        band[(entries.row - entries.col)[low], entries.col[low]] = entries.data[low]
+        return band
 
 
 def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | None = None) -> Pattern:
@@ -51,92 +63,107 @@ def pattern(mesh: Discretisation, expansion: csr_matrix, added: csr_matrix | Non
     """
     size = expansion.shape[1]
     given = expansion.tocoo()
-    position, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
-    position[given.row], factor[given.row] = given.col, given.data
-    dofs = element_dofs(mesh)
-    local, sign = position[dofs], factor[dofs]
-    shape = (*local.shape, local.shape[1])
-    row = np.broadcast_to(local[:, :, None], shape).ravel()
-    column = np.broadcast_to(local[:, None, :], shape).ravel()
-    kept = np.flatnonzero((row >= 0) & (column >= 0))
-    entries = column[kept] * size + row[kept]
-    more = np.zeros(0, dtype=entries.dtype)
+    unknown, factor = np.full(expansion.shape[0], -1), np.zeros(expansion.shape[0])
+    unknown[given.row], factor[given.row] = given.col, given.data
+    dofs = (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
+    rows, columns = (
+        np.concatenate([dofs[:, local].ravel() for local in entries])
+        for entries in zip(*_entries(mesh.cells.shape[1]), strict=True)
+    )
+    kept = np.flatnonzero((unknown[rows] >= 0) & (unknown[columns] >= 0))
+    rows, columns = rows[kept], columns[kept]
+    factors = factor[rows] * factor[columns]
+    factors[(rows != columns) & (unknown[rows] == unknown[columns])] *= 2  # the entry and the transposed one
+    first, last = (order(unknown[rows], unknown[columns]) for order in (np.minimum, np.maximum))
     if added is not None:
-        rows, columns = added.nonzero()
-        more = columns.astype(entries.dtype) * size + rows
-    keys, slot = np.unique(np.concatenate([entries, more]), return_inverse=True)
-    slot = slot[: kept.size]
-    signs = (sign[:, :, None] * sign[:, None, :]).ravel()[kept]
-    indices: Ints = (keys % size).astype(np.int32)  # SuperLU takes 32 bits
-    indptr: Ints = np.concatenate([[0], np.cumsum(np.bincount(keys // size, minlength=size))]).astype(
-        np.int32
-    )
-    return Pattern(
-        scatter=csr_matrix((signs, (slot, kept)), shape=(keys.size, row.size)),
-        indices=indices,
-        indptr=indptr,
-        band=band_of(indices, indptr),
-    )
+        more = added.tocoo()
+        low = more.row >= more.col
+        first, last = np.append(first, more.col[low]), np.append(last, more.row[low])
+    width = int((last - first).max(initial=0))
+    positions, slots = np.unique(first.astype(np.int64) * (width + 1) + last - first, return_inverse=True)
+    scatter = csr_matrix((factors, (slots[: kept.size], kept)), shape=(positions.size, _count(mesh)))
+    return Pattern(scatter=scatter, positions=positions, size=size, width=width)
 
 
-def element_dofs(mesh: Discretisation) -> Ints:
-    """Degrees of freedom ``(e, 2 k)`` of the elements, local order ``2 a + i``."""
-    return (2 * mesh.cells[:, :, None] + np.arange(2)).reshape(len(mesh.cells), -1)
+def _entries(shapes: int) -> list[tuple[Ints, Ints]]:
+    """Local degrees of freedom ``2 a + i`` of the rows and columns in the three parts of `element_entries`."""
+    a, b = np.triu_indices(shapes)
+    row, column = (index.ravel() for index in np.indices((shapes, shapes)))
+    return [(2 * a, 2 * b), (2 * a + 1, 2 * b + 1), (2 * row, 2 * column + 1)]
 
 
-def deformation_gradient(mesh: Discretisation, u: Array, gradients: Floats | None = None) -> Array:
+def _count(mesh: Discretisation) -> int:
+    """Number of all element entries."""
+    elements, shapes = mesh.cells.shape
+    return int(elements * shapes * (2 * shapes + 1))
+
+
+def deformation_gradient(mesh: Discretisation, u: Array, points: Points | None = None) -> Array:
     """``F = I + du/dX`` at the quadrature points, ``(2, 2, e, q)``, from nodal displacements ``u`` ``(n, 2)``.
 
-    With ``gradients`` such as ``mesh.nodal_gradients``, F is evaluated at their points instead.
+    With ``points`` such as ``mesh.at_nodes``, F is evaluated there instead.
     """
-    G = mesh.gradients if gradients is None else gradients
-    elements, rows, _ = G.shape
-    H = (G @ u[mesh.cells]).reshape(elements, 2, rows // 2, 2).transpose(3, 1, 0, 2)
-    return np.eye(2)[:, :, None, None] + H
+    at = mesh.gauss if points is None else points
+    elements, shapes = mesh.cells.shape
+    nodal = u.T.take(mesh.cells, axis=1)
+    nodal -= nodal[:, :, :1]  # leaves the gradient, and less round-off in it
+    H = (nodal.reshape(-1, shapes) @ at.slopes.reshape(-1, shapes).T).reshape(2, elements, 2, -1)
+    F = np.empty((2, 2, elements, H.shape[3]), dtype=u.dtype)
+    for i in range(2):
+        for j in range(2):
+            F[i, j] = at.transformed(H[i].swapaxes(0, 1), j)
+        F[i, i] += 1
+    return F
 
 
 def internal_force(mesh: Discretisation, P: Array) -> Array:
     """Internal nodal forces ``(n, 2)``, the integral of ``P . dN/dX``, from stresses ``P`` ``(2, 2, e, q)``."""
-    elements = len(mesh.cells)
-    weighted = (P * mesh.weights).transpose(2, 1, 3, 0).reshape(elements, -1, 2)
-    forces = mesh.gradients.transpose(0, 2, 1) @ weighted
-    total: Array = mesh.gather @ forces.reshape(-1, 2)
+    elements, shapes = mesh.cells.shape
+    pulled = np.empty((2, elements, 2, P.shape[3]), dtype=P.dtype)
+    for i in range(2):
+        weighted = P[i] * mesh.weights
+        for k in range(2):
+            pulled[i, :, k] = mesh.gauss.pulled_back(weighted, k)
+    forces = pulled.reshape(2 * elements, -1) @ mesh.gauss.slopes.reshape(-1, shapes)
+    total: Array = mesh.gather @ forces.reshape(2, -1).T
     return total
 
 
-def element_tangents(mesh: Discretisation, A: Array, out: Array | None = None) -> Array:
-    """Element stiffnesses ``(e, 2 k, 2 k)``, the integral of ``dN/dX . A . dN/dX``, from ``A`` ``(2, 2, 2, 2, e, q)``.
+def element_entries(mesh: Discretisation, moduli: Callable[[Array], Array], u: Array) -> Array:
+    """Entries of all element stiffnesses, the integral of ``dN/dX . A . dN/dX``, in one array.
 
-    A has major symmetry, so that three of the four blocks of components are computed. ``out`` receives the result.
+    ``moduli`` returns ``A = dP/dF`` ``(2, 2, 2, 2, e, q)`` for ``F`` ``(2, 2, e, q)``. A has major symmetry. The array has three
+    parts: the block of the first component of the shape functions a <= b, ``(e, k (k + 1) / 2)``; the same block of the second
+    component; the block of both components for all shape functions, ``(e, k k)``.
     """
-    elements, rows, shapes = mesh.gradients.shape
-    G = mesh.gradients.reshape(elements, 2, rows // 2, shapes)
-    weighted = (A * mesh.weights)[..., None]
-    inner = np.empty((elements, 2, rows // 2, 3, shapes), dtype=A.dtype)
-    for block, (i, k) in enumerate(((0, 0), (0, 1), (1, 1))):
-        for j in range(2):
-            np.multiply(weighted[i, j, k, 0], G[:, 0], out=inner[:, j, :, block])
-            inner[:, j, :, block] += weighted[i, j, k, 1] * G[:, 1]
-    blocks = mesh.gradients.transpose(0, 2, 1) @ inner.reshape(elements, rows, 3 * shapes)
-    blocks = blocks.reshape(elements, shapes, 3, shapes)
-    size = (elements, 2 * shapes, 2 * shapes)
-    filled = np.empty(size, dtype=A.dtype) if out is None else out
-    tangents = filled.reshape(elements, shapes, 2, shapes, 2)
-    tangents[:, :, 0, :, 0], tangents[:, :, 1, :, 1] = blocks[:, :, 0], blocks[:, :, 2]
-    tangents[:, :, 0, :, 1], tangents[:, :, 1, :, 0] = blocks[:, :, 1], blocks[:, :, 1].swapaxes(1, 2)
-    return filled
+    elements, shapes = mesh.cells.shape
+    half = shapes * (shapes + 1) // 2
+    entries = np.empty(_count(mesh), dtype=u.dtype)
+    same = entries[: 2 * elements * half].reshape(2, elements, half)
+    mixed = entries[2 * elements * half :].reshape(elements, -1)
+    start = 0
+    for part in mesh.batches:
+        stop = start + len(part.cells)
+        A = moduli(deformation_gradient(part, u))
+        for i in range(2):
+            np.matmul(_pulled_back(part, A[i, :, i], _UPPER), mesh.products[0], out=same[i, start:stop])
+        np.matmul(_pulled_back(part, A[0, :, 1], _ALL), mesh.products[1], out=mixed[start:stop])
+        start = stop
+    return entries
 
 
-def batches(mesh: Discretisation) -> tuple[Discretisation, ...]:
-    """Split the elements into batches whose arrays fit into the processor's cache."""
-    count = -(-len(mesh.cells) // _BATCH)
-    return tuple(
-        replace(mesh, cells=cells, gradients=gradients, weights=weights)
-        for cells, gradients, weights in zip(
-            *(np.array_split(field, count) for field in (mesh.cells, mesh.gradients, mesh.weights)),
-            strict=True,
-        )
-    )
+_UPPER, _ALL = ((0, 0), (0, 1), (1, 1)), ((0, 0), (0, 1), (1, 0), (1, 1))
 
 
-_BATCH = 256
+def _pulled_back(mesh: Discretisation, block: Array, components: tuple[tuple[int, int], ...]) -> Array:
+    """Weighted ``components`` of a block ``A_jl`` ``(2, 2, e, q)`` on the reference square, ``(e, c q)``."""
+    at, (elements, q) = mesh.gauss, mesh.weights.shape
+    pulled = np.empty((elements, len(components), q), dtype=block.dtype)
+    for number, (first, second) in enumerate(components):
+        if at.aligned:
+            factor = mesh.weights * at.inverse[first, first] * at.inverse[second, second]
+            np.multiply(block[first, second], factor, out=pulled[:, number])
+        else:
+            sides = [at.pulled_back(block[:, side], first) for side in range(2)]
+            pulled[:, number] = mesh.weights * at.pulled_back(sides, second)
+    return pulled.reshape(elements, -1)

@@ -8,13 +8,13 @@ from scipy.sparse import csc_matrix, csr_matrix
 from fem_reference.arrays import Array, Floats
 from fem_reference.assembly import (
     Pattern,
-    batches,
     deformation_gradient,
-    element_tangents,
+    element_entries,
     internal_force,
     pattern,
 )
 from fem_reference.end_section import anchor
+from fem_reference.factor import Factor, factorise
 from fem_reference.material import Law, elastic_law
 from fem_reference.mesh import Discretisation, structured_mesh
 from fem_reference.strip import Strip
@@ -33,8 +33,6 @@ class Body:
         Input data of the strip.
     mesh
         Discretisation of the strip.
-    batches
-        The discretisation split into batches of elements.
     law
         Material law.
     expansion
@@ -42,7 +40,7 @@ class Body:
     stiffness
         Sparsity pattern of the stiffness over the unknowns.
     anchor
-        Entries in this pattern of springs on the start's section, which make a strip without a clamp regular. They are
+        Band of springs on the start's section, ``(width + 1, m)``, which make a strip without a clamp regular. They are
         part of the factorised matrix only: `fem_reference.tangent` subtracts them again. None for a clamped strip.
     round_off
         Round-off of a nodal force [N], see `force_round_off`.
@@ -50,7 +48,6 @@ class Body:
 
     strip: Strip
     mesh: Discretisation
-    batches: tuple[Discretisation, ...]
     law: Law
     expansion: csr_matrix
     stiffness: Pattern
@@ -73,13 +70,19 @@ class Body:
 
     def tangent(self, u: Array) -> csc_matrix:
         """Tangent stiffness over the unknowns."""
-        size = 2 * self.mesh.cells.shape[1]
-        elements, start = np.empty((len(self.mesh.cells), size, size), dtype=u.dtype), 0
-        for part in self.batches:
-            A = self.law.tangent(deformation_gradient(part, u))
-            element_tangents(part, A, out=elements[start : start + len(part.cells)])
-            start += len(part.cells)
-        return self.stiffness.matrix(elements)
+        return self.stiffness.matrix(element_entries(self.mesh, self.law.tangent, u))
+
+    def factorised(self, u: Floats) -> Factor | None:
+        """Factorised tangent stiffness with the anchor; None if it is singular or not finite."""
+        entries = element_entries(self.mesh, self.law.tangent, u)
+
+        def band() -> Floats:
+            K = self.stiffness.band(entries)
+            if self.anchor is not None:
+                K += self.anchor
+            return K
+
+        return factorise(band) if np.all(np.isfinite(entries)) else None
 
     def strain_energy(self, u: Array) -> float:
         """Strain energy [J]."""
@@ -106,11 +109,10 @@ def build_body(strip: Strip) -> Body:
     return Body(
         strip=strip,
         mesh=mesh,
-        batches=batches(mesh),
         law=law,
         expansion=expansion,
         stiffness=stiffness,
-        anchor=None if springs is None else stiffness.entries(springs),
+        anchor=None if springs is None else stiffness.band_of(springs),
         round_off=force_round_off(strip, mesh, law),
     )
 

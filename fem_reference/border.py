@@ -1,10 +1,10 @@
 """Curvatures and constraints of a state: those of closed contacts, ties, dead moments and anchors."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.end_section import COLUMNS, ROTATION
@@ -43,7 +43,7 @@ class Border:
     @cached_property
     def A(self) -> Floats:
         """Curvatures ``(k, k)``: the Hessian without constraints is ``K - U A U^T``."""
-        return np.asarray(block_diag(*self.blocks)) if self.blocks else np.zeros((0, 0))
+        return block_diagonal(self.blocks)
 
     def of_contacts(self, chosen: list[bool]) -> "Border":
         """Border with the contacts ``chosen`` among the closed ones, and all ties."""
@@ -61,6 +61,15 @@ class Border:
             coupling=self.coupling[np.ix_(kept, kept)],
             removed=self.removed[kept],
         )
+
+
+def block_diagonal(blocks: Sequence[Floats]) -> Floats:
+    """Matrix with square blocks on its diagonal."""
+    ends = np.cumsum([0, *(len(block) for block in blocks)])
+    matrix = np.zeros((ends[-1], ends[-1]))
+    for block, first, last in zip(blocks, ends[:-1], ends[1:], strict=True):
+        matrix[first:last, first:last] = block
+    return matrix
 
 
 def build_border(model: Model, state: State) -> Border:

@@ -23,6 +23,7 @@ augmented Lagrangian step replaces lam by ``lam - lam_0`` in the second term; la
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -51,15 +52,20 @@ class Carrier:
     rows: csr_matrix
     frame: Floats
 
+    @cached_property
+    def transposed(self) -> csr_matrix:
+        """Transposed weights ``(n, m)``."""
+        return csr_matrix(self.rows.T)
+
     def points(self, u: Array) -> Array:
         """Positions ``(m, 2)`` at the nodal displacements ``u`` ``(n, 2)``."""
         positions: Array = self.reference + (self.rows @ u) @ self.frame.T
         return positions
 
-    def nodal_forces(self, weights: Array, force: Array) -> Array:
-        """Nodal forces ``(n, 2)`` of a global ``force`` ``(2,)`` that acts on the points with ``weights`` ``(m,)``."""
-        forces: Array = np.multiply.outer(self.rows.T @ weights, force @ self.frame)
-        return forces
+    def nodal_forces(self, weights: Array, forces: Array) -> Array:
+        """Nodal forces ``(n, 2, c)`` of global ``forces`` ``(c, 2)`` that act on the points with ``weights`` ``(c, m)``."""
+        nodal: Array = (self.transposed @ weights.T)[:, None] * (forces @ self.frame).T
+        return nodal
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,17 +132,11 @@ class Pair:
             ``d2g/du2 = U H U^T`` [1/m]; the first row and column vanish.
         """
         s, d = self.contact.sign, -projection.distance
-        first = self._relative_forces(projection, -s * projection.normal)
-        second = self._relative_forces(projection, projection.tangent)
-        U = np.stack(
-            [first, second, self.carrier.nodal_forces(projection.basis[1], projection.normal)], axis=-1
-        )
+        directions = np.stack([-s * projection.normal, projection.tangent, projection.normal])
+        U = self.carrier.nodal_forces(projection.basis[[0, 0, 1]], directions)
+        if isinstance(self.node, Carrier):
+            U[..., :2] -= self.node.nodal_forces(np.ones((2, 1)), directions[:2])
         H = np.array(
             [[0.0, 0.0, 0.0], [0.0, projection.bend, -projection.stretch], [0.0, -projection.stretch, -d]]
         )
         return U.reshape(-1, 3), -s * H / (projection.stretch**2 + d * projection.bend)
-
-    def _relative_forces(self, projection: Projection, force: Array) -> Array:
-        """Nodal forces ``W^T force`` ``(n, 2)``: ``force`` on the curve and, if the node is an end, ``-force`` on it."""
-        forces = self.carrier.nodal_forces(projection.basis[0], force)
-        return forces if isinstance(self.node, Pin) else forces - self.node.nodal_forces(np.ones(1), force)

@@ -201,7 +201,7 @@ def _displacement_controlled(
     """
     state = guess
     for _ in range(settings.max_iterations):
-        R = model.expansion.T @ residual(model, state).ravel()
+        R = model.restriction @ residual(model, state).ravel()
         status, _ = check_convergence(model, state, R, settings)
         missing = delta - float(np.sum(c * (state.u - origin)))
         if status is Status.CONVERGED and abs(missing) <= displacement_tolerance(model, settings):

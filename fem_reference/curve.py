@@ -7,6 +7,7 @@ of the axis rotate the normal by up to ``F / (G A_e)``, depending on the positio
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,17 @@ from fem_reference.strip import Strip
 _PROJECTION_STEPS = 40
 _HALF_BAND, _WINDOW = 45, 256
 """Half bandwidth and window size of `band_slopes`, in stations."""
+
+
+_HERMITE = np.array(
+    [
+        [[1, 0, -3, 2], [0, 0, 3, -2], [0, 1, -2, 1], [0, 0, -1, 1]],
+        [[0, -6, 6, 0], [0, 6, -6, 0], [1, -4, 3, 0], [0, -2, 3, 0]],
+        [[-6, 12, 0, 0], [6, -12, 0, 0], [-4, 6, 0, 0], [-2, 6, 0, 0]],
+    ],
+    dtype=float,
+).reshape(12, 4)
+"""Coefficients of the powers of z in Hermite's cubic polynomials of [0, 1] and their first two derivatives."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,9 +59,8 @@ class ContactCurve:
 
     def basis(self, zeta: Any) -> Array:  # a float, or complex for a complex step
         """Averaged cardinal splines and their first two derivatives at ``zeta``, ``(3, m)``."""
-        s, points = self.stations, zeta + self.offsets
-        k, hermite = self._pieces(points)
-        weighted = hermite * self.kernel
+        s = self.stations
+        k, weighted = self.pieces(zeta + self.offsets)
         first, count = int(k.min()), int(np.ptp(k)) + 2
         ones = np.eye(count)
         left, right = ones[k - first], ones[k - first + 1]
@@ -60,32 +71,45 @@ class ContactCurve:
         shifted[:, :bandwidth] = self.slopes[first : first + count]
         # In this view of the padded array each row begins one column further to the right.
         rows = shifted.ravel()[:-count].reshape(count, count + bandwidth - 1)
-        padded = np.zeros((3, s.size + 2 * half), dtype=hermite.dtype)
+        padded = np.zeros((3, s.size + 2 * half), dtype=weighted.dtype)
         padded[:, first : first + count + bandwidth - 1] = slopes @ rows
         padded[:, half + first : half + first + count] += values
         return padded[:, half : half + s.size]
 
-    def _pieces(self, zeta: Array) -> tuple[Ints, Array]:
-        """Spline intervals that contain the points ``zeta`` ``(q,)``, and Hermite's polynomials there, ``(3, 4, q)``.
+    @cached_property
+    def spline(self) -> csr_matrix:
+        """Matrix ``(m, m)`` from the points to the slopes of their spline at the stations [1/m]."""
+        m, half = self.stations.size, self.slopes.shape[1] // 2
+        row = np.repeat(np.arange(m), self.slopes.shape[1]).reshape(self.slopes.shape)
+        column = row + np.arange(self.slopes.shape[1]) - half
+        inside = (column >= 0) & (column < m)
+        return csr_matrix((self.slopes[inside], (row[inside], column[inside])), shape=(m, m))
+
+    def pieces(self, zeta: Array) -> tuple[Ints, Array]:
+        """Spline intervals that contain the points ``zeta`` ``(q,)``, and Hermite's polynomials there, times the kernel, ``(3, 4, q)``.
 
         Rows: value, first and second derivative. Columns: factors of ``X_k``, ``X_k+1`` and the slopes at k and k + 1. Beyond
         the ends the spline is continued along its tangents.
         """
-        s = self.stations
-        inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
-        k = np.clip(np.searchsorted(s, inner.real) - 1, 0, s.size - 2)
+        s, inner = self.stations, zeta
+        leaves = bool(zeta[0].real < s[0] or zeta[-1].real > s[-1])  # the offsets increase
+        if leaves:
+            inner = np.where(zeta.real < s[0], s[0], np.where(zeta.real > s[-1], s[-1], zeta))
+        k = np.minimum(np.maximum(np.searchsorted(s, inner.real) - 1, 0), s.size - 2)
         h = s[k + 1] - s[k]
         z = (inner - s[k]) / h
-        hermite = np.array(
-            [
-                [(1 + 2 * z) * (1 - z) ** 2, z**2 * (3 - 2 * z), h * z * (1 - z) ** 2, h * z**2 * (z - 1)],
-                [6 * z * (z - 1) / h, 6 * z * (1 - z) / h, (1 - z) * (1 - 3 * z), z * (3 * z - 2)],
-                [(12 * z - 6) / h**2, (6 - 12 * z) / h**2, (6 * z - 4) / h, (6 * z - 2) / h],
-            ]
-        )
-        beyond = zeta - inner
-        hermite[0] += beyond * hermite[1]
-        hermite[2] *= beyond == 0
+        powers = np.empty((4, z.size), dtype=z.dtype)
+        powers[0], powers[1] = self.kernel, self.kernel * z
+        powers[2] = powers[1] * z
+        powers[3] = powers[2] * z
+        hermite = (_HERMITE @ powers).reshape(3, 4, -1)
+        hermite[:, 2:] *= h
+        hermite[1:] /= h
+        hermite[2] /= h
+        if leaves:
+            beyond = zeta - inner
+            hermite[0] += beyond * hermite[1]
+            hermite[2] *= beyond == 0
         return k, hermite
 
 
@@ -184,22 +208,21 @@ class Projection:
 
 def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
     """Project a point on the curve whose points have the positions ``X`` ``(m, 2)``."""
-    s = curve.stations
-    zeta, stationary = closest(curve, X, point)
-    B = curve.basis(zeta)
-    r, r1, r2 = B @ X
+    s, from_point = curve.stations, CurveFrom(curve=curve, points=X - point)
+    zeta, stationary = closest(from_point)
+    r, r1, r2 = from_point.at(zeta)
     stretch = np.sqrt(r1 @ r1)
     tangent = r1 / stretch
     normal = np.array([-tangent[1], tangent[0]])
-    end = X[0] if 2 * np.real(zeta) < s[0] + s[-1] else X[-1]
+    end = from_point.points[0 if 2 * np.real(zeta) < s[0] + s[-1] else -1]
     slack = 1e-12 * (s[-1] - s[0])  # round-off must not place a point at an end beyond it
     return Projection(
         zeta=zeta,
         inside=bool(s[0] - slack <= np.real(zeta) <= s[-1] + slack),
         stationary=stationary,
-        distance=normal @ (point - r),
-        end_distance=np.sqrt((end - point) @ (end - point)),
-        basis=B,
+        distance=-normal @ r,
+        end_distance=np.sqrt(end @ end),
+        basis=curve.basis(zeta),
         tangent=tangent,
         normal=normal,
         stretch=stretch,
@@ -208,22 +231,56 @@ def project(curve: ContactCurve, X: Array, point: Array) -> Projection:
     )
 
 
-def closest(curve: ContactCurve, X: Array, point: Array) -> tuple[Any, bool]:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CurveFrom:
+    """The curve relative to a point, which loses no digits near the point.
+
+    Parameters
+    ----------
+    curve
+        The contact curve.
+    points
+        Its points less the point ``(m, 2)`` [m].
+    """
+
+    curve: ContactCurve
+    points: Array
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """Slopes ``(m, 2)`` of the spline through the points at the stations."""
+        slopes: Array = self.curve.spline @ self.points
+        return slopes
+
+    def at(self, zeta: Any) -> Array:
+        """Position and first two derivatives ``(3, 2)`` at ``zeta``."""
+        k, factors = self.curve.pieces(zeta + self.curve.offsets)
+        X, D = self.points, self._slopes
+        return np.asarray(factors.reshape(3, -1) @ np.concatenate([X[k], X[k + 1], D[k], D[k + 1]]))
+
+    def orthogonality(self, zeta: Any) -> tuple[Any, Any, Any]:
+        """Return ``r . r'``, its slope ``r' . r' + r . r''`` and ``r' . r'``."""
+        r, r1, r2 = self.at(zeta)
+        size = r1 @ r1
+        return r @ r1, size + r @ r2, size
+
+
+def closest(curve: CurveFrom) -> tuple[Any, bool]:
     """Coordinate of the closest point by Newton's method from the closest station, and whether it is stationary.
 
     The curve is continued by one spacing beyond its ends, so that a point beyond an end still has a projection. Near a
     centre of curvature the root is searched between the neighbouring stations.
     """
-    s = curve.stations
+    s, X = curve.curve.stations, curve.points
     low, high = 2 * s[0] - s[1], 2 * s[-1] - s[-2]
-    k = int(np.argmin(((X - point).real ** 2).sum(axis=1)))
+    k = int(np.argmin((X.real**2).sum(axis=1)))
     zeta, bracket_tried = s[k] + 0 * X[0, 0], False
     for _ in range(_PROJECTION_STEPS):
-        value, slope, size = _orthogonality(curve, X, point, zeta)
+        value, slope, size = curve.orthogonality(zeta)
         # Near and beyond the centre of curvature: a bracketed root, otherwise a Gauss-Newton step.
         if slope.real <= 0.1 * size.real:
             if not bracket_tried:
-                bracket_tried, root = True, _bracketed_root(curve, X, point, k)
+                bracket_tried, root = True, _bracketed_root(curve, k)
                 if root is not None:
                     return root, True
             slope = size
@@ -236,23 +293,17 @@ def closest(curve: ContactCurve, X: Array, point: Array) -> tuple[Any, bool]:
     return zeta, False
 
 
-def _orthogonality(curve: ContactCurve, X: Array, point: Array, zeta: Any) -> tuple[Any, Any, Any]:
-    """Return ``(r - x_c) . r'``, its slope ``r' . r' + (r - x_c) . r''`` and ``r' . r'``."""
-    r, r1, r2 = curve.basis(zeta) @ X
-    size = r1 @ r1
-    return (r - point) @ r1, size + (r - point) @ r2, size
-
-
-def _bracketed_root(curve: ContactCurve, X: Array, point: Array, k: int) -> Any | None:
+def _bracketed_root(curve: CurveFrom, k: int) -> Any | None:
     """Closest point between the neighbours of station k by bracketed Newton iteration; None without a sign change."""
-    s = np.concatenate([[2 * curve.stations[0] - curve.stations[1]], curve.stations])
+    stations = curve.curve.stations
+    s = np.concatenate([[2 * stations[0] - stations[1]], stations])
     s = np.append(s, 2 * s[-1] - s[-2])
     low, high = float(s[k]), float(s[k + 2])
-    if _orthogonality(curve, X, point, low)[0].real > 0 or _orthogonality(curve, X, point, high)[0].real < 0:
+    if curve.orthogonality(low)[0].real > 0 or curve.orthogonality(high)[0].real < 0:
         return None
     zeta = float(s[k + 1])
     for _ in range(_PROJECTION_STEPS):
-        value, slope, size = (term.real for term in _orthogonality(curve, X, point, zeta))
+        value, slope, size = (term.real for term in curve.orthogonality(zeta))
         low, high = (low, zeta) if value > 0 else (zeta, high)
         following = zeta - value / slope if slope > 0 else np.inf
         if not low < following < high:
@@ -262,5 +313,5 @@ def _bracketed_root(curve: ContactCurve, X: Array, point: Array, k: int) -> Any 
         if done:
             break
     # One complex Newton step carries the derivative of a complex-step check.
-    value, slope, _ = _orthogonality(curve, X, point, zeta + 0 * X[0, 0])
-    return zeta - value / slope if np.iscomplexobj(X) else zeta
+    value, slope, _ = curve.orthogonality(zeta + 0 * curve.points[0, 0])
+    return zeta - value / slope if np.iscomplexobj(curve.points) else zeta

@@ -1,111 +1,189 @@
 """Factorisation of a body's tangent stiffness, and the number of its negative eigenvalues.
 
-A banded Cholesky factorisation succeeds if and only if all eigenvalues are positive. If it fails, the signs of the pivots of
-``K = L D L^T`` give the number of negative eigenvalues (Sylvester's law of inertia). Pivots of a factorisation whose
-entries grow are unreliable; then the eigenvalues themselves are counted.
+The stiffness is a symmetric band matrix. If all its eigenvalues are positive, it is factorised by Cholesky's method.
+Otherwise ``K = L J L^T`` with signs J on the diagonal: where Cholesky's method meets a pivot that is not positive, the column is
+divided by the root of its absolute value, and the method goes on behind it. The number of negative signs is the number of
+negative eigenvalues (Sylvester's law of inertia). The pivots are not exchanged. If the factors grow, they are inaccurate: then the
+matrix is factorised with row exchanges, and the eigenvalues themselves are counted.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigvals_banded
-from scipy.linalg.lapack import dpbtrf, dpbtrs
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
+from scipy.linalg import eigvals_banded, solve_triangular
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dtbtrs
 
-from fem_reference.arrays import Floats, Ints
+from fem_reference.arrays import Floats
 
 _GROWTH = 1e3
-"""Largest ratio of the row sums of ``|L| |D L^T|`` and ``|K|`` at which the signs of the pivots are used."""
+"""Largest ratio of the row sums of ``|L| |L^T|`` and ``|K|`` at which the factors without row exchanges are used."""
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Band:
-    """Positions of the entries of a symmetric sparse matrix in LAPACK's lower band storage.
-
-    Parameters
-    ----------
-    entries
-        Indices of the entries on and below the diagonal in the compressed-column data.
-    positions
-        Positions of these entries in the raveled band ``(m, width + 1)``, column after column.
-    width
-        Number of diagonals below the main one.
-    """
-
-    entries: Ints
-    positions: Ints
-    width: int
-
-    def fill(self, K: csc_matrix) -> Floats:
-        """Return a matrix in band storage, ``(width + 1, m)``, in Fortran order."""
-        flat = np.zeros(K.shape[0] * (self.width + 1))
-        flat[self.positions] = K.data[self.entries]
-        return flat.reshape(K.shape[0], self.width + 1).T
+_COLUMNS = 8
+"""Number of columns, over the number of diagonals, that are factored at once where a pivot is not positive."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Factor:
-    """A factorised symmetric matrix.
+    """A factorised symmetric matrix K. A solution is found in two halves.
 
     Parameters
     ----------
-    solve
-        Solution of ``K x = b`` for ``b`` ``(m,)`` or ``(m, c)``.
+    half
+        First half ``h(b)`` of the solution for ``b`` ``(m,)`` or ``(m, c)``: ``L^-1 b``, or b itself after row exchanges.
+    rest
+        Second half: ``K^-1 b`` from ``h(b)``.
+    product
+        ``a^T K^-1 b`` from ``h(a)`` and ``h(b)``.
     negatives
         Function that returns the number of negative eigenvalues.
     """
 
-    solve: Callable[[Floats], Floats]
+    half: Callable[[Floats], Floats]
+    rest: Callable[[Floats], Floats]
+    product: Callable[[Floats, Floats], Floats]
     negatives: Callable[[], int]
 
-
-def band_of(indices: Ints, indptr: Ints) -> Band:
-    """Return the band of a sparsity pattern in compressed columns."""
-    column = np.repeat(np.arange(indptr.size - 1), np.diff(indptr))
-    entries = np.flatnonzero(indices >= column)
-    below = indices[entries] - column[entries]
-    width = int(below.max(initial=0))
-    positions = column[entries].astype(np.int64) * (width + 1) + below
-    return Band(entries=entries, positions=positions, width=width)
+    def solve(self, right: Floats) -> Floats:
+        """Solution of ``K x = b`` for ``b`` ``(m,)`` or ``(m, c)``."""
+        return self.rest(self.half(right))
 
 
-def factorise(K: csc_matrix, band: Band) -> Factor | None:
-    """Factorise a symmetric matrix; None if it is singular."""
-    lower, failed = dpbtrf(band.fill(K), lower=1, overwrite_ab=1)
+def factorise(matrix: Callable[[], Floats]) -> Factor | None:
+    """Factorise a symmetric matrix; None if it is singular.
+
+    ``matrix`` returns the matrix in lower band storage ``(width + 1, m)``, in Fortran order, as a new array in every call.
+    """
+    return _definite(matrix()) or _indefinite(matrix()) or _with_row_exchanges(matrix())
+
+
+def _definite(band: Floats) -> Factor | None:
+    """Factorise and overwrite a positive definite matrix; None if it is not."""
+    lower, failed = dpbtrf(band, lower=1, overwrite_ab=1)
     if failed:
-        return _indefinite(K, band)
+        return None
+    return Factor(
+        half=lambda right: _triangular(lower, right),
+        rest=lambda half: _triangular(lower, half, transposed=True),
+        product=lambda a, b: np.asarray(a.T @ b),
+        negatives=lambda: 0,
+    )
+
+
+def _triangular(lower: Floats, right: Floats, *, transposed: bool = False) -> Floats:
+    """Solve ``L x = b`` or ``L^T x = b``."""
+    solution, _ = dtbtrs(lower, right, uplo="L", trans="T" if transposed else "N")
+    return np.asarray(solution).reshape(right.shape)
+
+
+def _indefinite(lower: Floats) -> Factor | None:
+    """Factorise and overwrite a symmetric matrix; None if the factors without row exchanges are inaccurate."""
+    size = _largest_row_sum(lower)
+    signs = _signed_cholesky(lower)
+    if signs is None or _grown(lower) > _GROWTH * size:
+        return None
+    return Factor(
+        half=lambda right: _triangular(lower, right),
+        rest=lambda half: _triangular(lower, (signs * half.T).T, transposed=True),
+        product=lambda a, b: np.asarray((signs * a.T) @ b),
+        negatives=lambda: int((signs < 0).sum()),
+    )
+
+
+def _signed_cholesky(lower: Floats) -> Floats | None:
+    """Overwrite a matrix ``L J L^T`` by its factor L, both in band storage; return the diagonal ``(m,)`` of J.
+
+    None where a pivot vanishes.
+    """
+    m, start = lower.shape[1], 0
+    signs = np.ones(m)
+    while start < m:
+        stop = min(start + _COLUMNS * len(lower), m)
+        part, failed = dpbtrf(lower[:, start:stop], lower=1)
+        if failed:
+            stop = start + failed - 1
+            part = dpbtrf(lower[:, start:stop], lower=1)[0] if failed > 1 else lower[:, start:stop]
+        lower[:, start:stop] = part
+        pivot = _continue_behind(lower, start, stop, pivot=failed > 0)
+        if failed and (pivot == 0 or not np.isfinite(pivot)):
+            return None
+        if failed:
+            signs[stop] = np.sign(pivot)
+        start = stop + (failed > 0)
+    return signs
+
+
+def _continue_behind(lower: Floats, start: int, stop: int, *, pivot: bool) -> float:
+    """Subtract the factored columns ``start`` to ``stop`` from the rows behind them.
+
+    With ``pivot`` the column ``stop`` is factored and subtracted too. The value of its pivot is returned.
+    """
+    width, m = lower.shape[0] - 1, lower.shape[1]
+    first, end = max(start, stop - width), min(stop + width + 1, m)
+    window, own, value = _dense(lower, first, end), stop - first, 0.0
+    if own:
+        behind = solve_triangular(window[:own, :own], window[own:, :own].T, lower=True).T
+        window[own:, :own] = behind
+        window[own:, own:] -= behind @ behind.T
+    if pivot:
+        value = float(window[own, own])
+        if value != 0:
+            window[own:, own] *= np.sign(value) / np.sqrt(abs(value))
+        column = window[own + 1 :, own]
+        window[own + 1 :, own + 1 :] -= np.sign(value) * np.outer(column, column)
+    for diagonal in range(min(width + 1, end - first)):
+        lower[diagonal, first : end - diagonal] = np.diagonal(window, -diagonal)
+    return value
+
+
+def _dense(band: Floats, first: int, end: int) -> Floats:
+    """Lower triangle of the rows and columns ``first`` to ``end`` of a band matrix."""
+    size = end - first
+    window = np.zeros((size, size))
+    for diagonal in range(min(band.shape[0], size)):
+        rows = np.arange(diagonal, size)
+        window[rows, rows - diagonal] = band[diagonal, first : end - diagonal]
+    return window
+
+
+def _with_row_exchanges(band: Floats) -> Factor | None:
+    """Factorise a band matrix with row exchanges; None if it is singular."""
+    width, m = band.shape[0] - 1, band.shape[1]
+    both = np.zeros((3 * width + 1, m), order="F")
+    for diagonal in range(width + 1):
+        both[2 * width + diagonal, : m - diagonal] = band[diagonal, : m - diagonal]
+        both[2 * width - diagonal, diagonal:] = band[diagonal, : m - diagonal]
+    lu, rows, failed = dgbtrf(both, width, width, overwrite_ab=1)
+    if failed:
+        return None
 
     def solve(right: Floats) -> Floats:
-        return np.asarray(dpbtrs(lower, right, lower=1)[0]).reshape(right.shape)
+        return np.asarray(dgbtrs(lu, width, width, right, rows)[0]).reshape(right.shape)
 
-    return Factor(solve=solve, negatives=lambda: 0)
-
-
-def _indefinite(K: csc_matrix, band: Band) -> Factor | None:
-    """Factorise a matrix that is not positive definite; None if it is singular."""
-    try:
-        lu = splu(K, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        if _reliable(K, lu):
-            return Factor(solve=lu.solve, negatives=lambda: int((lu.U.diagonal() < 0).sum()))
-    except RuntimeError:  # a zero pivot
-        pass
-    try:
-        lu = splu(K, permc_spec="NATURAL")
-    except RuntimeError:
-        return None
-    return Factor(solve=lu.solve, negatives=lambda: count_negatives(band.fill(K)))
+    return Factor(
+        half=lambda right: right,
+        rest=solve,
+        product=lambda a, b: np.asarray(a.T @ solve(b)),
+        negatives=lambda: count_negatives(band),
+    )
 
 
-def _reliable(K: csc_matrix, lu: object) -> bool:
-    """Whether every pivot was taken from the diagonal and the factors did not grow."""
-    rows, columns, L, U = (getattr(lu, name) for name in ("perm_r", "perm_c", "L", "U"))
-    if not np.array_equal(rows, columns):
-        return False
-    ones = np.ones(K.shape[0])
-    grown, size = abs(L) @ (abs(U) @ ones), abs(K) @ ones
-    return bool(grown.max() <= _GROWTH * size.max())
+def _grown(lower: Floats) -> float:
+    """Largest row sum of ``|L| |L^T|``."""
+    m, columns = lower.shape[1], sum(np.abs(entries) for entries in lower)
+    total = np.zeros(m)
+    for diagonal, entries in enumerate(lower):
+        total[diagonal:] += (np.abs(entries) * columns)[: m - diagonal]
+    return float(total.max())
+
+
+def _largest_row_sum(band: Floats) -> float:
+    """Largest row sum of the absolute values of a symmetric matrix in lower band storage."""
+    m, total = band.shape[1], np.abs(band[0])
+    for diagonal, entries in enumerate(band[1:], 1):
+        total += np.abs(entries)
+        total[diagonal:] += np.abs(entries)[: m - diagonal]
+    return float(total.max())
 
 
 def count_negatives(band: Floats) -> int:

@@ -124,7 +124,7 @@ def slip_residual(pair: Pair, at: Projection, friction: Friction, normal_force: 
 
 def stretch_column(pair: Pair, at: Projection) -> Array:
     """Column ``W'^T t`` ``(2 n, 1)`` beside those of `Pair.gap_derivatives`."""
-    column: Array = pair.carrier.nodal_forces(at.basis[1], at.tangent).reshape(-1, 1)
+    column: Array = pair.carrier.nodal_forces(at.basis[1:2], at.tangent[None]).reshape(-1, 1)
     return column
 
 

@@ -99,8 +99,9 @@ def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
     def tangent(F: Array) -> Array:
         """``lam F_ij F_kl + mu (F_il F_kj + (F F^T)_ik delta_jl) + delta_ik S_jl``."""
         FF = _outer(F, F)
-        A: Array = lam * FF
-        A += mu * FF.swapaxes(1, 3)
+        A: Array = mu * FF.swapaxes(1, 3)
+        FF *= lam
+        A += FF
         b, S = mu * _times(F, F.swapaxes(0, 1)), second_stress(F)
         for n in range(2):
             A[:, n, :, n] += b

@@ -1,12 +1,13 @@
 """Meshes of quadrilaterals in the frame of the strip."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fem_reference.arrays import Floats, Ints
+from fem_reference.arrays import Array, Floats, Ints
 from fem_reference.strip import Strip
 
 GAUSS = {"Q1": (2, 2), "Q2": (2, 3), "Q2-full": (3, 3)}
@@ -20,6 +21,45 @@ EDGES = ("start", "end", "right", "left")
 """Names of the two ends and of the faces to the right and left of the direction from start to end."""
 
 
+_BATCH = 1024
+"""Number of elements in a batch."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Points:
+    """The same q points of the reference square in every element.
+
+    Parameters
+    ----------
+    slopes
+        Derivatives of the k shape functions along the two coordinates xi of the square, ``(2, q, k)``.
+    inverse
+        Inverse Jacobians ``d xi_K / d X_j`` ``(2, 2, e, q)`` [1/m].
+    aligned
+        Whether all Jacobians are diagonal: the elements are rectangles along the axes.
+    """
+
+    slopes: Floats
+    inverse: Floats
+    aligned: bool
+
+    def transformed(self, field: Any, j: int) -> Array:
+        """Component ``sum_K d xi_K / d X_j f_K`` ``(e, q)`` of two fields f along the coordinates xi."""
+        if self.aligned:
+            return np.asarray(field[j] * self.inverse[j, j])
+        return np.asarray(field[0] * self.inverse[0, j] + field[1] * self.inverse[1, j])
+
+    def pulled_back(self, field: Any, k: int) -> Array:
+        """Component ``sum_j d xi_k / d X_j f_j`` ``(e, q)`` of two fields f along X."""
+        if self.aligned:
+            return np.asarray(self.inverse[k, k] * field[k])
+        return np.asarray(self.inverse[k, 0] * field[0] + self.inverse[k, 1] * field[1])
+
+    def of_elements(self, part: slice) -> "Points":
+        """The points of a part of the elements."""
+        return replace(self, inverse=self.inverse[:, :, part])
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Discretisation:
     """Elements of a strip in the strip's frame, with x along the axis from 0 to L and y to the left.
@@ -31,12 +71,10 @@ class Discretisation:
     cells
         Nodes of each element ``(e, k)``: four corners anticlockwise from the lower left one; biquadratic elements also
         have four midside nodes and a centre node.
-    gradients
-        Shape-function gradients ``(e, 2 q, k)``, direction-major in the middle axis [1/m].
+    gauss, at_nodes
+        Quadrature points, and the element's own nodes.
     weights
         Quadrature weights ``(e, q)``, width included [m^3].
-    nodal_gradients
-        Shape-function gradients at the element's own nodes, in the same layout as ``gradients`` [1/m].
     gather
         Sparse matrix ``(n, e k)`` that adds the nodal values of all elements.
     edges
@@ -51,14 +89,39 @@ class Discretisation:
 
     nodes: Floats
     cells: Ints
-    gradients: Floats
+    gauss: Points
+    at_nodes: Points
     weights: Floats
-    nodal_gradients: Floats
     gather: csr_matrix
     edges: dict[str, Ints]
     stations: Floats
     sections: csr_matrix
     basis: Any
+
+    @cached_property
+    def products(self) -> tuple[Floats, Floats]:
+        """Products of the derivatives of two shape functions at the quadrature points on the reference square.
+
+        The first, ``(3 q, k (k + 1) / 2)``, are those of shape functions a <= b along the coordinates 0 and 0, 0 and 1 with 1 and 0, and
+        1 and 1. The second, ``(4 q, k k)``, are those of all shape functions along 0 and 0, 0 and 1, 1 and 0, and 1 and 1.
+        """
+        G = self.gauss.slopes
+        a, b = np.triu_indices(G.shape[2])
+        every = np.einsum("Kqa,Lqb->KLqab", G, G)
+        crossed = every[0, 1] + every[1, 0]
+        upper = np.stack([every[0, 0], crossed, every[1, 1]])[..., a, b]
+        return upper.reshape(-1, a.size), every.reshape(4 * G.shape[1], -1)
+
+    @cached_property
+    def batches(self) -> tuple["Discretisation", ...]:
+        """The elements in batches whose arrays fit into the processor's cache."""
+        count = -(-len(self.cells) // _BATCH)
+        return tuple(
+            replace(
+                self, cells=self.cells[part], gauss=self.gauss.of_elements(part), weights=self.weights[part]
+            )
+            for part in (slice(k * _BATCH, (k + 1) * _BATCH) for k in range(count))
+        )
 
 
 def structured_mesh(strip: Strip) -> Discretisation:
@@ -102,9 +165,9 @@ def from_basis(
     return Discretisation(
         nodes=basis.doflocs.T.copy(),
         cells=cells,
-        gradients=_gradients(basis.basis),
+        gauss=_points(basis),
+        at_nodes=_points(at_nodes),
         weights=strip.width * basis.dx,
-        nodal_gradients=_gradients(at_nodes.basis),
         gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
         edges=edges,
         stations=stations,
@@ -141,8 +204,10 @@ def edge_moments(element: str, along: Floats) -> Floats:
     return np.asarray(moments / (along[-1] - along[0]))
 
 
-def _gradients(basis: Any) -> Floats:
-    """Arrange scikit-fem's gradients, ``(2, e, q)`` per shape function, as ``(e, 2 q, k)``."""
-    stacked = np.stack([field[0].grad for field in basis])
-    shapes, axes, elements, points = stacked.shape
-    return np.ascontiguousarray(stacked.transpose(2, 1, 3, 0)).reshape(elements, axes * points, shapes)
+def _points(basis: Any) -> Points:
+    """The points of a scikit-fem basis."""
+    element = basis.elem
+    slopes = np.stack([element.lbasis(basis.X, number)[1] for number in range(len(element.doflocs))], axis=-1)
+    inverse = basis.mapping.invDF(basis.X)
+    inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
+    return Points(slopes=slopes, inverse=inverse, aligned=not (inverse[0, 1].any() or inverse[1, 0].any()))

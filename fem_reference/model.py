@@ -1,6 +1,7 @@
 """The discrete model: bodies with consecutive node numbers, and the contact pairs and ties that couple them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -53,45 +54,56 @@ class Model:
     ties: tuple[Tie, ...]
     moments: Floats
 
-    @property
+    @cached_property
+    def restriction(self) -> csr_matrix:
+        """Transposed expansion ``(m, 2 n)``: from nodal forces to the forces on the unknowns."""
+        return csr_matrix(self.expansion.T)
+
+    @cached_property
     def nodes(self) -> int:
         """Number of nodes n."""
         return int(self.parts[-1].stop)
 
-    @property
+    @cached_property
     def unknowns(self) -> int:
         """Number of unknown displacements m."""
         return int(self.expansion.shape[1])
 
-    @property
+    @cached_property
+    def unknowns_of_bodies(self) -> tuple[slice, ...]:
+        """Range of each body in the unknowns."""
+        ends = np.cumsum([0, *(body.expansion.shape[1] for body in self.bodies)]).tolist()
+        return tuple(slice(a, b) for a, b in pairwise(ends))
+
+    @cached_property
     def force_scale(self) -> float:
         """Largest ``E I / L^2`` of the strips, a scale of forces that is independent of the load [N]."""
         return max(body.force_scale for body in self.bodies)
 
-    @property
+    @cached_property
     def largest_load(self) -> float:
         """Largest dead force, or moment over the longest strip, at the load parameter 1 [N]."""
         forces = [float(np.hypot(*load.force)) for load in self.problem.loads]
         return max([*forces, *(abs(load.moment) / self.length for load in self.problem.loads)], default=0.0)
 
-    @property
+    @cached_property
     def axial_stiffness(self) -> float:
         """Largest ``E A / L`` of the strips [N/m]."""
         return max(
             strip.youngs_modulus * strip.width * strip.height / strip.length for strip in self.problem.strips
         )
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length of the longest strip [m]."""
         return max(strip.length for strip in self.problem.strips)
 
-    @property
+    @cached_property
     def round_off(self) -> float:
         """Round-off of a nodal force [N]."""
         return max(body.round_off for body in self.bodies)
 
-    @property
+    @cached_property
     def length_round_off(self) -> float:
         """Round-off of a position [m]: 8 machine epsilons times the largest distance of a strip from the global origin."""
         points = [point for strip in self.problem.strips for point in (strip.start, strip.end)]

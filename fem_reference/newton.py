@@ -41,7 +41,7 @@ def iterate(model: Model, state: State, settings: Settings) -> Attempt:
     """
     base, last, damping = state, Correction(u=np.full((1, 2), np.inf), forces=np.zeros(0)), 1.0
     for iteration in range(settings.max_iterations + 1):
-        R = model.expansion.T @ residual(model, state).ravel()
+        R = model.restriction @ residual(model, state).ravel()
         status, pair = check_convergence(model, state, R, settings)
         if status is not Status.ITERATION_LIMIT or iteration == settings.max_iterations:
             break

@@ -63,7 +63,7 @@ def _fibre_stress(body: Body, u: Floats) -> Floats:
 
 def _cauchy_stress(body: Body, u: Floats) -> tuple[Floats, Floats]:
     """Deformation gradient and Cauchy stress at the nodes of every element, in the strip's frame."""
-    F = deformation_gradient(body.mesh, u, body.mesh.nodal_gradients)
+    F = deformation_gradient(body.mesh, u, body.mesh.at_nodes)
     sigma = np.einsum("ik...,jk...->ij...", body.law.stress(F), F) / (F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0])
     return F, sigma
 

@@ -56,8 +56,12 @@ class Pin:
 
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
-        points = np.array(self.path, dtype=float)
-        return np.array([np.interp(t, self._fractions, points[:, i]) for i in range(2)])
+        return np.array([np.interp(t, self._fractions, axis) for axis in self._axes])
+
+    @cached_property
+    def _axes(self) -> Floats:
+        """Coordinates of the path's points, ``(2, k)``."""
+        return np.array(self.path, dtype=float).T.copy()
 
     @cached_property
     def _fractions(self) -> Floats:

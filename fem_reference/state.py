@@ -1,6 +1,7 @@
 """States of the model: displacements with contacts, and the forces in them."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +20,8 @@ class State:
     ----------
     u
         Nodal displacements ``(n, 2)``, each in the frame of its strip [m].
+    internal_force
+        Internal nodal forces ``(n, 2)`` at these displacements [N].
     t
         Load parameter.
     touches
@@ -30,6 +33,7 @@ class State:
     """
 
     u: Floats
+    internal_force: Floats
     t: float
     touches: tuple[Touch, ...]
     poses: tuple[Pose, ...]
@@ -40,12 +44,12 @@ class State:
         """Conditions of all contacts."""
         return tuple(touch.condition for touch in self.touches)
 
-    @property
+    @cached_property
     def closed(self) -> tuple[Touch, ...]:
         """Closed contacts."""
         return tuple(touch for touch in self.touches if touch.closed)
 
-    @property
+    @cached_property
     def rubbing(self) -> tuple[Touch, ...]:
         """Closed contacts with friction."""
         return tuple(touch for touch in self.closed if touch.friction is not None)
@@ -83,6 +87,7 @@ def build_state(
         touches.append(Touch(pair=pair, condition=consistent, projection=projection, slopes=U, curvature=H))
     return State(
         u=u,
+        internal_force=model.internal_force(u),
         t=t,
         touches=tuple(touches),
         poses=tuple(section.pose(u) for section in model.sections),
@@ -141,7 +146,7 @@ def with_conditions(state: State, conditions: tuple[Condition, ...]) -> State:
 
 def residual(model: Model, state: State) -> Floats:
     """Internal forces minus dead loads, contact and tie forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
-    R = model.internal_force(state.u) - state.t * model.load
+    R = state.internal_force - state.t * model.load
     for touch in state.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
         if touch.friction is not None:

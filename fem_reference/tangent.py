@@ -13,15 +13,16 @@ the bodies is factorised, which is symmetric; the equations in the columns are s
 section, whose stiffness in A cancels it.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from fem_reference.arrays import Floats
-from fem_reference.border import Border, build_border
+from fem_reference.border import Border, block_diagonal, build_border
 from fem_reference.end_section import ROTATION
-from fem_reference.factor import Factor, factorise
+from fem_reference.factor import Factor
 from fem_reference.model import Model
 from fem_reference.problem import Pin
 from fem_reference.state import State, section_forces, tie_residuals
@@ -51,8 +52,9 @@ class Tangent:
         The model and the state of linearisation.
     factors
         Factorised stiffness of every body.
-    U, Y
-        Columns ``(m, k)`` of the closed contacts and end sections over the unknowns, and ``K^-1 U``.
+    U, V
+        Columns ``(m, k)`` of the closed contacts and end sections over the unknowns, and the first half of their solution
+        ``K^-1 U``, see `fem_reference.factor.Factor`.
     border
         Curvatures and constraints over the columns.
     """
@@ -61,8 +63,13 @@ class Tangent:
     state: State
     factors: tuple[Factor, ...]
     U: Floats
-    Y: Floats
+    V: Floats
     border: Border
+
+    @cached_property
+    def W(self) -> Floats:
+        """Flexibility ``U^T K^-1 U`` ``(k, k)`` of the columns."""
+        return _product(self.model, self.factors, self.V, self.V)
 
     def correction(self, R: Floats) -> Correction | None:
         """Newton correction for the residual ``R`` ``(m,)``; None if the constraint equations are singular."""
@@ -86,7 +93,7 @@ class Tangent:
         if model.sections:
             actions = np.outer(model.moments, np.eye(3)[ROTATION])
             load = load + section_forces(model, self.state, actions)
-        return self._correction(self._respond(-model.expansion.T @ load.ravel(), p, r, augmented=True))
+        return self._correction(self._respond(-(model.restriction @ load.ravel()), p, r, augmented=True))
 
     def inverse(self, right: Floats) -> Floats | None:
         """Product ``(m,)`` of the inverse Hessian and ``right``; None if the Hessian is singular."""
@@ -94,31 +101,31 @@ class Tangent:
         response = self._respond(-right, np.zeros(len(border.A)), np.zeros(border.N.shape[1]), augmented=True)
         return None if response is None else response[0]
 
-    def solve(self, right: Floats) -> Floats:
-        """Solve ``K x = right`` without contacts and ties; ``right`` is ``(m,)`` or ``(m, c)``."""
-        return _solve(self.model, self.factors, right)
-
     def _respond(self, R: Floats, p: Floats, r: Floats, *, augmented: bool) -> tuple[Floats, Floats] | None:
-        """Changes ``Y z - K^-1 R`` of the unknowns and dlam of the constraint forces; None if singular.
+        """Changes ``K^-1 (U z - R)`` of the unknowns and dlam of the constraint forces; None if singular.
 
-        With ``z = A (U^T du + p) + N dlam`` and ``W = U^T Y`` the remaining equations are
+        With ``z = A (U^T du + p) + N dlam`` and ``W = U^T K^-1 U`` the remaining equations are
         ``(I - A W) z - N dlam = A (p - U^T K^-1 R)`` and ``M^T W z + C dlam = -r - M^T (p - U^T K^-1 R)``.
         """
-        y, border = self.solve(R) if R.any() else R, self.border
+        model, factors, border = self.model, self.factors, self.border
+        half = _by_body(model, [factor.half for factor in factors], R) if R.any() else R
+        rests = [factor.rest for factor in factors]
         k = len(border.A)
         if not k:
-            return -y, np.zeros(0)
-        A, M, W = border.A, border.M, self.U.T @ self.Y
+            return _by_body(model, rests, -half), np.zeros(0)
+        A, M, W = border.A, border.M, self.W
         C = np.where(border.removed, 0.0, border.C) if augmented else border.C
-        matrix = np.block([[np.eye(k) - A @ W, -border.N], [M.T @ W, np.diag(C) + border.coupling]])
-        known = p - self.U.T @ y
+        matrix = np.empty((k + C.size, k + C.size))
+        matrix[:k, :k], matrix[:k, k:] = np.eye(k) - A @ W, -border.N
+        matrix[k:, :k], matrix[k:, k:] = M.T @ W, np.diag(C) + border.coupling
+        known = p - _product(model, factors, self.V, half)
         right = np.concatenate([A @ known, -r - M.T @ known])
         scale = 1 / np.maximum(np.abs(matrix).max(axis=1), np.finfo(float).tiny)
         try:
             z = np.linalg.solve(scale[:, None] * matrix, scale * right)
         except np.linalg.LinAlgError:
             return None
-        return self.Y @ z[:k] - y, z[k:]
+        return _by_body(model, rests, self.V @ z[:k] - half), z[k:]
 
     def _correction(self, response: tuple[Floats, Floats] | None) -> Correction | None:
         return None if response is None else Correction(u=self.expanded(response[0]), forces=response[1])
@@ -153,11 +160,11 @@ class Tangent:
         if not border.blocks:
             return negatives
         spectra = [np.linalg.eigh(-block) for block in border.blocks]
-        columns = block_diag(*(vectors * np.sqrt(np.abs(values)) for values, vectors in spectra))
+        columns = block_diagonal([vectors * np.sqrt(np.abs(values)) for values, vectors in spectra])
         signs = np.where(np.concatenate([values for values, _ in spectra]) > 0, -1.0, 1.0)
         T = np.hstack([border.N, columns])
         D = np.concatenate([np.where(border.removed, 0.0, -border.C), signs])
-        S = np.diag(D) - T.T @ (self.U.T @ self.Y) @ T
+        S = np.diag(D) - T.T @ (self.W) @ T
         scale = 1 / np.sqrt(np.maximum(np.abs(S).max(axis=0), np.finfo(float).tiny))
         eigenvalues = np.linalg.eigvalsh(scale[:, None] * (S + S.T) / 2 * scale)
         negatives += int((eigenvalues < 0).sum())
@@ -178,27 +185,26 @@ def linearise(model: Model, state: State) -> Tangent | None:
     """Linearise equilibrium at a state; None if the stiffness of a body is singular or not finite."""
     factors = []
     for body, part in model.bodies_and_nodes():
-        K = body.tangent(state.u[part])
-        if body.anchor is not None:
-            K.data += body.anchor
-        factor = factorise(K, body.stiffness.band) if np.all(np.isfinite(K.data)) else None
+        factor = body.factorised(state.u[part])
         if factor is None:
             return None
         factors.append(factor)
     columns = np.hstack([*(touch.slopes for touch in state.closed), model.columns])
-    U = np.asarray(model.expansion.T @ columns)
-    Y = _solve(model, tuple(factors), U) if U.size else U
+    U = np.asarray(model.restriction @ columns)
+    V = _by_body(model, [factor.half for factor in factors], U) if U.size else U
     border = build_border(model, state)
-    if not (np.all(np.isfinite(Y)) and np.all(np.isfinite(border.A)) and np.all(np.isfinite(border.N))):
+    if not (np.all(np.isfinite(V)) and np.all(np.isfinite(border.A)) and np.all(np.isfinite(border.N))):
         return None
-    return Tangent(model=model, state=state, factors=tuple(factors), U=U, Y=Y, border=border)
+    return Tangent(model=model, state=state, factors=tuple(factors), U=U, V=V, border=border)
 
 
-def _solve(model: Model, factors: tuple[Factor, ...], right: Floats) -> Floats:
-    """Solve ``K x = right`` body by body."""
-    parts, start = [], 0
-    for body, factor in zip(model.bodies, factors, strict=True):
-        size = body.expansion.shape[1]
-        parts.append(factor.solve(right[start : start + size]))
-        start += size
-    return np.concatenate(parts)
+def _by_body(model: Model, solutions: Sequence[Callable[[Floats], Floats]], right: Floats) -> Floats:
+    """Apply one of the ``solutions`` to the unknowns of every body."""
+    parts = zip(solutions, model.unknowns_of_bodies, strict=True)
+    return np.concatenate([solution(right[part]) for solution, part in parts])
+
+
+def _product(model: Model, factors: Sequence[Factor], a: Floats, b: Floats) -> Floats:
+    """Sum of the products ``a^T K^-1 b`` of all bodies from the halves."""
+    parts = zip(factors, model.unknowns_of_bodies, strict=True)
+    return np.asarray(sum(factor.product(a[part], b[part]) for factor, part in parts))

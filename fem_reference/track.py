@@ -1,6 +1,6 @@
 """Accepted states of a path: prediction of the next state, and the check that a step stays on its branch."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,14 +35,17 @@ class Accepted:
     state: State
     tangent: Tangent
     index: int
+    _rates: dict[tuple[float, float], Correction] = field(default_factory=dict, repr=False)
 
     def rate(self, before: float, after: float) -> Correction:
         """Change per load parameter with the mean velocity of the pins between two load parameters; nan if singular."""
-        rate = self.tangent.rate(before, after)
-        if rate is None:
-            count = self.state.contact_forces.size + self.state.tie_forces.size
-            return Correction(u=np.full_like(self.state.u, np.nan), forces=np.full(count, np.nan))
-        return rate
+        if (before, after) not in self._rates:
+            rate = self.tangent.rate(before, after)
+            if rate is None:
+                count = self.state.contact_forces.size + self.state.tie_forces.size
+                rate = Correction(u=np.full_like(self.state.u, np.nan), forces=np.full(count, np.nan))
+            self._rates[before, after] = rate
+        return self._rates[before, after]
 
 
 def accept(model: Model, state: State, settings: Settings, last: Accepted | None = None) -> Accepted | None:

@@ -57,6 +57,7 @@ def main() -> int:
         beams.many_beams,
         beams.exact_element,
         beams.batches,
+        solid.solution,
         solid.assembly,
         solid.memory,
         comparison.comparison,

@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix, eye_array
 
-from fem_reference.assembly import deformation_gradient, element_dofs, element_tangents
+from fem_reference.assembly import deformation_gradient, element_entries, pattern
 from fem_reference.body import build_body
 from fem_reference.material import MATERIALS, in_plane_lam, lame_constants
 from fem_reference.strip import ELEMENTS
@@ -50,12 +53,29 @@ def test_stiffness_is_the_derivative_of_the_internal_force(body):
     )
 
 
+def test_band_is_that_of_the_stiffness(body):
+    """With the entries of a clamp that couples two displacements, and those of an anchor."""
+    u, stiffness = displacements(body), body.stiffness
+    K = body.tangent(u)
+    band = stiffness.band(element_entries(body.mesh, body.law.tangent, u))
+    np.testing.assert_array_equal(stiffness.band_of(csr_matrix(K)), band)
+    assert max(np.abs(K.tocoo().row - K.tocoo().col)) == stiffness.width
+
+
+def test_distorted_elements_take_the_general_transformation(body):
+    """A mesh of rectangles that is said not to be one has the same forces and stiffness."""
+    u, mesh = displacements(body), body.mesh
+    assert mesh.gauss.aligned
+    general = replace(body, mesh=replace(mesh, gauss=replace(mesh.gauss, aligned=False)))
+    forces, K = body.internal_force(u), body.tangent(u)
+    np.testing.assert_allclose(general.internal_force(u), forces, rtol=0, atol=1e-13 * np.abs(forces).max())
+    assert abs(general.tangent(u) - K).max() <= 1e-13 * abs(K).max()
+
+
 def test_stiffness_is_symmetric_with_three_rigid_modes(body):
-    A = body.law.tangent(deformation_gradient(body.mesh, 0 * body.mesh.nodes))
-    K = np.zeros((body.mesh.nodes.size,) * 2)
-    for dofs, Ke in zip(element_dofs(body.mesh), element_tangents(body.mesh, A), strict=True):
-        K[np.ix_(dofs, dofs)] += Ke
-    np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-13 * np.abs(K).max())
+    free = pattern(body.mesh, eye_array(body.mesh.nodes.size, format="csr"))
+    K = free.matrix(element_entries(body.mesh, body.law.tangent, 0 * body.mesh.nodes)).toarray()
+    np.testing.assert_array_equal(K, K.T)
     eigenvalues = np.linalg.eigvalsh(K)
     assert np.sum(np.abs(eigenvalues) < 1e-11 * eigenvalues[-1]) == 3
     assert eigenvalues[0] > -1e-11 * eigenvalues[-1]

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import ContactCurve, averaging, band_slopes, closest
+from fem_reference.curve import ContactCurve, CurveFrom, averaging, band_slopes, closest
 from fem_reference.model import build
 from tests.fem_reference.conftest import STEP, place_pin, surfaces
 
@@ -250,7 +250,7 @@ def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
     s = np.linspace(0, 1, 6)
     curve = curve_through(s, np.zeros(1), np.ones(1))
     X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
-    zeta, stationary = closest(curve, X, np.array(point))
+    zeta, stationary = closest(CurveFrom(curve=curve, points=X - np.array(point)))
     places = np.linspace(0, 1, 4001)
     distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
     assert stationary

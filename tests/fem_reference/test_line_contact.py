@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 import fem_reference as fr
-from fem_reference.curve import closest
+from fem_reference.curve import CurveFrom, closest
 from fem_reference.line_contact import clearance
 from fem_reference.model import build
 from fem_reference.state import build_state
@@ -119,6 +119,7 @@ def test_closest_point_is_found_up_to_the_centre_of_curvature(problem):
     normal = np.array([-r1[1], r1[0]]) / np.hypot(*r1)
     radius = r1 @ r1 / abs(normal @ r2)
     for part in (0.5, 0.9, 0.99, 0.9999, 1 - 1e-6):
-        zeta, stationary = closest(pair.curve, arc, r + part * radius * np.sign(normal @ r2) * normal)
+        point = r + part * radius * np.sign(normal @ r2) * normal
+        zeta, stationary = closest(CurveFrom(curve=pair.curve, points=arc - point))
         assert stationary
         assert zeta == pytest.approx(0.47, abs=1e-6 / (1 - part))

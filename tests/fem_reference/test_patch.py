@@ -6,7 +6,7 @@ from scipy.sparse import csr_matrix, eye_array
 from scipy.sparse.linalg import spsolve
 from skfem import MeshQuad
 
-from fem_reference.assembly import deformation_gradient, element_tangents, internal_force, pattern
+from fem_reference.assembly import deformation_gradient, element_entries, internal_force, pattern
 from fem_reference.material import MATERIALS, PLANES, elastic_law
 from fem_reference.mesh import edge_weights, from_basis, scalar_basis
 from fem_reference.strip import ELEMENTS
@@ -33,7 +33,7 @@ def solve(mesh, law, held, u, loads):
     for _ in range(30):
         F = deformation_gradient(mesh, u)
         R = T.T @ (internal_force(mesh, law.stress(F)) - loads).ravel()
-        step = spsolve(stiffness.matrix(element_tangents(mesh, law.tangent(F))), -R)
+        step = spsolve(stiffness.matrix(element_entries(mesh, law.tangent, u)), -R)
         u = u + (T @ step).reshape(-1, 2)
         if np.abs(step).max() < 1e-14:
             return u
