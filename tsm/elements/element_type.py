@@ -140,8 +140,8 @@ class ClosedForm(ElementType):
 
     @property
     def on_varying(self) -> Integrated | None:
-        """The type in `varying`."""
-        return self.varying
+        """The type in `varying`, which shears."""
+        return self.varying if self.sheared else None
 
     def constants(self, p: Properties) -> Properties:
         """Return the section's constants as this element has them."""
