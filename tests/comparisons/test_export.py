@@ -270,6 +270,7 @@ def test_a_list_cannot_reach_outside_its_folder(tmp_path: Path) -> None:
     assert outside.read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_where_another_was_ended_among_its_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -82,6 +82,7 @@ def crossval(place: Path, *arguments: str) -> str:
     return python(place, "-c", "import sys; from comparisons.cli import main; sys.exit(main())", *arguments)
 
 
+@pytest.mark.slow
 def test_commands_have_it(place: Path) -> None:
     assert "chain: yes" in crossval(place, "check", "ks-cantilever")
     assert "chain: no, the chain has one beam" in crossval(place, "check", "double-beam")
@@ -91,6 +92,7 @@ def test_commands_have_it(place: Path) -> None:
     assert "chain" in crossval(place, "completion", "bash")
 
 
+@pytest.mark.slow
 def test_studies_have_it(place: Path) -> None:
     crossval(place, "study", "study.toml", "--results", "results.sqlite", "--quiet")
     table = crossval(place, "results", "results.sqlite")

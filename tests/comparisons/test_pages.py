@@ -33,6 +33,7 @@ def parts(page: str) -> tuple[list[str], list[float]]:
     return NUMBER.sub("#", text).split(), [float(number) for number in NUMBER.findall(text)]
 
 
+@pytest.mark.slow_at("beam-on-springs", "hysteresis-stages", "ks-tied-tip")
 @pytest.mark.parametrize(
     "scene",
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in built_in_scenes()],

@@ -110,6 +110,7 @@ def coloured(path: Path) -> float:
     return float(np.mean(np.ptp(rgb, axis=2) > 0.1))
 
 
+@pytest.mark.slow
 def test_side_by_side_picture_is_rendered_or_drawn(panels: list[Panel], tmp_path: Path) -> None:
     render_panels(panels, "stress", tmp_path / "both.png")
     assert list(tmp_path.iterdir()) == [tmp_path / "both.png"]

@@ -32,6 +32,7 @@ def both(request: pytest.FixtureRequest) -> tuple[Response, Response]:
     return solve(scene, "solid"), solve(scene, "tsm", Options(elements=20))
 
 
+@pytest.mark.slow
 def test_all_stages_complete_and_are_verified(both: tuple[Response, Response]) -> None:
     solid, _ = both
     assert solid.status == "COMPLETED", solid.message
@@ -76,6 +77,7 @@ def test_contact_forces_between_the_strips_are_internal(both: tuple[Response, Re
     np.testing.assert_allclose(reactions, -vectors[0] - vectors[1], atol=2e-6)
 
 
+@pytest.mark.slow
 def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one(stated) -> None:
     """Where pin, upper tip and lower axis meet in one point the lower strip takes the tip's force over from the tip.
 

@@ -111,6 +111,7 @@ def distance(case: Scene, mesh: tuple[int, int] | None = None) -> float:
     return max(float(np.abs(ours - theirs).max() / (np.abs(theirs).max() or 1.0)) for ours, theirs in pairs)
 
 
+@pytest.mark.slow_at("tip_load", "turned_pins")
 @pytest.mark.parametrize("make", MAKERS)
 def test_forces_and_reactions_are_the_rods(make: Callable[[float], Scene]) -> None:
     """Within a thousandth at h/L = .02, certified and stable."""

@@ -56,6 +56,7 @@ def error(scene: Scene) -> float | None:
     return judged.distance.largest[1]
 
 
+@pytest.mark.slow_at("-45.0-12.0", "-90.0-0.3", "-90.0-12.0", "150.0-12.0", "150.0-2.0")
 @pytest.mark.parametrize("force", [0.3, 2.0, 12.0])
 @pytest.mark.parametrize("direction", [-90.0, 0.0, -45.0, 150.0])
 def test_a_load_at_the_tip(force: float, direction: float) -> None:

@@ -98,6 +98,7 @@ def test_json_names_the_clamp_and_the_tip(capsys: pytest.CaptureFixture[str]) ->
     )
 
 
+@pytest.mark.slow
 def test_compare_measures_the_force_on_the_tip_and_leaves_out_who_cannot(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

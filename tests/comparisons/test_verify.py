@@ -77,6 +77,7 @@ def test_a_broken_response_is_not_a_success(good: Response, case: str) -> None:
     assert re.search(reason, checked.message)
 
 
+@pytest.mark.slow_at("solid-ks-cantilever")
 @pytest.mark.parametrize("scene", ["ks-cantilever", "ks-face"])
 @pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
 def test_true_responses_pass(scene: str, model: str) -> None:
@@ -131,6 +132,7 @@ def above(path: tuple[tuple[float, float], ...]) -> dict[str, object]:
     }
 
 
+@pytest.mark.slow_at("solid")
 @pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
 def test_a_beam_lies_outside_a_round_pin_along_all_of_its_axis(model: str) -> None:
     scene = replace(load_scene("ks-face"), load_parameters=5)
@@ -150,6 +152,7 @@ def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
     assert verified(stopped, SCENE) is stopped
 
 
+@pytest.mark.slow_at("options0")
 @pytest.mark.parametrize("options", [Options(element="exact"), Options(elements=3), Options(elements=10)])
 def test_nothing_that_acts_balances(options: Options) -> None:
     """The double beam's whole path in one step: in the end both beams are free, and what is left is the solver's tolerance."""

@@ -44,6 +44,7 @@ def face_stress(grid: Grid, face: str | float) -> Any:
     return np.interp([0.2, 0.4], grid.points[on, 0], grid.point_data[name][on])
 
 
+@pytest.mark.slow
 def test_beams_and_solid_show_the_same_body_and_stress(series: list[Series]) -> None:
     beams, solid = (panel(one.blocks(2), "") for one in series)
     stresses = []
@@ -169,6 +170,7 @@ def test_files_give_the_same_film(responses: list[Response], series: list[Series
             assert a.states.tolist() == b.states.tolist()
 
 
+@pytest.mark.slow
 def test_picture_and_motion(tmp_path: Path, capsys: Output) -> None:
     scene = tmp_path / "mine.toml"
     scene.write_text(
@@ -235,6 +237,7 @@ def test_a_broken_folder_is_one_line(broken: str, tmp_path: Path, capsys: Output
     assert not list((tmp_path / "out").iterdir())
 
 
+@pytest.mark.slow
 def test_a_solid_that_cannot_state_the_scene_is_left_out(tmp_path: Path, capsys: Output) -> None:
     scene = tmp_path / "rigid.toml"
     scene.write_text(

@@ -69,6 +69,7 @@ def test_a_series_without_unix(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_study_without_unix(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(STUDY)
     crossval(tmp_path, "study", "s.toml", "--results", "s.sqlite", "--workers", "1")

@@ -165,6 +165,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow_at("moving clamp", "pinned and pinned")
 @pytest.mark.parametrize("case", CASES)
 def test_reactions_balance_the_loads(case):
     """Forces, and moments about the origin, to 1e-9 of the largest; the prescribed motions are met."""

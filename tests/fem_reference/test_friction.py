@@ -170,6 +170,7 @@ def all_residuals(model, state):
     return R, np.array([*R, touch.gap_residual, touch.slip_residual])
 
 
+@pytest.mark.slow_at("end-slip")
 @pytest.mark.parametrize("make", CASES)
 def test_correction_removes_the_linear_part_of_all_residuals(make):
     """``J c = -r`` with the derivative J along c by central differences, extrapolated."""
@@ -187,6 +188,7 @@ def test_correction_removes_the_linear_part_of_all_residuals(make):
         np.testing.assert_allclose(found[rows], -r[rows], rtol=0, atol=1e-4 * scale + 1e-12)
 
 
+@pytest.mark.slow_at("end-slip", "end-stick")
 @pytest.mark.parametrize("make", CASES)
 def test_residuals_with_friction_fall_quadratically(make):
     model, state = make()
@@ -304,7 +306,7 @@ def test_block_sticks_up_to_the_cone_with_the_stiffness_of_a_bar():
     np.testing.assert_allclose(support.force[:, 0], -contact.vector[:, 0], rtol=0, atol=1e-6 * mu * N[0])
 
 
-@pytest.mark.slow_at("0.1", "0.5")
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", ROD)
 def test_rod_of_the_reference_has_the_published_digits(mu):
     force, s, _ = ROD[mu]
@@ -352,7 +354,7 @@ def test_friction_on_a_face_has_the_lever_of_half_the_height(radius):
     assert compared == 19
 
 
-@pytest.mark.slow_at("0.1", "0.5")
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", ROD)
 def test_friction_changes_the_strip_of_the_scenes_material_as_it_changes_the_rod(mu):
     """Saint Venant's law is softer than the rod's by 3.6e-3 at the end, with friction and without; friction differs by 5e-4."""
@@ -363,6 +365,7 @@ def test_friction_changes_the_strip_of_the_scenes_material_as_it_changes_the_rod
     assert ratio == pytest.approx(ROD[mu][0] / FRICTIONLESS_ROD, rel=5e-4)
 
 
+@pytest.mark.slow
 def test_friction_that_vanishes_leaves_the_frictionless_answer():
     """By 1e-6 at mu = 1e-6."""
     _, plain = ks(0.0, penalty=1e4)
@@ -487,7 +490,7 @@ def test_limit_load_of_three_point_bending(mu, limit, at):
     assert slips * at == pytest.approx(5 * mu * 0.01**2 / 12, rel=1e-2)
 
 
-@pytest.mark.slow_at("0.1-0.890538486811")
+@pytest.mark.slow
 @pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.890538486811), (0.3, 1.007848170943)])
 def test_dead_load_on_a_rough_support_ends_at_its_limit_point(mu, limit):
     """Within 1e-4 of the elastica; 4e-5 measured."""
@@ -497,6 +500,7 @@ def test_dead_load_on_a_rough_support_ends_at_its_limit_point(mu, limit):
     assert 1.1 * result.reached == pytest.approx(limit, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_limit_load_of_three_point_bending_pushed_back():
     contact = bending(0.2, (0.6, 0.1), 44).contacts["pin->half"]
     back = contact.vector[contact.direction == -1, 1] / BENDING

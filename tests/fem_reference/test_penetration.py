@@ -129,6 +129,7 @@ def test_a_sharp_contact_scatters_more(problem, stated):
     stated("solid.sharp", found)
 
 
+@pytest.mark.slow
 def test_round_pin_pushes_the_axis_as_an_offset_does(problem):
     """A pin of radius R on the axis is a sharp pin on the curve R below: half the height, the face of a rigid section."""
     round_ = fr.solve(problem(radius=0.01), loads(20)).contacts[PAIR]

@@ -129,6 +129,7 @@ def test_pose_does_not_matter(problem, ks_face, case):
     np.testing.assert_allclose(result.tips[STRIP], place(ks_face.tips[STRIP][:10]), atol=1e-9)
 
 
+@pytest.mark.slow_at("steel and a kilometre")
 @pytest.mark.parametrize(
     ("size", "modulus", "origin"),
     [

@@ -104,6 +104,7 @@ def check(element: str, examples: int) -> dict[Status, int]:
     "euler-bernoulli-cantilever-as-printed",
     "euler-bernoulli-simple",
     "euler-bernoulli-simple-as-printed",
+    "exact",
     "timoshenko",
     "timoshenko-as-printed",
 )

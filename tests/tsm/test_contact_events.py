@@ -201,6 +201,7 @@ def test_one_load_step_follows_a_path_that_turns(element, path):
     assert force == pytest.approx(expected, abs=1e-8)
 
 
+@pytest.mark.slow_at("timoshenko-0.49999999999999994", "timoshenko-0.5")
 @pytest.mark.parametrize("x", [0.5, np.nextafter(0.5, 0), np.nextafter(0.5, 1), 0.05, 1e-3])
 @pytest.mark.parametrize("element", ["mixed", "timoshenko"])
 def test_pins_on_nodes_and_near_the_clamp(x, element):

@@ -100,6 +100,7 @@ def test_work_of_the_pin_is_the_strain_energy_up_to_each_jump(result):
     assert second.released == pytest.approx(energy[2], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_what_stops_the_papers_element():
     """A pin that starts on a beam node leaves it no digits; at the hand-over two nodes meet on one of its elements."""
     t = np.arange(1, STEPS + 1) / STEPS
@@ -110,6 +111,7 @@ def test_what_stops_the_papers_element():
     assert 0.76 * through.load_parameter[-1] > 0.5
 
 
+@pytest.mark.slow_at("40")
 @pytest.mark.parametrize("elements", [3, 10, 40])
 def test_refinement_against_the_coupled_rods(elements, stated):
     t = np.array([0.31, 0.45]) / 0.76

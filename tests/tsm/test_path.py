@@ -116,6 +116,7 @@ def test_the_primary_branch_is_labelled_unstable() -> None:
     assert 5 * result.critical[1].load_parameter == pytest.approx(4.0, rel=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [pytest.param(1, marks=pytest.mark.slow), 20])
 def test_an_imperfect_column_bends_with_any_number_of_load_parameters(elements: int) -> None:
     ends = []

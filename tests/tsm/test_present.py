@@ -66,6 +66,7 @@ def test_a_result_draws_its_axes_and_pins(result: tsm.Result) -> None:
     assert axes.get_title() == "COMPLETED"
 
 
+@pytest.mark.slow
 def test_it_draws_into_the_current_axes_of_a_notebook() -> None:
     code = """
 import matplotlib

@@ -91,6 +91,7 @@ def test_toggle_by_displacement_control_meets_its_own_arc_length_path():
     assert force[turns] == pytest.approx(limit_points(divided(toggle_scene(), 16), 0.01, 60), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_three_point_bending_has_its_limit():
     """Frictionless three-point bending, half span a: greatest P a^2/EI = 1.66795 at d/a = .476378 (elastica in closed form)."""
     half = cantilever(raised(1.0, 0.7), section=STIFF, length=3.0, elements=30, element="mixed")

@@ -43,7 +43,7 @@ def extreme(length, youngs_modulus):
     return cantilever(((length, 0.0), (0.0, 2 * length / np.pi)), section=section, length=length)
 
 
-@pytest.mark.slow_at("1")
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 5, pytest.param(50, marks=pytest.mark.slow)])
 def test_units_do_not_matter(count, stated):
     """Lengths 1e-6 to 1e6 times Young's modulus 1e-6 to 1e15: the same iterations, the same dimensionless answer."""

@@ -24,6 +24,7 @@ def test_small_deflection_of_a_straight_beam(clamped, bending, GA):
     assert load_path(beam, [1e-5])[0] == pytest.approx(1e-5 / flexibility, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_from_the_other_support_or_with_one_more_joint():
     """Lee's frame, soft in stretch and shear, shot from its other end, and with its rods cut once more."""
     down = np.linspace(0.02, 0.56, 15)

@@ -429,6 +429,7 @@ def drawn_on_a_face(*, round_pin: bool) -> Scene:
 @pytest.mark.slow_at(
     "axis-0.1-1.0-from a touch",
     "axis-0.1-1.0-from the start",
+    "axis-None-1.0-from a touch",
     "face-0.1-20.0-from a touch",
     "face-0.1-20.0-from the start",
     "face-None-20.0-from a touch",

@@ -39,6 +39,7 @@ SECTIONS = {
 }
 
 
+@pytest.mark.slow_at("sheared")
 @pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
 def test_between_nodes_as_at_nodes(section: tsm.Section) -> None:
     exact = pushed(section, "exact", 1)

@@ -179,7 +179,7 @@ def test_opensees_with_friction_has_a_known_error_under_the_pin() -> None:
 
 
 @needs("opensees")
-@pytest.mark.slow_at("20")
+@pytest.mark.slow_at("20", "200")
 @pytest.mark.parametrize("steps", [20, 60, 200])
 def test_opensees_with_friction_loses_the_contact_in_long_steps_and_reports_success(
     steps: int, tmp_path: Path

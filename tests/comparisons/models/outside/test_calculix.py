@@ -142,7 +142,7 @@ def test_elastic_is_the_law_of_st_venant_and_kirchhoff() -> None:
 
 
 @needs_ccx
-@pytest.mark.slow_at("full-0.001")
+@pytest.mark.slow
 @pytest.mark.parametrize(("clamp", "bar"), [("rod", 5e-6), ("full", 1e-3)])
 def test_tip_load(clamp: str, bar: float) -> None:
     """1.2e-6 and 3.5e-4 measured on 50x2, bar 1e-3; the full clamp's corners are singular."""
