@@ -68,7 +68,7 @@ def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
     count = f"{len(rows) - 1} run{'' if len(rows) == 2 else 's'}"
     return (
         f"{count} of {_listed(models)} {'is' if len(rows) == 2 else 'are'} compared with the {reference} on {scene.name} at "
-        f"{scene.load_parameters} load parameters, up to {last:.4g}. Errors of forces and moments are relative to the largest value, "
+        f"{len(scene.times)} load parameters, up to {last:.4g}. Errors of forces and moments are relative to the largest value, "
         "errors of positions to the length."
     )
 

@@ -131,7 +131,7 @@ def run(scene: Scene, model: str, *, every: bool = True) -> Row:
         if not response.completed:
             return row
         with time_limit(LIMIT):
-            found = certify(response, scene, at=range(row.number) if every else None)
+            found = certify(response, scene, at=range(len(scene.times)) if every else None)
     except ModelError as error:
         return replace(row, certificate=str(error))
     except Hang:
