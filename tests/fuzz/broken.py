@@ -82,10 +82,22 @@ KEYS = [
     "friction",
     "units",
     "youngs_modulus",
+    "turn",
+    "density",
+    "gravity",
+    "at",
+    "force_per_length",
+    "part",
+    "stiffness",
+    "load_parameters",
+    "pin",
+    "support",
+    "load",
 ]
 EXTREME_KEYS = {
     *("start", "end", "path", "displacement", "force", "moment", "rotation", "radius"),
     *("youngs_modulus", "shear_modulus", "width", "height", "area", "second_moment", "shear_area"),
+    *("turn", "density", "gravity", "force_per_length", "stiffness"),
 }
 """Keys of numbers whose size is tried out."""
 

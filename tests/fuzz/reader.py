@@ -16,6 +16,7 @@ TOKENS = [
     *(b"[[", b"]]", b"[", b"]", b"=", b'"', b"'", b'"""', b"#", b"\n", b",", b".", b"{", b"}", b"-", b"e", b"_", b"\\u"),
     *(b"nan", b"inf", b"-inf", b"true", b"1e999", b"-0.0", b"0x10", b"1979-05-27", b"07:32:00", b"\xff", b"\x00"),
     *(b"[scene]", b"[[beam]]", b"[[pin]]", b"[[contact]]", b"[[support]]", b"[[load]]", b"path = ", b"keep = true"),
+    *(b"[[hinge]]", b"[[spring]]", b"[[stage]]", b"turn = ", b"stiffness = ", b"pin = [{"),
 ]  # fmt: skip
 
 

@@ -237,4 +237,84 @@ def stacks(draw: st.DrawFn) -> Tables:
     }
 
 
-valid_scenes = st.one_of(cantilevers(), cantilevers(), tied_tips(), frames(), stacks())
+@st.composite
+def extended(draw: st.DrawFn, scenes: st.SearchStrategy[Tables]) -> Tables:
+    """A scene, perhaps with springs, loads along a beam, a weight, a hinge with a stiffness, a taper, a curvature and a stage."""
+    scene = draw(scenes)
+    wanted = draw(st.sets(st.sampled_from(sorted(EXTENSIONS)), max_size=3))
+    for name in sorted(wanted):
+        EXTENSIONS[name](draw, scene, draw(st.sampled_from(scene["beam"])))
+    return scene
+
+
+def _bending(beam: Tables, power: int) -> float:
+    """EI over a power of the length."""
+    inertia = beam.get("second_moment") or beam["width"] * beam["height"] ** 3 / 12.0
+    return float(beam["youngs_modulus"] * inertia / math.dist(beam["start"], beam["end"]) ** power)
+
+
+def _spring(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    size = draw(powers(-3, 3))
+    stiffness = [size * _bending(beam, 3), draw(st.sampled_from([0.0, 1.0])) * size * _bending(beam, 3)]
+    rotation = draw(st.sampled_from([0.0, size])) * _bending(beam, 1)
+    end = draw(st.sampled_from(["start", "end"]))
+    scene["spring"] = [{"beam": beam["name"], "end": end, "stiffness": stiffness, "rotation": rotation}]
+
+
+def _along(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    size = draw(powers(-3, 1))
+    load: Tables = {"beam": beam["name"]}
+    if draw(st.booleans()):
+        load |= {"at": draw(parts(0.05, 0.95)), "force": [0.0, size * _bending(beam, 2)]}
+    else:
+        load |= {"force_per_length": [size * _bending(beam, 3), 0.5 * size * _bending(beam, 3)]}
+        if draw(st.booleans()):
+            load["part"] = [0.25, draw(parts(0.3, 1.0))]
+    scene.setdefault("load", []).append(load)
+
+
+def _weight(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    area = beam.get("area") or beam["width"] * beam["height"]
+    beam["density"] = draw(powers(-3, 1)) * _bending(beam, 3) / area
+    scene["scene"]["gravity"] = [0.0, -1.0]
+
+
+def _hinge(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    """Hinge an end that is clamped."""
+    if beam.get("clamped"):
+        stiffness = draw(powers(-2, 3)) * _bending(beam, 1)
+        scene["hinge"] = [{"beam": beam["name"], "end": beam["clamped"][0], "stiffness": stiffness}]
+
+
+def _taper(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    faces = any(contact.get("surface") == "face" for contact in scene.get("contact", ()))
+    if isinstance(beam.get("height"), float) and "shear_area" not in beam and not faces:
+        beam["height"] = [beam["height"], draw(parts(0.3, 1.5)) * beam["height"]]
+
+
+def _turn(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    """Curve a beam that nothing touches."""
+    if not scene.get("contact"):
+        beam["turn"] = draw(parts(-3.0, 3.0))
+
+
+def _stage(draw: st.DrawFn, scene: Tables, beam: Tables) -> None:
+    stage: Tables = {"load_parameters": draw(st.integers(1, 3))}
+    length = math.dist(beam["start"], beam["end"])
+    if scene.get("pin"):
+        way = [length * draw(parts(-0.2, 0.2)), length * 0.05]
+        stage["pin"] = [{"name": scene["pin"][0]["name"], "displacement": way}]
+    else:
+        stage["load"] = [{"beam": beam["name"], "end": "end", "moment": 0.3 * _bending(beam, 1)}]
+    if draw(st.booleans()):
+        stage["name"] = "onward"
+    scene["stage"] = [stage]
+
+
+EXTENSIONS = {
+    "along": _along, "hinge": _hinge, "spring": _spring, "stage": _stage, "turn": _turn, "weight": _weight, "with taper": _taper,
+}  # fmt: skip
+"""Changes of a scene that keep it valid, in an order in which each finds the section as it is drawn: the taper after all that use it."""
+
+
+valid_scenes = extended(st.one_of(cantilevers(), cantilevers(), tied_tips(), frames(), stacks()))
