@@ -12,11 +12,16 @@ PACKAGES = ("tsm", "fem_reference", "comparisons")
 DISTRIBUTIONS = ("numpy", "scipy", "scikit-fem", "tsm-crossval")
 
 
+def release() -> str:
+    """Return the release of the installed distribution."""
+    from importlib import metadata
+
+    return metadata.version("tsm-crossval")
+
+
 @cache
 def version() -> str:
     """Return the release and a digest of the sources, as ``0.5.1+1a2b3c4d``; equal versions have equal source files."""
-    from importlib import metadata
-
     found = hashlib.sha256()
     for package in PACKAGES:
         spec = find_spec(package)
@@ -24,7 +29,7 @@ def version() -> str:
             for path in sorted(folder.rglob("*.py")):
                 found.update(f"{package}/{path.relative_to(folder).as_posix()}\0".encode())
                 found.update(path.read_bytes().replace(b"\r\n", b"\n") + b"\0")
-    return f"{metadata.version('tsm-crossval')}+{found.hexdigest()[:8]}"
+    return f"{release()}+{found.hexdigest()[:8]}"
 
 
 def versions() -> dict[str, str]:

@@ -1,5 +1,7 @@
 """2D solid elements with unilateral contact: the finite-element reference for beam contact."""
 
+from typing import TYPE_CHECKING
+
 from fem_reference.conditions import EndLoad, Joint, Support
 from fem_reference.critical import CriticalPoint
 from fem_reference.material import MATERIALS, PLANES
@@ -41,3 +43,18 @@ __all__ = [
     "section_forces",
     "solve",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> str:
+        """Look the version up where it is asked for; that imports more than the package."""
+        if name != "__version__":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib.metadata import version
+
+        return version("tsm-crossval")

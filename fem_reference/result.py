@@ -1,7 +1,9 @@
 """Results: histories over the accepted load parameters."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
+from fem_reference import present
 from fem_reference.arrays import Floats, Ints
 from fem_reference.critical import CriticalPoint
 from fem_reference.model import Model
@@ -67,9 +69,9 @@ class SupportHistory:
     moment: Floats
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Result:
-    """A complete or incomplete solution, in the global frame.
+    """A complete or incomplete solution, in the global frame. It prints itself in a line and draws itself.
 
     Parameters
     ----------
@@ -124,11 +126,25 @@ class Result:
     critical: tuple[CriticalPoint, ...]
     unknowns: int
     wall_seconds: float
-    mesh_points: Floats = field(repr=False)
-    mesh_cells: dict[str, Ints] = field(repr=False)
-    displacement: Floats = field(repr=False)
-    model: Model = field(repr=False)
-    states: tuple[State, ...] = field(repr=False)
+    mesh_points: Floats
+    mesh_cells: dict[str, Ints]
+    displacement: Floats
+    model: Model
+    states: tuple[State, ...]
+
+    def __repr__(self) -> str:
+        return present.line(self)
+
+    def _repr_html_(self) -> str:
+        return present.html(self)
+
+    def table(self) -> dict[str, Any]:
+        """Return the histories as columns of equal length, what data frames take: see `fem_reference.present.table`."""
+        return present.table(self)
+
+    def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
+        """Draw the deformed meshes and the pins: see `fem_reference.present.plot`."""
+        return present.plot(self, axes, shown)
 
 
 class SolveError(RuntimeError):

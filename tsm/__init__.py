@@ -1,5 +1,7 @@
 """Planar beams by the tangent stiffness method with node-element contact, frictionless or with Coulomb friction."""
 
+from typing import TYPE_CHECKING
+
 from tsm.arc_length import trace
 from tsm.batch import BatchResult, solve_batch
 from tsm.elements import ELEMENTS
@@ -48,3 +50,18 @@ __all__ = [
     "solve_batch",
     "trace",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> str:
+        """Look the version up where it is asked for; that imports more than the package."""
+        if name != "__version__":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib.metadata import version
+
+        return version("tsm-crossval")

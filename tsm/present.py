@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,7 +43,7 @@ def summary(result: Result) -> str:
 
 
 def arrays(result: Result) -> dict[str, Array]:
-    """Return the histories by name, each with the s load parameters first: what ``numpy.savez`` and data frames take.
+    """Return the histories by name, each with the s load parameters first: what ``numpy.savez`` takes.
 
     ``load_parameter``, ``newton_iterations``, ``{node->beam}.force``, ``.arc_position``, ``.gap``, ``{beam}.tip`` (s, 2),
     ``{beam}.start.support_force`` (s, 2) and ``{beam}.start.support_moment`` for each supported end, ``{beam}.start.spring_force`` (s, 2)
@@ -65,6 +66,31 @@ def arrays(result: Result) -> dict[str, Array]:
         named[f"{end}.spring_force"] = spring.force
         named[f"{end}.spring_moment"] = spring.moment
     return named
+
+
+def table(result: Result) -> dict[str, Array]:
+    """Return the histories as columns of equal length, each of shape (s,): what ``pandas.DataFrame`` takes.
+
+    The names are those of `arrays`; a vector has two columns, ``{beam}.tip_x`` and ``{beam}.tip_y``.
+    """
+    columns: dict[str, Array] = {}
+    for name, values in arrays(result).items():
+        if values.ndim == 1:
+            columns[name] = values
+        else:
+            columns |= {f"{name}_{axis}": values[:, i] for i, axis in enumerate("xy")}
+    return columns
+
+
+def html(result: Result) -> str:
+    """Return the status and the last value of every column of `table` as HTML."""
+    rows = [
+        f"<tr><td>{escape(name)}</td><td>{values[-1]:.6g}</td></tr>"
+        for name, values in table(result).items()
+        if len(values)
+    ]
+    heading = escape(f"{result.status.name}: {result.message}")
+    return f"<h4>{heading}</h4><table><tbody>{''.join(rows)}</tbody></table>"
 
 
 def plot(result: Result, axes: Any = None, shown: int = SHOWN) -> Any:

@@ -146,8 +146,15 @@ class Result:
         return present.summary(self)
 
     def arrays(self) -> dict[str, Array]:
-        """Histories by name, see `tsm.present.arrays`: what ``numpy.savez`` and data frames take."""
+        """Histories by name, see `tsm.present.arrays`: what ``numpy.savez`` takes."""
         return present.arrays(self)
+
+    def table(self) -> dict[str, Array]:
+        """Histories as columns of equal length, see `tsm.present.table`: what ``pandas.DataFrame`` takes."""
+        return present.table(self)
+
+    def _repr_html_(self) -> str:
+        return present.html(self)
 
     def plot(self, axes: Any = None, shown: int = present.SHOWN) -> Any:
         """Draw the deflected axes, see `tsm.present.plot`."""

@@ -5,3 +5,7 @@ from comparisons.accuracy.choose import solve_to
 from comparisons.quantities import QUANTITIES
 
 __all__ = ["QUANTITIES", "Answer", "solve_to"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

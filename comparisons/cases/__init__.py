@@ -4,3 +4,7 @@ from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure
 
 __all__ = ["Case", "Measurement", "measure"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -118,9 +118,9 @@ class _Version(argparse.Action):
     """The version, looked up where it is asked for: the look-up imports more than the rest of the command."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from importlib import metadata
+        from comparisons.version import release
 
-        print(f"crossval {metadata.version('tsm-crossval')}")
+        print(f"crossval {release()}")
         parser.exit()
 
 

@@ -190,9 +190,9 @@ def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", mo
 
 def _program() -> str:
     """Return the name and the version of this program."""
-    from importlib import metadata
+    from comparisons.version import release
 
-    return f"tsm-crossval {metadata.version('tsm-crossval')}"
+    return f"tsm-crossval {release()}"
 
 
 def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:

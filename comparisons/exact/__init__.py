@@ -27,3 +27,7 @@ __all__ = [
     "rod_under_pin",
     "rod_with_friction",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

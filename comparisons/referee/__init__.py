@@ -22,3 +22,7 @@ __all__ = [
     "default_allowance",
     "equilibrium",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from comparisons.response.record import Array, Response, Sections
 from comparisons.scene import BeamSpec, Scene
@@ -66,8 +65,8 @@ def _along(response: Response, beam: BeamSpec) -> dict[str, Extreme]:
 
 
 def _sections(beam: BeamSpec, arcs: tuple[float, ...]) -> Array:
-    """Return area and half the height over the second moment at arc lengths, shape (2, m)."""
-    found = []
+    """Return area and half the height over the second moment at arc lengths, shape (2, m); of a uniform beam (2, 1)."""
+    found, arcs = [], arcs if beam.tapers else (0.0,)
     for arc in arcs:
         fraction = min(arc / beam.length, 1.0)
         area, inertia, _ = beam.section(fraction)
@@ -137,13 +136,13 @@ def peak(arc: Array, values: Array) -> tuple[float, float]:
 def _vertex(x: Array, values: Array, value: float, place: float) -> tuple[float, float]:
     """Return the largest value, and its place, of the polynomial through values at the distances `x` from a place, between its neighbours."""
     scale = np.abs(x).max()
-    curve = Polynomial(np.linalg.solve(np.vander(x / scale, increasing=True), values))
+    curve = np.linalg.solve(np.vander(x / scale), values)
     middle = len(x) // 2
     turns = [
         float(at.real)
-        for at in curve.deriv().roots()
+        for at in np.roots(np.polyder(curve))
         if at.imag == 0.0 and x[middle - 1] <= at.real * scale <= x[middle + 1]
     ]
-    best = max(turns, key=lambda at: abs(curve(at)), default=0.0)
-    found = float(curve(best))
+    best = max(turns, key=lambda at: abs(np.polyval(curve, at)), default=0.0)
+    found = float(np.polyval(curve, best))
     return (found, float(place + best * scale)) if abs(found) > abs(value) else (value, place)

@@ -33,3 +33,7 @@ __all__ = [
     "to_toml",
     "unstated",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 import fem_reference as fr
 from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, rotation
@@ -45,6 +47,22 @@ def test_nodal_stress_is_the_bending_stress(problem, angle):
     assert np.abs(across[bottom][x < 0.7]).max() < 0.02 * expected.max()
 
 
-def test_result_prints_in_a_few_lines(ks_axis):
-    assert "COMPLETED" in repr(ks_axis)
-    assert "mesh_points" not in repr(ks_axis)
+def test_result_prints_in_a_line(ks_axis):
+    assert repr(ks_axis).startswith("<Result COMPLETED: 50 load parameters, the last 1; ")
+
+
+def test_result_has_columns_and_a_picture(ks_axis):
+    columns = ks_axis.table()
+    assert {values.shape for values in columns.values()} == {(50,)}
+    assert columns[f"{CLAMP}.moment"] is ks_axis.supports[CLAMP].moment
+    assert columns[f"{PAIR}.force_y"] == pytest.approx(-columns[f"{CLAMP}.force_y"], abs=1e-9)
+    assert f"<td>{STRIP}.tip_x</td>" in ks_axis._repr_html_()
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    axes = ks_axis.plot(figure.subplots(), shown=2)
+    undeformed, first, last = (item.get_paths() for item in axes.collections)
+    assert len(undeformed) == len(first) == len(last) == 100
+    corners = ks_axis.mesh_cells["quad9"][-1, :4]
+    assert last[-1].vertices[:-1:2] == pytest.approx(
+        (ks_axis.mesh_points + ks_axis.displacement[-1])[corners]
+    )

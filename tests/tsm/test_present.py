@@ -54,6 +54,15 @@ def test_arrays_keep_names_and_shapes(result: tsm.Result) -> None:
     assert set(np.load(file)) == set(arrays)
 
 
+def test_a_table_has_columns_of_one_length(result: tsm.Result) -> None:
+    table = result.table()
+    assert {values.shape for values in table.values()} == {(10,)}
+    assert table["cantilever.tip_y"] == pytest.approx(result.tips["cantilever"][:, 1])
+    assert table["cantilever.start.support_force_x"][-1] == result.supports["cantilever.start"].force[-1, 0]
+    shown = result._repr_html_()
+    assert f"<td>pin-&gt;cantilever.force</td><td>{table['pin->cantilever.force'][-1]:.6g}</td>" in shown
+
+
 def test_a_result_draws_its_axes_and_pins(result: tsm.Result) -> None:
     figure = Figure()
     FigureCanvasAgg(figure)

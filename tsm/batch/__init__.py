@@ -7,3 +7,7 @@ from tsm.batch.result import BatchResult
 from tsm.batch.solve import solve_batch
 
 __all__ = ["BatchResult", "solve_batch"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -9,3 +9,7 @@ GROUPS: dict[type[ElementType], type[ElementGroup]] = {ClosedForm: ClosedFormGro
 """Groups by the kind of equations, in the order of assembly."""
 
 __all__ = ["GROUPS", "Change", "ClosedFormGroup", "ElementGroup", "ExactGroup", "GroupForces", "GroupTangent"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -5,3 +5,7 @@ from comparisons.models.translate.to_solid import to_solid
 from comparisons.models.translate.to_structure import to_structure
 
 __all__ = ["RodScene", "to_rod", "to_solid", "to_structure"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

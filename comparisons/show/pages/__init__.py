@@ -22,3 +22,7 @@ __all__ = [
     "tracks",
     "write_page",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
