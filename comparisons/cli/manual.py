@@ -38,7 +38,7 @@ def add_to(commands: "Commands") -> None:
         metavar="DIR",
         help="write every problem as a JSON file with its scene, values and source, and solve nothing",
     )
-    manual.add_argument("--only", nargs="+", metavar="NAME", help="these problems only")
+    manual.add_argument("--only", nargs="+", metavar="PROBLEM", help="these problems only")
     manual.add_argument("--quiet", action="store_true", help="no line for each case")
     manual.set_defaults(run=run)
 

@@ -11,7 +11,7 @@ from comparisons.models.outside.programs import ADAPTERS, known
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
-    "element": ({"metavar": "NAME"}, "type of the elements"),
+    "element": ({"metavar": "ELEMENT"}, "type of the elements"),
     "integration_tolerance": (
         {"type": values.part, "metavar": "X"},
         "error allowed to the integration inside exact elements (1e-9)",

@@ -30,7 +30,7 @@ def add_to(commands: "Commands") -> None:
     check = commands.add_parser(
         "check", help="validate a scene file, ask all models whether they can state it, and draw it"
     )
-    check.add_argument("scene", metavar="FILE", help="a TOML file or a built-in scene")
+    check.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
     check.add_argument("--out", metavar="FILE", help="the picture, PNG or SVG (SCENE.png)")
     add_others(check)
     check.add_argument("--json", metavar="FILE", help="write the resolved scene, which programs read")

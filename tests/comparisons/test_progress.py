@@ -3,6 +3,7 @@
 import io
 import re
 import subprocess
+from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 
 from comparisons.cli import main
 from comparisons.cli import progress as shown
+from comparisons.cli.command import command_parser
+from comparisons.cli.completion import FILES, FREE, arguments
 from comparisons.cli.progress import staging, watching
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -113,10 +116,47 @@ def test_completion(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ("--accuracy" in script) == (shell != "tcsh")
 
 
-def test_bash_completes_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["completion", "bash"]) == 0
-    script = tmp_path / "crossval"
-    script.write_text(capsys.readouterr().out)
-    ask = f"source {script}; COMP_WORDS=(crossval sol); COMP_CWORD=1; _shtab_crossval; echo ${{COMPREPLY[*]}}"
-    done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["solve"]
+@pytest.fixture(scope="module")
+def bash_script(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    script = tmp_path_factory.mktemp("completion") / "crossval"
+    out = io.StringIO()
+    with redirect_stdout(out):
+        assert main(["completion", "bash"]) == 0
+    script.write_text(out.getvalue())
+    return script
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("sol", {"solve"}),
+        ("solve tip", {"tip-load"}),
+        ("solve m", {"mine.toml", "more"}),
+        ("compare williams", {"williams-toggle"}),
+        ("view double-beam-", {"double-beam-friction"}),
+        ("solve tip-load --model el", {"elastica"}),
+        ("solve tip-load --element ex", {"exact"}),
+        ("study loc", {"locking"}),
+        ("certify m", {"mine.toml", "more", "mine.json"}),
+        ("manual --only eu", {"euler-column"}),
+        ("compare tip-load --out m", {"more"}),
+    ],
+)
+def test_bash_completes(line: str, words: set[str], bash_script: Path, tmp_path: Path) -> None:
+    for name in ("mine.toml", "mine.json", "mine.txt"):
+        (tmp_path / name).touch()
+    (tmp_path / "more").mkdir()
+    typed = line.split()
+    ask = f"source {bash_script}; COMP_WORDS=(crossval {line}); COMP_CWORD={len(typed)}; _shtab_crossval; echo ${{COMPREPLY[*]}}"
+    done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert set(done.stdout.split()) == words, done.stderr
+
+
+def test_the_shell_knows_what_every_value_can_be() -> None:
+    values = {
+        str(action.metavar)
+        for action in arguments(command_parser())
+        if action.nargs != 0 and action.choices is None
+    }
+    assert values <= {*FILES, *FREE, "ELEMENT", "PROBLEM"}
+    assert {*FILES, *FREE} <= values
