@@ -41,7 +41,7 @@ def extrapolated(responses: Sequence[Response]) -> Response:
             node: replace(support, force=force.get(node, support.force), moment=moment[node])
             for node, support in best.supports.items()
         },
-        material_force=limit(lambda one: one.material_force),
+        material_force=limit(lambda one: dict(one.material_force)),
         tips=limit(lambda one: one.tips),
         axis_line=SampledAxes(
             arc_length=sampled_axes(best).arc_length, position=limit(lambda one: sampled_axes(one).position)

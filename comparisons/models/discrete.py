@@ -26,6 +26,7 @@ from comparisons.response import (
     Sections,
     SupportHistory,
 )
+from comparisons.response.deferred import Deferred
 from comparisons.scene import Scene
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         response,
         contacts=contacts,
         tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
-        material_force=j_integrals(scene, result),
+        material_force=Deferred(lambda: j_integrals(scene, result)),
         deformation=deformation,
         sections=sections,
     )

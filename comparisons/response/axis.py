@@ -69,10 +69,19 @@ def sampled_axes(response: Response) -> SampledAxes:
 def storable(response: Response, *, axes: bool = True) -> Response:
     """Return a response of arrays only, which can be stored or sent to another process, with its axes at `STATIONS` or without axes.
 
-    Meshes, section forces, the deformation of elements and the certificate are not kept.
+    Meshes, section forces, the deformation of elements, the certificate and the scene are not kept.
     """
     kept = sampled_axes(response) if axes else SampledAxes(arc_length={}, position={})
-    return replace(response, axis_line=kept, grid=no_grid, sections=None, deformation=None, certificate=None)
+    return replace(
+        response,
+        material_force=dict(response.material_force),
+        axis_line=kept,
+        grid=no_grid,
+        sections=None,
+        deformation=None,
+        certificate=None,
+        definition=None,
+    )
 
 
 def no_grid(_: int) -> NoReturn:

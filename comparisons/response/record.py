@@ -1,6 +1,6 @@
 """The response of a model to a scene, and the records of contacts, supports, events and meshes in it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -267,7 +267,7 @@ class Response:
         Critical points that the model met.
     certificate : Certificate, optional
         Verdict of the referee on the answer.
-    material_force : dict of ndarray, shape (s,)
+    material_force : mapping of ndarray, shape (s,)
         Sum of the tangential contact forces on a beam, positive away from its clamp, by beam: see `comparisons.response.material`. Empty
         without such a clamp, and for a solid of another program.
     reported_success : bool
@@ -305,7 +305,7 @@ class Response:
     index: NDArray[np.int64] | None = None
     critical: tuple[CriticalPoint, ...] = ()
     certificate: "Certificate | None" = None
-    material_force: dict[str, Array] = field(default_factory=dict)
+    material_force: Mapping[str, Array] = field(default_factory=dict)
     reported_success: bool = False
     springs: dict[str, SupportHistory] = field(default_factory=dict)
     sections: Callable[[str, int], Sections] | None = None

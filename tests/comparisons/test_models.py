@@ -58,7 +58,8 @@ def test_response_moves_with_the_scene(model: str, mirrored: bool, from_end: boo
     scale = ours.force.max()
     assert theirs.force == pytest.approx(ours.force, abs=1e-7 * scale)
     assert arc == pytest.approx(ours.arc_position, abs=1e-7)
-    mine, other = here.supports["cantilever.start"], there.supports["cantilever.start"]
+    clamp = "cantilever.end" if from_end else "cantilever.start"
+    mine, other = here.supports["cantilever.start"], there.supports[clamp]
     assert other.moment == pytest.approx(sign * mine.moment, abs=1e-7 * scale)
     assert other.force == pytest.approx(mine.force @ turn.T, abs=1e-7 * scale)
     tips = here.tips["cantilever"] @ turn.T + np.array([3.0, -2.0])
