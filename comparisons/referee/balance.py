@@ -33,7 +33,7 @@ def unbalanced(scene: Scene, answer: AnswerState, exact: Equilibrium) -> str:
     pins = [spec for spec in scene.contacts if spec.pair in answer.forces and "." not in spec.node]
     acting += [(spec.node, np.array(answer.forces[spec.pair]), _roll(scene, answer, spec)) for spec in pins]
     acting += [(spring.node, *_held(scene, answer, exact, spring)) for spring in scene.springs]
-    places = [node_place(scene, answer, node) - origin for node, _, _ in acting]
+    places = [_place(scene, answer, node) - origin for node, _, _ in acting]
     length = max(beam.length for beam in scene.beams)
     unsure = sum(abs(moment) for (_, _, moment) in acting[len(acting) - len(scene.springs) :]) * PLACED
     for load in loads:
@@ -56,9 +56,22 @@ def unbalanced(scene: Scene, answer: AnswerState, exact: Equilibrium) -> str:
     return ""
 
 
+def _place(scene: Scene, answer: AnswerState, node: str) -> Array:
+    """Position of a node: prescribed if a support holds it, stated as a tip, or else the end of the stated axis, which is sampled."""
+    if "." in node:
+        for support in scene.all_supports:
+            x, y, _ = support.motion_at(answer.load_parameter)
+            if support.node == node and x is not None and y is not None:
+                return np.asarray(np.array(scene.place(node)) + np.array([x, y]))
+        beam, end = node.split(".")
+        if end == scene.tip(beam) and beam in answer.tips:
+            return np.array(answer.tips[beam])
+    return node_place(scene, answer, node)
+
+
 def _held(scene: Scene, answer: AnswerState, exact: Equilibrium, spring: SpringSpec) -> tuple[Array, float]:
     """Force and moment of a spring on its joint."""
-    moved = node_place(scene, answer, spring.node) - np.array(scene.place(spring.node))
+    moved = _place(scene, answer, spring.node) - np.array(scene.place(spring.node))
     return -np.array(spring.stiffness) * moved, -spring.rotation * exact.joint_rotation(spring.node)
 
 

@@ -8,6 +8,7 @@ the arc position ``s = a + l x`` on, x the fraction of the part, has the energy
 whose derivatives in l and in the part's beginning a include those of EI, 1/EA, 1/GA and n by s.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,13 +28,13 @@ OUTER = 6
 class Places(NamedTuple):
     """Rods at the Gauss points (e, g) of the elements.
 
-    beta : angle of the undeformed tangent.
+    frame (e, g, 2, 2) : unit vectors along the undeformed axis and to its left in the frame of the chord, as columns.
     curvature (e, 1) : kappa0.
     force, slope, bend (e, g, 2) : n and its first and second derivatives by s.
     rod, first, second : EI, 1/EA, 1/GA and their derivatives by s.
     """
 
-    beta: Array
+    frame: Array
     curvature: Array
     force: Array
     slope: Array
@@ -43,28 +44,77 @@ class Places(NamedTuple):
     second: Flexibility
 
 
-def places(layout: Layout, parts: NDArray[np.int64], arcs: Array, c: Array) -> Places:
+class Coefficients(NamedTuple):
+    """Polynomials in the arc position, ascending, by part, and what is constant along a part.
+
+    stiffness (p, k, 3) : EI, EA and GA.
+    load (p, k, 2) : W.
+    curvature, turn (p,) : kappa0, and the angle by which the beam turns.
+    """
+
+    stiffness: Array
+    load: Array
+    curvature: Array
+    turn: Array
+
+
+def coefficients_of(layout: Layout) -> Coefficients:
+    """Return the polynomials of all parts."""
+    rods = [part.rod for part in layout.parts]
+    return Coefficients(
+        stiffness=_padded([_padded(rod.stiffness).T for rod in rods]),
+        load=_padded([part.rod.load[part.piece] for part in layout.parts]),
+        curvature=np.array([rod.curvature for rod in rods]),
+        turn=np.array([rod.turn for rod in rods]),
+    )
+
+
+def _padded(tables: Sequence[Array]) -> Array:
+    """Stack tables of coefficients of any degrees."""
+    most = max(map(len, tables))
+    return np.stack(
+        [np.concatenate([item, np.zeros((most - len(item), *item.shape[1:]))]) for item in tables]
+    )
+
+
+def _evaluated(coefficients: Array, s: Array) -> tuple[Array, Array, Array]:
+    """Value, first and second derivative (m, e, g) of polynomials with coefficients (e, k, m) at arc positions (e, g)."""
+    rows = coefficients.transpose(1, 2, 0)[..., None]
+    value = rows[-1] + np.zeros_like(s)
+    first, second = np.zeros_like(value), np.zeros_like(value)
+    for row in rows[-2::-1]:
+        second = second * s + first
+        first = first * s + value
+        value = value * s + row
+    return value, first, 2.0 * second
+
+
+def places(given: Coefficients, parts: NDArray[np.int64], s: Array, c: Array) -> Places:
     """Evaluate the rods at arc positions (e, g) of elements of the parts `parts` (e,) with the constants c (e, 2)."""
-    shape = arcs.shape
-    beta, curvature = np.empty(shape), np.empty((len(arcs), 1))
-    force, slope, bend = (np.empty((*shape, 2)) for _ in range(3))
-    table = np.empty((3, 3, *shape))
-    for number, part in enumerate(layout.parts):
-        own = parts == number
-        if not own.any():
-            continue
-        s, rod, k0 = arcs[own], part.rod, part.rod.curvature
-        beta[own], curvature[own] = rod.angle(s), k0
-        first, second = rod.derivatives(s)
-        for order, values in enumerate((rod.flexibility(s), first, second)):
-            for k in range(3):
-                table[order, k, own] = values[k]
-        n = part.local(c[own][:, None, :], s)
-        q, change = (rod.turned(rod.density(part.piece, s, order), s) for order in (1, 2))
-        force[own] = n
-        slope[own] = rod.steepness(part.piece, n, s)
-        bend[own] = k0 * (_across(slope[own]) - _across(q)) - change
-    return Places(beta, curvature, force, slope, bend, *(Flexibility(*table[order]) for order in range(3)))
+    stiff, first, second = _evaluated(given.stiffness[parts], s)
+    W, q, change = _evaluated(given.load[parts], s)
+    k0 = given.curvature[parts][:, None]
+    beta = k0 * s - given.turn[parts][:, None] / 2.0
+    x, y = np.cos(beta), np.sin(beta)
+
+    def turned(vector: Array) -> Array:
+        return np.stack([x * vector[0] + y * vector[1], x * vector[1] - y * vector[0]], axis=-1)
+
+    n, load = turned(c.T[:, :, None] - W), turned(q)
+    slope = k0[..., None] * _across(n) - load
+    flexible = 1.0 / stiff[1:]
+    by_s = -first[1:] * flexible**2
+    by_ss = (2.0 * first[1:] ** 2 * flexible - second[1:]) * flexible**2
+    return Places(
+        frame=np.stack([np.stack([x, -y], axis=-1), np.stack([y, x], axis=-1)], axis=-2),
+        curvature=k0,
+        force=n,
+        slope=slope,
+        bend=k0[..., None] * (_across(slope) - _across(load)) - turned(change),
+        rod=Flexibility(stiff[0], *flexible),
+        first=Flexibility(first[0], *by_s),
+        second=Flexibility(second[0], *by_ss),
+    )
 
 
 def _across(vector: Array) -> Array:
@@ -101,8 +151,7 @@ def _density(theta: Array, there: Places) -> _Density:
     steep = d1 * (a * along + a1 * N)[..., None] + d2 * (c * over + c1 * Q)[..., None]
     flexible = a[..., None, None] * d1[..., :, None] * d1[..., None, :]
     flexible = flexible + c[..., None, None] * d2[..., :, None] * d2[..., None, :]
-    x, y = np.cos(there.beta), np.sin(there.beta)
-    frame = np.stack([np.stack([x, -y], axis=-1), np.stack([y, x], axis=-1)], axis=-2)
+    frame = there.frame
     return _Density(
         f=(n * tangent).sum(axis=-1) - a * N**2 / 2.0 - c * Q**2 / 2.0,
         turn=Q * stretched,
@@ -123,7 +172,7 @@ def elements(layout: Layout, mesh: Mesh, z: Array, coefficients: Array, c: Array
     extent = np.array([layout.extent(z, part) for part in layout.parts])[mesh.part]
     begin = np.array([layout.arc(z, part.first, part) for part in layout.parts])[mesh.part]
     x = mesh.start[:, None] + mesh.share[:, None] * (1.0 + GAUSS) / 2.0
-    there = places(layout, mesh.part, begin[:, None] + extent[:, None] * x, c)
+    there = places(coefficients_of(layout), mesh.part, begin[:, None] + extent[:, None] * x, c)
     half, grows = (mesh.share * extent / 2.0)[:, None], (mesh.share / 2.0)[:, None]
     f = _density(coefficients @ VALUES.T, there)
     w, bent = WEIGHTS, coefficients @ SLOPES.T

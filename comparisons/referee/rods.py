@@ -85,14 +85,9 @@ class Rod:
         EI, EA, GA = (polyval(s, item) for item in self.stiffness)
         return Flexibility(EI, 1.0 / EA, 1.0 / GA)
 
-    def derivatives(self, s: Array) -> tuple[Flexibility, Flexibility]:
-        """Return the first and second derivatives of EI, 1/EA and 1/GA by the arc position."""
-        first, second = [], []
-        for k, item in enumerate(self.stiffness):
-            value, slope, bend = (polyval(s, polyder(item, order)) for order in range(3))
-            first.append(slope if k == 0 else -slope / value**2)
-            second.append(bend if k == 0 else (2.0 * slope**2 / value - bend) / value**2)
-        return Flexibility(*first), Flexibility(*second)
+    def softening(self, s: float) -> Array:
+        """Return the derivatives of 1/EA and 1/GA by the arc position."""
+        return np.array([-polyval(s, polyder(item)) / polyval(s, item) ** 2 for item in self.stiffness[1:]])
 
     def between(self, a: float, b: float) -> Array:
         """Way of the undeformed axis from one arc position to another, in the frame of the chord."""
@@ -118,10 +113,6 @@ class Rod:
         """Resultant W (..., 2) of the load from the start to arc positions on a piece."""
         return np.stack([polyval(s, self.load[piece, :, k]) for k in range(2)], axis=-1)
 
-    def density(self, piece: int, s: Any, order: int = 1) -> Any:
-        """Return the load per length q (..., 2) on a piece, or a derivative of W of another order."""
-        return np.stack([polyval(s, polyder(self.load[piece, :, k], order)) for k in range(2)], axis=-1)
-
     def turned(self, vector: Any, s: Any, *, back: bool = False) -> Any:
         """Return vectors (..., 2) from the frame of the chord in the frame of the undeformed tangent at arc positions, or `back`."""
         if self.turn == 0.0:
@@ -133,7 +124,7 @@ class Rod:
     def steepness(self, piece: int, n: Any, s: Any) -> Any:
         """Return the derivative of `local`, n, by the arc position: ``kappa0 (n_y, -n_x) - q`` in the frame of the undeformed tangent."""
         turning = self.curvature * np.stack([n[..., 1], -n[..., 0]], axis=-1)
-        return turning - self.turned(self.density(piece, s), s)
+        return turning - self.turned(polyval(s, polyder(self.load[piece])), s)
 
     def local(self, piece: int, c: Any, s: Any) -> Any:
         """Force ``c - W`` in the frame of the undeformed tangent at arc positions, (..., 2); real or complex."""

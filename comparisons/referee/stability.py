@@ -58,7 +58,7 @@ def _directions(solution: Solution) -> Array:
             flexible = a * np.outer(d1, d1) + c * np.outer(d2, d2)
             forced.append((part.force, flexible if part.rod.turn == 0.0 else flexible @ _rotation(part, s)))
             if not part.rod.uniform:
-                moved += flexible @ part.rod.steepness(part.piece, n, s) + _softer(part, s) @ [
+                moved += flexible @ part.rod.steepness(part.piece, n, s) + part.rod.softening(s) @ [
                     here.N * d1,
                     here.Q * d2,
                 ]
@@ -78,9 +78,3 @@ def _directions(solution: Solution) -> Array:
 def _rotation(part: Part, s: float) -> Array:
     """Rotation from the frame of the chord to that of the undeformed tangent."""
     return np.asarray((part.axes.T @ part.rod.frame(s)).T)
-
-
-def _softer(part: Part, s: float) -> Array:
-    """Derivatives of 1/EA and 1/GA by the arc position."""
-    first, _ = part.rod.derivatives(np.array(s))
-    return np.array([first.stretch, first.shear])

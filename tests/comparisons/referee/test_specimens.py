@@ -17,6 +17,8 @@ from comparisons.referee.elements import mesh_of, properties
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.layout import lay_out
+from comparisons.referee.stability import _directions
+from comparisons.referee.state import _tangents
 from comparisons.scene import (
     BeamSpec,
     ContactSpec,
@@ -364,3 +366,39 @@ def test_the_face_of_an_undeformed_taper_is_a_line_at_half_the_height() -> None:
     slope = 0.02
     from_line = (y - (0.05 - slope * x)) / math.hypot(1.0, slope)
     assert from_line == pytest.approx(0.1, rel=1e-14)
+
+
+def test_the_direction_of_a_face_follows_the_variations_of_the_axis() -> None:
+    """The angle phi is no unknown of its own where the index is counted: it changes as ``nu . (r'_- + r'_+)/2 = -offset'`` says."""
+    scene = everything()
+    beam = replace(scene.beams[0], height=(0.12, 0.06), poissons_ratio=0.4)
+    contact = replace(scene.contacts[0], surface="face")
+    scene = replace(
+        scene,
+        beams=(beam,),
+        contacts=(contact,),
+        pins=(replace(scene.pins[0], radius=0.05, start=(0.6, -0.25)),),
+    )
+    exact = found(scene, undeformed(scene, arcs={"pin->a": 0.62}, forces={"pin->a": (-10.0, 60.0)}))
+    solution = exact.solution
+    layout, z, touch = solution.layout, solution.z, solution.layout.touches[0]
+
+    def phi(z: np.ndarray) -> float:
+        x, y = sum(_tangents(replace(solution, z=z), touch)) / 2.0
+        return math.atan2(y, x) + math.asin(touch.slope / math.hypot(x, y))
+
+    assert phi(z) == pytest.approx(z[touch.angle], abs=1e-12)
+    directions = _directions(solution)
+    before, behind = layout.beside(touch)
+    moved = [
+        layout.stations[before.last].rotation_unknown,
+        before.force,
+        before.force + 1,
+        behind.force,
+        behind.force + 1,
+    ]
+    kept = [k for k in range(len(z)) if k != touch.angle]
+    for k in [*moved, touch.arc]:
+        e = 1e-6 * np.eye(len(z))[k]
+        difference = (phi(z + e) - phi(z - e)) / 2e-6
+        assert directions[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
