@@ -14,6 +14,7 @@ from comparisons.models.options import Options
 from comparisons.referee import certify
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, built_in_scenes, load_scene
+from tests.verification.rod_by_shooting import Rod, free, pinned
 from tsm.elements import EXACT, MIXED
 
 NAMES = tuple(built_in_scenes())
@@ -30,8 +31,8 @@ def answer(scene: Scene, element: str = EXACT.name) -> Response:
     return response
 
 
-def test_there_are_twenty_five() -> None:
-    assert len(NAMES) == 25
+def test_there_are_twenty_eight() -> None:
+    assert len(NAMES) == 28
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -171,6 +172,56 @@ def test_the_stages_of_a_cycle_end_as_the_cycle_does() -> None:
     assert response.tips["cantilever"][-1] == pytest.approx((100.0, 0.0), abs=1e-7)
     turns = [(event.kind, event.stage) for event in response.events or () if event.kind == "stick"]
     assert turns == [("stick", 2), ("stick", 3), ("stick", 4)]
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_a_moment_straightens_an_arc(element: str) -> None:
+    """The axis is an arc of the angle 2 (1 - t), which begins at the angle -1."""
+    response = answer(load_scene("straightened-arc"), element)
+    turn = 2.0 * (1.0 - response.load_parameter[:-1])
+    tips = 100.0 * np.stack([np.sin(turn - 1.0) + np.sin(1.0), np.cos(1.0) - np.cos(turn - 1.0)], axis=1)
+    tips = np.append(tips / turn[:, None], [[100.0 * np.cos(1.0), -100.0 * np.sin(1.0)]], axis=0)
+    assert np.abs(response.tips["strip"] - tips).max() <= (1e-10 if element == EXACT.name else 1e-7)
+
+
+def test_a_heavy_strip_by_shooting() -> None:
+    response = answer(load_scene("heavy-strip"))
+    support = response.supports["strip.start"]
+    height, width, weight = 0.0006, 0.02, 7850.0 * 9.81 * 0.02 * 0.0006
+    rod = Rod(
+        height=(height, height),
+        width=(width, width),
+        youngs_modulus=2.1e11,
+        shear_modulus=2.1e11 / 2.6,
+        loads=((lambda _: np.array([0.0, -weight]), 0.0, 1.0),),
+    )
+    shot = free(rod, -np.array([*support.force[-1], support.moment[-1]]) + 1e-4)
+    assert np.abs(response.tips["strip"][-1] - shot.tip[:2]).max() <= 1e-9
+    assert shot.tip[:2] == pytest.approx([0.59321651, -0.74642688], abs=5e-9)
+    assert support.moment[-1] == pytest.approx(-shot.clamp[2], abs=1e-9)
+    assert -shot.clamp[2] == pytest.approx(0.3229455616, abs=5e-11)
+
+
+def test_a_tapered_spring_by_shooting() -> None:
+    """In units of 100 mm and EI at the clamp; the face of a straight taper is a line, the envelope of circles with these radii."""
+    response = answer(load_scene("tapered-spring"))
+    (contact,), support = response.contacts.values(), response.supports["spring.start"]
+    unit = 2.1e5 * 10.0 * 2.0**3 / 12.0 / 100.0**2
+    modulus = 2.1e5 * 100.0**2 / unit
+    rod = Rod(height=(0.02, 0.008), width=(0.1, 0.1), youngs_modulus=modulus, shear_modulus=modulus / 2.6)
+    steep = np.sin(np.arctan(0.006))
+    least = 0.01 * np.cos(np.arctan(0.006)) + 0.05
+    force = np.array([*-support.force[-1], -support.moment[-1] / 100.0]) / unit
+    guess = np.array([*force, *contact.vector[-1] / unit, contact.arc_position[-1] / 100.0])
+    shot = pinned(rod, (0.8, 0.19), (least, least - steep), guess + 1e-4)
+    assert np.hypot(*shot.force) * unit == pytest.approx(contact.force[-1], rel=1e-9)
+    assert shot.arc * 100.0 == pytest.approx(contact.arc_position[-1], rel=1e-9)
+    assert -shot.clamp[2] * unit * 100.0 == pytest.approx(support.moment[-1], rel=1e-9)
+    assert shot.tip[:2] * 100.0 == pytest.approx(response.tips["spring"][-1], rel=1e-9)
+    found = [contact.force[-1], contact.arc_position[-1], support.moment[-1], *response.tips["spring"][-1]]
+    assert found == pytest.approx(
+        [117.9405689, 81.86984774, -9206.772399, 92.59595018, 33.11294977], rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
