@@ -154,6 +154,11 @@ class Pin:
         return tuple(parts)
 
     @property
+    def length(self) -> float:
+        """Length of the path of the first stage."""
+        return self.polylines[0].length
+
+    @property
     def points(self) -> tuple[Point, ...]:
         """Corners of the path through all stages."""
         return (*self.path, *(point for points in self.onward for point in points))

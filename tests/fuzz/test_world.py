@@ -9,7 +9,9 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import penetration
-from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from comparisons.scene import SPECIAL, Scene, load_scene, read_scene, to_toml
+from comparisons.scene.keys import special_keys
+from tests.fuzz.special import drawn_special
 from tests.fuzz.world import drawn, drawn_with_friction
 from tests.fuzz.world_judge import Row, findings, judged
 
@@ -82,6 +84,29 @@ def test_a_slip_of_a_stiff_beam_ends_in_a_stick_with_any_number_of_load_paramete
     assert one.status == many.status == "COMPLETED"
     for pair, contact in one.contacts.items():
         assert many.contacts[pair].force[-1] == pytest.approx(contact.force[-1], rel=1e-9)
+
+
+def test_drawn_scenes_with_special_keys_are_certified() -> None:
+    """Hinges, springs, stages, loads along a beam, weight, curvature, taper: exact and mixed elements against the referee."""
+    found = [judged(drawn_special(seed), BEAMS, ()).bare() for seed in (100, 101, 102, 103, 104)]
+    assert not [item.report() for item in found if item.findings]
+    assert all(row.completed for item in found for row in item.rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(100, 140, 10))
+def test_more_drawn_scenes_with_special_keys_are_certified(first: int) -> None:
+    found = [judged(drawn_special(seed), BEAMS, ()).bare() for seed in range(first, first + 10)]
+    assert not [item.report() for item in found if item.findings]
+
+
+def test_drawn_scenes_have_every_special_key() -> None:
+    scenes = [drawn_special(seed) for seed in range(120)]
+    assert scenes == [drawn_special(seed) for seed in range(120)]
+    assert all(read_scene(to_toml(scene), "copy") == scene for scene in scenes)
+    keys = Counter(key for scene in scenes for key in special_keys(scene))
+    assert set(keys) == set(SPECIAL)
+    assert min(keys.values()) >= 3
 
 
 def test_the_seed_alone_decides_what_is_drawn() -> None:
