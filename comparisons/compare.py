@@ -297,7 +297,7 @@ def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, r
     if len(both) < 2 or reached == 0:
         report("side-by-side.png: left out, it takes beams and solid")
         return []
-    ks = nearest_steps(both[0].load_parameter[:reached])
+    ks = nearest_steps(both[0].load_parameter[:reached], scene.times[-1])
     times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
     panels = [
         beam_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),

@@ -1,6 +1,6 @@
 """Pictures by matplotlib: the overlay of deflected shapes, and a stand-in for the rendered picture."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +22,13 @@ BEAMS: tuple[dict[str, Any], ...] = (
     {"marker": "^", "markersize": 4.0},
 )
 CONTINUOUS = {"linewidth": 3.5}
-"""Exact elements, which have no nodes to mark: their grid is finer than the axis that is drawn."""
+"""Exact elements, which have no nodes to mark."""
+FINE = 5
+"""Points of an axis for each line of its grid, below which the lines are no elements but pieces of an exact one."""
 SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
-"""Load parameters of the overlay; the nearest ones of the scene are drawn."""
+"""Load parameters of the overlay over the scene's last; the nearest ones of the scene are drawn."""
+LABELS = 0.06
+"""Least distance of two labels of pins, over the size of the picture."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
 PIXELS = 1400
@@ -50,9 +54,9 @@ def save(fig: Any, *paths: Path) -> None:
             fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
 
 
-def nearest_steps(load_parameter: Array, wanted: Sequence[float] = SHOWN) -> list[int]:
-    """Return the numbers of the load parameters nearest to the `wanted` ones, each once."""
-    return sorted({int(np.argmin(np.abs(load_parameter - t))) for t in wanted})
+def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
+    """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
+    return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
 
 
 def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
@@ -67,8 +71,9 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     paths : Path
         Files, in the formats of their suffixes.
     """
-    fig = figure(figsize=(11.0, 5.6))
-    whole, detail = fig.subplots(1, 2, width_ratios=(1.75, 1.0))
+    fig = figure(figsize=(WIDTH, 7.4))
+    places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
+    whole, detail = places["whole"], places["detail"]
     for axes in (whole, detail):
         _draw_shapes(axes, scene, responses)
         axes.set_aspect("equal", adjustable="box")
@@ -76,8 +81,13 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     length = scene.units.split(",")[1].strip()
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
+    tall = float(np.clip(0.85 * WIDTH * whole.dataLim.height / max(whole.dataLim.width, 1e-300), 1.2, 5.5))
+    whole.get_gridspec().set_height_ratios((tall + 0.8, 2.8))
+    fig.set_figheight(tall + 3.6)
     _zoom_on_tip(whole, detail, scene, responses)
-    whole.legend(loc="best", fontsize="small")
+    places["legend"].set_axis_off()
+    handles, words = whole.get_legend_handles_labels()
+    places["legend"].legend(handles, words, loc="center", fontsize="small", frameon=False)
     save(fig, *paths)
 
 
@@ -86,7 +96,8 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     drawn: set[float] = set()
     for label, response in responses.items():
         style = {"color": palette.colour(label), **_style(response, scene, beam_styles)}
-        for k in nearest_steps(response.load_parameter) if len(response.load_parameter) else []:
+        reached = response.load_parameter
+        for k in nearest_steps(reached, scene.times[-1]) if len(reached) else []:
             drawn.add(float(response.load_parameter[k]))
             for beam in scene.beams:
                 _, line = response.axis_line(beam.name, k)
@@ -96,13 +107,22 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
                 axes.plot(*line.T, label=label, markevery=every, **{"linewidth": 0.8, **style})
                 label = "_"  # noqa: PLW2901 one entry of the legend per response
     times = sorted(drawn)
+    apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
     for pin in scene.pins:
-        axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label="path of the pin")
+        only = "_" if pin is not scene.pins[0] else ""
+        axes.plot(
+            *np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label=f"{only}path of a pin"
+        )
         places = np.array([pin.position(t) for t in times]).reshape(-1, 2)
-        axes.plot(*places.T, linestyle="none", marker="*", markersize=9, color="0.2", label="pin", zorder=5)
+        axes.plot(
+            *places.T, linestyle="none", marker="*", markersize=9, color="0.2", label=f"{only}pin", zorder=5
+        )
+        last = None
         for t, place in zip(times, places, strict=True):
-            text = f"t = {t:.3g}"
-            axes.annotate(text, place, (6, -10), textcoords="offset points", fontsize="x-small", clip_on=True)
+            if last is None or np.hypot(*(place - last)) > apart:
+                words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True}
+                axes.annotate(f"t = {t:.3g}", place, (6, -11), **words)
+                last = place
 
 
 def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:
@@ -114,7 +134,7 @@ def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any
         return SOLID
     reached = len(response.load_parameter)
     points = len(response.axis_line(scene.beams[0].name, 0)[1]) if reached else 0
-    return CONTINUOUS if reached and _elements(response, scene, 0) >= points else next(beam_styles)
+    return CONTINUOUS if reached and FINE * _elements(response, scene, 0) > points else next(beam_styles)
 
 
 def _elements(response: Response, scene: Scene, k: int) -> int:
@@ -136,7 +156,7 @@ def _zoom_on_tip(whole: Any, detail: Any, scene: Scene, responses: dict[str, Res
         title=f"The framed tip, t = {exact.load_parameter[-1]:.3g}",
     )
     detail.ticklabel_format(useOffset=False)
-    detail.locator_params(nbins=5)
+    detail.locator_params(nbins=3)
     box = whole.indicate_inset(bounds=(x - half, y - half, 2.0 * half, 2.0 * half), edgecolor="0.3")
     box.rectangle.set_zorder(4)
 

@@ -80,7 +80,8 @@ def test_brightness_grows_with_the_stress() -> None:
 
 
 def test_nearest_steps_are_distinct() -> None:
-    assert nearest_steps(np.array([0.25, 0.5, 0.75, 1.0]), (0.2, 0.4, 0.6, 0.8, 1.0)) == [0, 1, 2, 3]
+    assert nearest_steps(np.array([0.25, 0.5, 0.75, 1.0])) == [0, 1, 2, 3]
+    assert nearest_steps(np.linspace(0.1, 2.0, 20), 2.0) == [3, 7, 11, 15, 19]
     assert nearest_steps(np.array([1.0])) == [0]
 
 
