@@ -201,7 +201,12 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
         body.point_data["stress"] = panel.stress
         letters = LABEL * _side(panels) // PANEL
         # one bar in each panel takes different titles
-        bar = {**BAR, "title": scale.label + " " * i, "title_font_size": letters, "label_font_size": letters}
+        bar = {
+            **BAR,
+            "title": scale.label + " " * i + "\n",
+            "title_font_size": letters,
+            "label_font_size": letters,
+        }
         plotter.add_mesh(
             body,
             name="body",

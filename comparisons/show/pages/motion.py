@@ -13,11 +13,14 @@ from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.pages.markup import scrolling, text
 from comparisons.show.pages.page import Section
+from comparisons.show.symbols import support_symbols
 
 POINTS = 61
 """Points of a deformed axis."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
+SYMBOL = 0.03
+"""Size of a support's symbol over the size of the scene."""
 DIGITS = 5
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
@@ -157,9 +160,15 @@ def motion_section(
             for beam in scene.beams
         ],
         "pins": [
-            {"name": pin.name, "path": pin.points, "at": [pin.position(float(t)) for t in times]}
+            {
+                "name": pin.name,
+                "path": pin.points,
+                "radius": pin.radius or 0.0,
+                "at": [pin.position(float(t)) for t in times],
+            }
             for pin in scene.pins
         ],
+        "supports": _supports(scene, times),
         "tip": responses[focus].tips[first.name],
         "focus": focus,
         "runs": [
@@ -174,6 +183,16 @@ def motion_section(
         "vtu": vtu or {},
     }
     return Section(title=title, html=_markup(data, len(times)), data=data)
+
+
+def _supports(scene: Scene, times: Array) -> list[dict[str, Any]]:
+    """Return the symbols of the supports as lines, and their displacements at every load parameter."""
+    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
+    symbols = support_symbols(scene, SYMBOL * float(np.ptp(ends, axis=0).max()))
+    return [
+        {"lines": lines, "at": [[value or 0.0 for value in one.motion_at(float(t))[:2]] for t in times]}
+        for one, lines in zip(scene.all_supports, symbols, strict=True)
+    ]
 
 
 def _ordered(labels: Sequence[str]) -> list[str]:
@@ -231,7 +250,7 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
 </fieldset>
 <div class="drawings">
 <figure><svg class="shapes" role="img" aria-label="deformed axes at the load parameter of the slider"></svg>
-<figcaption>Deformed axes; stars are pins, dotted lines their paths; thin grey: other load parameters.</figcaption></figure>
+<figcaption>Deformed axes; stars are pins, circles their true radii, dotted lines their paths; thin grey: other load parameters.</figcaption></figure>
 <figure><svg class="zoom" role="img" aria-label="the surroundings of the tip, enlarged"></svg>
 <figcaption>The tip, enlarged.</figcaption></figure>
 </div>

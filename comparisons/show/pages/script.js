@@ -64,7 +64,9 @@ function stroke(run) {
 function bounds(data) {
   const all = data.runs.flatMap((run) => run.lines.flat(2));
   for (const beam of data.beams) all.push(...beam);
-  for (const pin of data.pins) all.push(...pin.path);
+  for (const { path, radius } of data.pins) {
+    for (const [a, b] of path) all.push([a - radius, b - radius], [a + radius, b + radius]);
+  }
   const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
   for (const [a, b] of all) {
     box.left = Math.min(box.left, a);
@@ -102,8 +104,16 @@ function drawShapes(svg, data, wanted, k) {
       element(at.plot, "polyline", { class: "run", "data-run": number, style: stroke(run), points: points(line, at) });
     }
   });
+  for (const { lines, at: moved } of data.supports) {
+    const [dx, dy] = moved[k];
+    for (const line of lines) element(at.plot, "polyline", { class: "support", points: points(line.map(([a, b]) => [a + dx, b + dy]), at) });
+  }
   for (const pin of data.pins) {
-    const [a, b] = pin.at[k], star = [];
+    const [a, b] = pin.at[k], star = [], round = [];
+    for (let n = 0; n < 60; n++) {
+      round.push([a + pin.radius * Math.cos((Math.PI * n) / 30), b + pin.radius * Math.sin((Math.PI * n) / 30)]);
+    }
+    if (pin.radius) element(at.plot, "polygon", { class: "disc", points: points(round, at) });
     for (let n = 0; n < 10; n++) {
       const radius = n % 2 ? 3 : 8, angle = (Math.PI * n) / 5;
       star.push(`${at.x(a) + radius * Math.sin(angle)},${at.y(b) - radius * Math.cos(angle)}`);

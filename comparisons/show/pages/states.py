@@ -5,12 +5,16 @@ from itertools import groupby
 
 import numpy as np
 
-from comparisons.response import CONTACT_STATES, Response
+from comparisons.response import CONTACT_STATES, SLIPS, Response
 from comparisons.show.pages.markup import scrolling, text
 from comparisons.show.pages.page import Section
 
-WIDTH, HEIGHT, LABEL, GAP = 900, 18, 340, 8
-"""Sizes of the picture: of the bands, one band, the labels, and the space between bands."""
+WIDTH, HEIGHT, LABEL, GAP, RIM = 600, 16, 18, 10, 14
+"""Sizes of the picture: of the bands, one band, the label above it, the space between bands, and the rim."""
+STROKE = 7
+"""Distance of the strokes of a hatched band."""
+HATCHED = SLIPS[-1]
+"""The state whose bands are hatched, which distinguishes it in grey print."""
 
 
 def states_section(responses: Mapping[str, Response]) -> Section | None:
@@ -26,19 +30,20 @@ def states_section(responses: Mapping[str, Response]) -> Section | None:
     ]
     if not bands:
         return None
-    height = len(bands) * (HEIGHT + GAP) + 30
-    rows = "\n".join(_row(number, label, parts) for number, (label, parts) in enumerate(bands))
+    height = len(bands) * (LABEL + HEIGHT + GAP) + 24
+    last = max(parts[-1][2] for _, parts in bands)
+    rows = "\n".join(_row(number, label, parts, last) for number, (label, parts) in enumerate(bands))
     axis = "\n".join(
-        f'<text x="{LABEL + part * WIDTH:.1f}" y="{height - 8}" text-anchor="middle">{part:g}</text>'
+        f'<text x="{RIM + part * WIDTH:.1f}" y="{height - 8}" text-anchor="middle">{part * last:g}</text>'
         for part in (0.0, 0.25, 0.5, 0.75, 1.0)
     )
     legend = " ".join(
         f'<span class="switch"><svg class="swatch" viewBox="0 0 40 10" aria-hidden="true">'
-        f'<rect width="40" height="10" fill="{colour}"/></svg>{text(state)}</span>'
-        for state, colour in CONTACT_STATES.items()
+        f"{_rect(state, 0.0, 0.0, 40.0, 10.0)}</svg>{text(state)}</span>"
+        for state in CONTACT_STATES
     )
     drawn = (
-        f'<svg viewBox="0 0 {LABEL + WIDTH + 20} {height}" style="min-width:40rem;width:100%" role="img" '
+        f'<svg viewBox="0 0 {WIDTH + 2 * RIM} {height}" style="min-width:30rem;max-width:46rem;width:100%" role="img" '
         f'aria-label="contact states over the load parameter">\n{rows}\n{axis}\n</svg>'
     )
     caption = "What each contact with friction does, over the load parameter."
@@ -75,11 +80,24 @@ def band(response: Response, pair: str) -> list[tuple[str, float, float]]:
     return parts
 
 
-def _row(number: int, label: str, parts: list[tuple[str, float, float]]) -> str:
-    top = number * (HEIGHT + GAP) + 4
+def _row(number: int, label: str, parts: list[tuple[str, float, float]], last: float) -> str:
+    top = number * (LABEL + HEIGHT + GAP) + 4
     shapes = "".join(
-        f'<rect x="{LABEL + begin * WIDTH:.2f}" y="{top}" width="{(end - begin) * WIDTH:.2f}" height="{HEIGHT}" '
-        f'fill="{CONTACT_STATES[state]}"><title>{text(state)} from {begin:.6g} to {end:.6g}</title></rect>'
+        f"<g><title>{text(state)} from {begin:.6g} to {end:.6g}</title>"
+        f"{_rect(state, RIM + begin / last * WIDTH, top + LABEL, (end - begin) / last * WIDTH, HEIGHT)}</g>"
         for state, begin, end in parts
     )
-    return f'<text x="0" y="{top + HEIGHT - 5}">{text(label)}</text>{shapes}'
+    return f'<text x="{RIM}" y="{top + LABEL - 5}">{text(label)}</text>{shapes}'
+
+
+def _rect(state: str, left: float, top: float, width: float, height: float) -> str:
+    """Return a rectangle in the colour of a state, hatched for `HATCHED`."""
+    drawn = (
+        f'<rect x="{left:.2f}" y="{top:.0f}" width="{width:.2f}" height="{height:.0f}" '
+        f'fill="{CONTACT_STATES[state]}"/>'
+    )
+    if state != HATCHED:
+        return drawn
+    feet = np.arange(left, left + width - height, STROKE)
+    strokes = "".join(f"M{foot:.1f},{top + height:.0f}l{height:.0f},-{height:.0f}" for foot in feet)
+    return f'{drawn}<path d="{strokes}" stroke="#16181d" stroke-width="1"/>' if strokes else drawn

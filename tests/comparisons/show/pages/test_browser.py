@@ -9,9 +9,12 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons.models import solve
-from comparisons.scene import load_scene
+from comparisons.scene import SupportSpec, load_scene, read_scene
 from comparisons.show.pages import Section, motion_section, page, tracks
 from tests.comparisons.show.pages.conftest import STEPS, Browser
+from tests.comparisons.show.specimen import SPECIMEN
+
+MOVED = SupportSpec(beam="hook", end="start", kind="clamped", displacement=(0.0, 3.0))
 
 HELPERS = """
 const one = (selector) => document.querySelector(selector);
@@ -186,6 +189,30 @@ def test_a_section_may_bring_a_script_and_data_of_its_own(browser: Browser, tmp_
     found, console = browser.told(tmp_path / "report.html", script)
     assert console == []
     assert found["texts"] == ["2+1", "3+1"]
+
+
+def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path) -> None:
+    """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
+    scene = read_scene(SPECIMEN, "specimen")
+    scene = replace(scene, beams=(replace(scene.beams[0], clamped=()), *scene.beams[1:]), supports=(MOVED,))
+    beams = solve(scene, "tsm")
+    section = motion_section("Drawn", scene, {"TSM mixed": beams}, [], focus="TSM mixed")
+    (tmp_path / "report.html").write_text(page("t", "", [section]))
+    script = """
+    const box = (selector) => { const b = [...document.querySelectorAll(selector)].at(-1).getBBox(); return [b.x, b.y, b.width, b.height]; };
+    const look = () => ({
+      disc: box(".shapes .disc"), path: box(".shapes .path"),
+      support: box(".shapes .support"), arc: one(".shapes .rest").getAttribute("points").split(" ").length,
+    });
+    told.end = look(); slide(1); told.second = look();
+    """
+    found = told(browser, tmp_path, script)
+    disc, path = found["end"]["disc"], found["end"]["path"]
+    assert disc[2] == pytest.approx(disc[3], rel=0.01)
+    assert disc[2] / path[2] == pytest.approx(2 * 12 / 20, rel=0.01)  # the pin goes 20 mm to the right
+    assert found["end"]["arc"] == 25
+    assert found["end"]["support"] != found["second"]["support"]
+    assert found["end"]["disc"] != found["second"]["disc"]
 
 
 def test_a_run_that_stopped_leaves_no_error(browser: Browser, tmp_path: Path) -> None:

@@ -11,8 +11,10 @@ import pytest
 from comparisons.cli import main
 from comparisons.errors import error_histories, errors
 from comparisons.models import MODELS, solve
+from comparisons.response import SLIPS
 from comparisons.scene import load_scene
 from comparisons.show.pages import Section, motion_section, page, picture, table, tracks
+from comparisons.show.pages.states import band, states_section
 from comparisons.show.palette import colour
 from tests.comparisons.show.pages.markup import block, check_alone
 
@@ -82,6 +84,22 @@ def test_the_page_begins_with_the_findings(compared: Path) -> None:
 def test_the_page_of_ks_is_small(tmp_path: Path) -> None:
     assert main(["compare", "ks-cantilever", "--out", str(tmp_path)]) == 0
     assert 3e5 < (tmp_path / "report.html").stat().st_size < 3e6
+
+
+def test_bands_of_stick_and_slip_differ_without_colour() -> None:
+    """The slip to the start is hatched."""
+    scene = replace(load_scene("ks-friction"), load_parameters=4)
+    beams = solve(scene, "tsm")
+    states = dict.fromkeys(state for state, _, _ in band(beams, "pin->cantilever"))
+    assert list(states) == [SLIPS[-1], SLIPS[1]] or set(states) == set(SLIPS.values())
+    section = states_section({"TSM mixed": beams})
+    assert section is not None
+    legend, drawn = section.html.split('aria-label="contact states over')
+    assert legend.count("<path") == 1
+    assert drawn.count("<path") == 1
+    assert f"{SLIPS[-1]} from 0 to " in drawn
+    widths = [float(width) for width in re.findall(r'width="([\d.]+)" height="16"', drawn)]
+    assert max(widths) <= 600.0
 
 
 def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
