@@ -89,7 +89,8 @@ def a_load_not_applied(patch: pytest.MonkeyPatch) -> None:
 
     def forgetful(self: Any, structure: Any) -> None:
         true(self, structure)
-        self.load[np.flatnonzero(self.load)[0]] = 0.0
+        (first,) = self.loads.rows
+        first[np.flatnonzero(first)[0]] = 0.0
 
     patch.setattr(Model, "_prescribe", forgetful)
 
@@ -111,13 +112,14 @@ def a_stale_result(patch: pytest.MonkeyPatch) -> None:
 
 
 def swapped_reactions(patch: pytest.MonkeyPatch) -> None:
-    true = discrete_models._by_beam
+    true = discrete_models._response
 
     def swapped(*given: Any) -> Any:
         found = true(*given)
-        return dict(zip(found, reversed(found.values()), strict=True))
+        reactions = zip(found.supports, reversed(found.supports.values()), strict=True)
+        return replace(found, supports=dict(reactions))
 
-    patch.setattr(discrete_models, "_by_beam", swapped)
+    patch.setattr(discrete_models, "_response", swapped)
 
 
 def a_wrong_support(patch: pytest.MonkeyPatch) -> None:
