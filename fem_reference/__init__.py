@@ -2,8 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from fem_reference.conditions import EndLoad, Joint, Support
+from fem_reference.conditions import EndLoad, Joint, Spring, Support
 from fem_reference.critical import CriticalPoint
+from fem_reference.loads import LineLoad, PointLoad
 from fem_reference.material import MATERIALS, PLANES
 from fem_reference.observe import axis_line, axis_stations, energy, fibre_stress, nodal_stress
 from fem_reference.problem import Contact, Pin, SolidProblem, default_penalty
@@ -23,12 +24,15 @@ __all__ = [
     "CriticalPoint",
     "EndLoad",
     "Joint",
+    "LineLoad",
     "Pin",
+    "PointLoad",
     "Result",
     "SectionForces",
     "Settings",
     "SolidProblem",
     "SolveError",
+    "Spring",
     "Status",
     "Strip",
     "Support",

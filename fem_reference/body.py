@@ -127,7 +127,14 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     sides = np.ptp(mesh.nodes[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
     modulus = float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0])
-    return 4 * float(np.finfo(float).eps) * modulus * strip.width * strip.length * aspect
+    return (
+        4
+        * float(np.finfo(float).eps)
+        * modulus
+        * max(strip.width, strip.end_width or 0.0)
+        * strip.length
+        * aspect
+    )
 
 
 def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:

@@ -26,7 +26,8 @@ class Border:
     M
         Gradients of the constraints ``U M``, ``(k, c)``. They differ from N for friction only.
     C
-        Flexibilities of the constraints ``(c,)`` [m/N]; for a contact that slips, the factor 1 of its tangential force.
+        Flexibilities of the constraints ``(c,)`` [m/N]; for a contact that slips, the factor 1 of its tangential force;
+        for a tie, its own.
     coupling
         Factors ``(c, c)`` of the forces of other constraints: ``-sigma mu`` of a normal force where the contact slips.
     removed
@@ -94,6 +95,7 @@ def build_border(model: Model, state: State) -> Border:
     M, coupling = N.copy(), np.zeros((N.shape[1], N.shape[1]))
     C = np.zeros(N.shape[1])
     C[: len(closed)] = [1 / touch.pair.penalty for touch in closed]
+    C[contacts:] = [tie.flexibility for tie in ties]
     removed = np.zeros(N.shape[1], dtype=bool)
     removed[: len(closed)] = [touch.pair.contact.penetration is not None for touch in closed]
     for number, touch in enumerate(rubbing, len(closed)):

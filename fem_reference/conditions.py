@@ -1,10 +1,11 @@
-"""Conditions of strips' ends: supports, dead loads and rigid joints. They act on the end's mean displacement and rotation."""
+"""Conditions of strips' ends: supports, springs, dead loads and joints. They act on the end's mean displacement and rotation."""
 
 from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
 
+from fem_reference.arrays import Floats
 from fem_reference.checks import Point, require, require_choice, require_distinct, require_point
 from fem_reference.strip import Strip
 
@@ -46,6 +47,46 @@ class Support:
     def node(self) -> str:
         """Name of the end, ``"strip.end"``."""
         return f"{self.strip}.{self.end}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring:
+    """Linear springs between a strip's end and the ground, without force in the undeformed state.
+
+    Parameters
+    ----------
+    strip, end
+        Name of the strip, and its end, ``"start"`` or ``"end"``.
+    stiffness
+        Stiffness against the mean displacement x, y [N/m] and the rotation [N m/rad] of the end section.
+
+    Raises
+    ------
+    ValueError
+        If a stiffness is negative or not finite, or all vanish.
+    """
+
+    strip: str
+    end: str
+    stiffness: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        owner = f"Spring({self.node!r})"
+        require_choice(owner, "end", self.end, ENDS)
+        finite = len(self.stiffness) == 3 and all(isfinite(value) and value >= 0 for value in self.stiffness)
+        rule = "must be three finite values, none negative, not all zero"
+        require(finite and any(self.stiffness), owner, "stiffness", self.stiffness, rule)
+
+    @property
+    def node(self) -> str:
+        """Name of the end, ``"strip.end"``."""
+        return f"{self.strip}.{self.end}"
+
+    @property
+    def motion(self) -> Motion:
+        """Zero for the components that the springs resist, None for the others."""
+        x, y, rotation = (0.0 if value else None for value in self.stiffness)
+        return x, y, rotation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,36 +132,60 @@ class EndLoad:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """A rigid joint: the ends keep a common mean position, and turn by the same angle. The corner itself is not meshed.
+    """A joint: the ends keep a common mean position. All but the hinged ones turn by the same angle. The corner is not meshed.
 
     Parameters
     ----------
     ends
         Names of at least two ends with the same undeformed position, ``"strip.end"``.
+    hinged
+        Ends among them that turn against the first end, which is not hinged.
+    stiffness
+        Stiffnesses of rotational springs between the hinged ends and the first end, in the order of ``hinged``; zero for a hinge without a
+        moment. Without a value all are zero [N m/rad].
 
     Raises
     ------
     ValueError
-        If there are fewer than two ends, or an end appears twice.
+        If there are fewer than two ends, an end appears twice, a hinged end is none of the others, or a stiffness is negative or not finite.
     """
 
     ends: tuple[str, ...]
+    hinged: tuple[str, ...] = ()
+    stiffness: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        owner = f"Joint({self.ends!r})"
         distinct = len(self.ends) == len(set(self.ends)) >= 2
-        require(distinct, f"Joint({self.ends!r})", "ends", self.ends, "must be at least two different ends")
+        require(distinct, owner, "ends", self.ends, "must be at least two different ends")
+        known = len(self.hinged) == len(set(self.hinged)) and set(self.hinged) <= set(self.ends[1:])
+        require(known, owner, "hinged", self.hinged, f"must be different ends among {self.ends[1:]}")
+        finite = all(isfinite(value) and value >= 0 for value in self.stiffness)
+        counted = len(self.stiffness) in (0, len(self.hinged))
+        rule = "must be one finite value for every hinged end, none negative"
+        require(finite and counted, owner, "stiffness", self.stiffness, rule)
+
+    def stiffness_of(self, end: str) -> float | None:
+        """Stiffness of a hinge [N m/rad]; None for an end without a hinge."""
+        if end not in self.hinged:
+            return None
+        return self.stiffness[self.hinged.index(end)] if self.stiffness else 0.0
+
+
+Holding = Support | Spring
+"""What holds an end section."""
 
 
 def require_known_ends(
     strips: tuple[Strip, ...],
-    supports: tuple[Support, ...],
+    holding: tuple[Holding, ...],
     joints: tuple[Joint, ...],
     loads: tuple[EndLoad, ...],
 ) -> None:
-    """Require known ends without clamps, one support at a joint or end, and joints at one position."""
+    """Require known ends without clamps, one support and one spring at a joint or end, and joints at one position."""
     positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in strips for end in ENDS}
     clamps = [f"{strip.name}.{end}" for strip in strips for end in strip.clamped]
-    conditions: list[Support | EndLoad] = [*supports, *loads]
+    conditions: list[Holding | EndLoad] = [*holding, *loads]
     for condition in conditions:
         owner = f"{type(condition).__name__}({condition.node!r})"
         require(condition.node in positions, owner, "strip", condition.strip, "must name a strip")
@@ -134,42 +199,44 @@ def require_known_ends(
             )
     require_distinct("SolidProblem", "joints", (end for joint in joints for end in joint.ends))
     first = {end: joint.ends[0] for joint in joints for end in joint.ends}
-    require_distinct("SolidProblem", "supports", (first.get(item.node, item.node) for item in supports))
+    for name, kind in (("supports", Support), ("springs", Spring)):
+        nodes = (first.get(item.node, item.node) for item in holding if isinstance(item, kind))
+        require_distinct("SolidProblem", name, nodes)
 
 
 def require_held(
     strips: tuple[Strip, ...],
-    supports: tuple[Support, ...],
+    holding: tuple[Holding, ...],
     joints: tuple[Joint, ...],
     touching: list[tuple[str, Point, Point]],
 ) -> None:
     """Require strips that cannot move without strain; ``touching`` has the strip, position and normal of pins that touch."""
     for group in _structures(strips, joints):
-        rows = [
-            (position, (float(component == 0), float(component == 1)), float(component == 2))
-            for position, motion in _held(strips, supports, group)
-            for component in range(3)
-            if motion[component] is not None
-        ]
-        rows += [(position, normal, 0.0) for name, position, normal in touching if name in group]
+        own = [strip for strip in strips if strip.name in group]
+        motions, rows = _held(own, holding)
+        rows += [(name, position, normal, 0.0) for name, position, normal in touching if name in group]
         rule = f"must hold {', '.join(sorted(group))}, with the pins that touch at the start"
-        motions = tuple(motion for _, motion in _held(strips, supports, group))
-        require(_rigid(rows), "SolidProblem", "supports", motions, rule)
+        require(_rigid(own, rows, joints), "SolidProblem", "supports", motions, rule)
 
 
-def _held(
-    strips: tuple[Strip, ...], supports: tuple[Support, ...], group: set[str]
-) -> list[tuple[Point, Motion]]:
-    """Positions and motions of the clamps and supports of a group of strips."""
-    own = {strip.name: strip for strip in strips if strip.name in group}
-    held: list[tuple[Point, Motion]] = [
-        (strip.start if end == "start" else strip.end, (0.0, 0.0, 0.0))
-        for strip in own.values()
-        for end in strip.clamped
+Row = tuple[str, Point, Point, float]
+"""Strip, position, direction of a displacement there and factor of the rotation of a held component."""
+
+
+def _held(strips: list[Strip], holding: tuple[Holding, ...]) -> tuple[tuple[Motion, ...], list[Row]]:
+    """Motions of the clamps, supports and springs of a group of strips, and the components they hold."""
+    own = {strip.name: strip for strip in strips}
+    ends: list[tuple[str, str, Motion]] = [
+        (strip.name, end, (0.0, 0.0, 0.0)) for strip in strips for end in strip.clamped
     ]
-    ends = [(own[item.strip], item) for item in supports if item.strip in own]
-    held += [(strip.start if item.end == "start" else strip.end, item.motion) for strip, item in ends]
-    return held
+    ends += [(item.strip, item.end, item.motion) for item in holding if item.strip in own]
+    rows = [
+        (name, getattr(own[name], end), (float(component == 0), float(component == 1)), float(component == 2))
+        for name, end, motion in ends
+        for component in range(3)
+        if motion[component] is not None
+    ]
+    return tuple(motion for *_, motion in ends), rows
 
 
 def _structures(strips: tuple[Strip, ...], joints: tuple[Joint, ...]) -> list[set[str]]:
@@ -182,11 +249,27 @@ def _structures(strips: tuple[Strip, ...], joints: tuple[Joint, ...]) -> list[se
     return groups
 
 
-def _rigid(held: list[tuple[Point, Point, float]]) -> bool:
-    """Whether no rigid motion ``(a - c y, b + c x, c)`` is left; held are positions, directions there, and rotations."""
-    rows = []
-    for position, (nx, ny), rotation in held:
-        x, y = np.subtract(position, held[0][0])
-        rows.append((nx, ny, ny * x - nx * y + rotation))
-    scale = np.array([1.0, 1.0, 1 / max([1e-300, *(abs(row[2]) for row in rows)])])
-    return len(rows) > 0 and int(np.linalg.matrix_rank(np.array(rows) * scale, tol=1e-9)) == 3
+def _rigid(strips: list[Strip], held: list[Row], joints: tuple[Joint, ...]) -> bool:
+    """Whether the strips, each with a rigid motion ``(a - c y, b + c x, c)``, cannot move against held components and joints."""
+    numbers = {strip.name: number for number, strip in enumerate(strips)}
+    origin, size = strips[0].start, max(strip.length for strip in strips)
+
+    def row(name: str, position: Point, direction: Point, rotation: float) -> Floats:
+        x, y = (np.array(position) - origin) / size
+        found = np.zeros((len(strips), 3))
+        nx, ny = direction
+        found[numbers[name]] = nx, ny, ny * x - nx * y + rotation
+        return found.ravel()
+
+    rows = [row(*item) for item in held]
+    for joint in joints:
+        (first, *others) = (end.split(".") for end in joint.ends)
+        for name, end in others:
+            if name in numbers:
+                place = getattr(strips[numbers[name]], end)
+                components = [((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0)]
+                if joint.stiffness_of(f"{name}.{end}") != 0.0:
+                    components.append(((0.0, 0.0), 1.0))
+                rows += [row(name, place, *item) - row(first[0], place, *item) for item in components]
+    unknowns = 3 * len(strips)
+    return len(rows) >= unknowns and int(np.linalg.matrix_rank(np.array(rows), tol=1e-9)) == unknowns

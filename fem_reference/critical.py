@@ -9,7 +9,7 @@ from fem_reference.arrays import Floats
 from fem_reference.model import Model
 from fem_reference.newton import check_convergence, updated
 from fem_reference.settings import Settings
-from fem_reference.state import State, build_state, contact_energy, residual
+from fem_reference.state import State, build_state, contact_energy, residual, spring_energy
 from fem_reference.status import Status
 from fem_reference.tangent import Tangent, linearise
 from fem_reference.track import Accepted, accept, accepted_state, root_by_inverse_interpolation
@@ -293,7 +293,7 @@ def _on_branch(model: Model, located: Located, offset: Floats, settings: Setting
 
 
 def potential(model: Model, state: State, near: State) -> float:
-    """Total potential energy: strain energy and contact energy minus the work of the dead loads [J].
+    """Total potential energy: strain energy, energy of contacts and springs, minus the work of the dead loads [J].
 
     Dead moments do work on the rotation from the state ``near``, which is less than half a turn away.
     """
@@ -302,4 +302,5 @@ def potential(model: Model, state: State, near: State) -> float:
         for pose, other in zip(state.poses, near.poses, strict=True)
     ]
     work = float(np.sum(model.load * state.u)) + float(model.moments @ turns)
-    return model.strain_energy(state.u) + contact_energy(state) - state.t * work
+    stored = model.strain_energy(state.u) + contact_energy(state) + spring_energy(model, state)
+    return stored - state.t * work

@@ -153,7 +153,7 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
 
 def contact_spread(strip: Strip, contact: Contact) -> float:
     """Half the length of contact averaging [m]: ``contact.spread``, or 1.5 heights and at most a tenth of the length."""
-    return min(1.5 * strip.height, strip.length / 10) if contact.spread is None else contact.spread
+    return min(1.5 * strip.largest_height, strip.length / 10) if contact.spread is None else contact.spread
 
 
 def averaging(spread: float, spacing: float) -> tuple[Floats, Floats]:

@@ -122,7 +122,7 @@ class Pose:
 
 @dataclass(frozen=True, kw_only=True)
 class Tie:
-    """One component of an end's motion, prescribed or equal to the same component of another end.
+    """One component of an end's motion, prescribed or equal to the same component of another end, rigidly or by a spring.
 
     Parameters
     ----------
@@ -132,17 +132,25 @@ class Tie:
         Number of the other end section; None if the component is prescribed.
     rate
         Prescribed motion at the load parameter 1 [m or rad].
+    flexibility
+        Difference of the motions over the force against it, the inverse of a spring's stiffness; zero for a rigid tie.
     """
 
     section: int
     component: int
     other: int | None = None
     rate: float = 0.0
+    flexibility: float = 0.0
 
-    def residual(self, poses: tuple[Pose, ...], t: float) -> float:
-        """Motion less the prescribed one or the other end's; an angle is in [-pi, pi] [m or rad]."""
+    @property
+    def grounded(self) -> bool:
+        """Whether the tie is a spring to the ground."""
+        return self.other is None and self.flexibility > 0
+
+    def residual(self, poses: tuple[Pose, ...], t: float, force: Any) -> float:
+        """Motion less the prescribed one or the other end's, plus the flexibility times the ``force``; an angle is in [-pi, pi] [m or rad]."""
         target = t * self.rate if self.other is None else poses[self.other].motion[self.component]
-        difference = float(poses[self.section].motion[self.component] - target)
+        difference = float(poses[self.section].motion[self.component] - target + self.flexibility * force)
         return (
             float(np.remainder(difference + np.pi, 2 * np.pi) - np.pi)
             if self.component == ROTATION

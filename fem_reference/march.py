@@ -368,5 +368,7 @@ def _condition_after(model: Model, touch: Touch, at_rest_strip: int | None, lost
         return touch.condition.opened(armed=False)
     if at_rest_strip in touch.pair.strips:
         return touch.condition.opened(armed=touch.condition.armed)
-    near = abs(touch.gap) < model.problem.strips[touch.pair.strips[0]].height and touch.projection.inside
+    near = (
+        abs(touch.gap) < model.problem.strips[touch.pair.strips[0]].largest_height and touch.projection.inside
+    )
     return replace(touch.condition, closed=touch.closed or (touch.condition.armed and near))

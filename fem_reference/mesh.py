@@ -132,7 +132,10 @@ def structured_mesh(strip: Strip) -> Discretisation:
     x = strip.length * _fractions(nx, strip.grading)
     y = strip.height / 2 * np.linspace(-1.0, 1.0, ny + 1)
     tensor = MeshQuad.init_tensor(x, y)
-    basis = scalar_basis(MeshQuad(tensor.p, tensor.t[[0, 3, 2, 1]]), strip.element)
+    points = tensor.p
+    if strip.end_height is not None:
+        points[1] *= strip.height_at(points[0]) / strip.height
+    basis = scalar_basis(MeshQuad(points, tensor.t[[0, 3, 2, 1]]), strip.element)
     nodes = basis.doflocs.T
     order = np.lexsort((np.round(nodes[:, 1] / strip.height, 9), np.round(nodes[:, 0] / x[1], 9)))
     columns = order.reshape(-1, (1 if strip.element == "Q1" else 2) * ny + 1)
@@ -167,7 +170,7 @@ def from_basis(
         cells=cells,
         gauss=_points(basis),
         at_nodes=_points(at_nodes),
-        weights=strip.width * basis.dx,
+        weights=strip.width_at(np.asarray(basis.global_coordinates())[0]) * basis.dx,
         gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
         edges=edges,
         stations=stations,

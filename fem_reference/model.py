@@ -9,7 +9,7 @@ from scipy.sparse import block_diag, csr_matrix
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.body import ANCHORED, Body, build_body
-from fem_reference.conditions import ENDS
+from fem_reference.conditions import ENDS, Joint
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
 from fem_reference.end_section import EndSection, Tie, anchor_stiffness, end_rows
@@ -38,7 +38,7 @@ class Model:
     sections, columns
         End sections that are supported, joined, anchored or loaded by a moment, and their columns ``(2 n, 4 e)``.
     ties
-        Ties of these sections: components of supports, then of joints.
+        Ties of these sections: components of supports, then of springs, then of joints.
     moments
         Dead moments on the sections at the load parameter 1, ``(e,)`` [N m].
     """
@@ -84,14 +84,18 @@ class Model:
     def largest_load(self) -> float:
         """Largest dead force, or moment over the longest strip, at the load parameter 1 [N]."""
         forces = [float(np.hypot(*load.force)) for load in self.problem.loads]
+        forces += [
+            float(np.hypot(*item.on_sections(body.strip, body.mesh.stations).sum(axis=0)))
+            for item in self.problem.inner_loads
+            for body in self.bodies
+            if body.strip.name == item.strip
+        ]
         return max([*forces, *(abs(load.moment) / self.length for load in self.problem.loads)], default=0.0)
 
     @cached_property
     def axial_stiffness(self) -> float:
         """Largest ``E A / L`` of the strips [N/m]."""
-        return max(
-            strip.youngs_modulus * strip.width * strip.height / strip.length for strip in self.problem.strips
-        )
+        return max(strip.axial_stiffness for strip in self.problem.strips)
 
     @cached_property
     def length(self) -> float:
@@ -146,7 +150,7 @@ def build(problem: SolidProblem) -> Model:
         parts=parts,
         pairs=tuple(_pair(problem, contact, bodies, parts) for contact in problem.contacts),
         expansion=block_diag([body.expansion for body in bodies], format="csr"),
-        load=np.concatenate([_end_forces(problem, body) for body in bodies]),
+        load=np.concatenate([_dead_forces(problem, body) for body in bodies]),
         sections=sections,
         columns=np.hstack(columns) if columns else np.zeros((2 * parts[-1].stop, 0)),
         ties=_ties(problem, numbers),
@@ -154,14 +158,18 @@ def build(problem: SolidProblem) -> Model:
     )
 
 
-def _end_forces(problem: SolidProblem, body: Body) -> Floats:
-    """Nodal forces ``(n, 2)`` of the dead forces on a body's ends, in the strip's frame [N]."""
+def _dead_forces(problem: SolidProblem, body: Body) -> Floats:
+    """Nodal forces ``(n, 2)`` of the dead forces on a body's ends and inside it, in the strip's frame [N]."""
     forces = np.zeros((len(body.mesh.nodes), 2))
     for load in problem.loads:
         if load.strip == body.strip.name:
             edge = body.mesh.edges[load.end]
             share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
             forces[edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
+    for inner in problem.inner_loads:
+        if inner.strip == body.strip.name:
+            on_sections = inner.on_sections(body.strip, body.mesh.stations)
+            forces += body.mesh.sections.T @ on_sections @ body.strip.frame
     return forces
 
 
@@ -169,7 +177,7 @@ def _sections(
     problem: SolidProblem, bodies: tuple[Body, ...], parts: tuple[slice, ...]
 ) -> tuple[EndSection, ...]:
     """End sections that are supported, joined, anchored or loaded by a moment."""
-    needed = {support.node for support in problem.supports}
+    needed = {support.node for support in problem.supports} | {spring.node for spring in problem.springs}
     needed |= {end for joint in problem.joints for end in joint.ends}
     needed |= {load.node for load in problem.loads if load.moment}
     anchored = {f"{body.strip.name}.{ANCHORED}" for body in bodies if body.anchor is not None}
@@ -207,13 +215,27 @@ def _ties(problem: SolidProblem, numbers: dict[str, int]) -> tuple[Tie, ...]:
         for component, rate in enumerate(support.motion)
         if rate is not None
     ]
+    springs = [
+        Tie(section=numbers[spring.node], component=component, flexibility=1 / stiffness)
+        for spring in problem.springs
+        for component, stiffness in enumerate(spring.stiffness)
+        if stiffness
+    ]
     joints = [
-        Tie(section=numbers[end], component=component, other=numbers[joint.ends[0]])
+        Tie(section=numbers[end], component=component, other=numbers[joint.ends[0]], flexibility=flexibility)
         for joint in problem.joints
         for end in joint.ends[1:]
-        for component in range(3)
+        for component, flexibility in enumerate(_flexibilities(joint, end))
     ]
-    return (*supports, *joints)
+    return (*supports, *springs, *joints)
+
+
+def _flexibilities(joint: Joint, end: str) -> tuple[float, ...]:
+    """Flexibilities of the tied components x, y and, unless the end turns freely, rotation."""
+    stiffness = joint.stiffness_of(end)
+    if stiffness is None:
+        return 0.0, 0.0, 0.0
+    return (0.0, 0.0, 1 / stiffness) if stiffness else (0.0, 0.0)
 
 
 def _pair(

@@ -15,7 +15,8 @@ from fem_reference.checks import (
     require_point,
     require_positive,
 )
-from fem_reference.conditions import EndLoad, Joint, Support, require_held, require_known_ends
+from fem_reference.conditions import EndLoad, Joint, Spring, Support, require_held, require_known_ends
+from fem_reference.loads import LineLoad, PointLoad
 from fem_reference.strip import Strip
 
 TURN = 0.5
@@ -161,7 +162,7 @@ class Contact:
 
 @dataclass(frozen=True, kw_only=True)
 class SolidProblem:
-    """Strips, pins and their contacts, and supports, joints and loads of ends.
+    """Strips, pins and their contacts, supports, springs, joints and loads of ends, and loads inside the strips.
 
     Raises
     ------
@@ -176,6 +177,8 @@ class SolidProblem:
     supports: tuple[Support, ...] = ()
     joints: tuple[Joint, ...] = ()
     loads: tuple[EndLoad, ...] = ()
+    inner_loads: tuple[PointLoad | LineLoad, ...] = ()
+    springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
         require(len(self.strips) > 0, "SolidProblem", "strips", self.strips, "must hold at least one strip")
@@ -191,8 +194,16 @@ class SolidProblem:
             rule = f"must name a pin or another strip's end: {nodes}"
             require(contact.node in nodes, owner, "node", contact.node, rule)
             self._require_side(contact)
-        require_known_ends(self.strips, self.supports, self.joints, self.loads)
-        require_held(self.strips, self.supports, self.joints, self._touching())
+        for load in self.inner_loads:
+            require(
+                load.strip in names,
+                f"{type(load).__name__}({load.strip!r})",
+                "strip",
+                load.strip,
+                "must name a strip",
+            )
+        require_known_ends(self.strips, (*self.supports, *self.springs), self.joints, self.loads)
+        require_held(self.strips, (*self.supports, *self.springs), self.joints, self._touching())
 
     def strip(self, name: str) -> Strip:
         """Return the strip called ``name``."""
@@ -224,7 +235,11 @@ class SolidProblem:
         """Initial gap of a contact's node, and its axial coordinate on the strip [m]."""
         strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
         axial, transverse = strip.to_local(np.array(start, dtype=float))
-        height = strip.height / 2 if contact.surface == "face" else 0.0
+        height = (
+            strip.height_at(min(max(float(axial), 0.0), strip.length)) / 2
+            if contact.surface == "face"
+            else 0.0
+        )
         return float(contact.sign * transverse - height - radius), float(axial)
 
     def _touching(self) -> list[tuple[str, Point, Point]]:

@@ -86,6 +86,8 @@ class Result:
     contacts, supports, tips
         Contact histories by pair ``"pin->strip"``, reactions by supported end ``"strip.start"``, and positions ``(s, 2)`` of
         section means by strip: of the end, or of the start where only the end is clamped [m].
+    springs
+        Forces and moments of the springs on their strips by end ``"strip.start"``.
     newton_iterations
         Number of linear solutions for each load parameter, including sub-steps and rejected attempts, ``(s,)``.
     cutbacks
@@ -119,6 +121,7 @@ class Result:
     contacts: dict[str, ContactHistory]
     supports: dict[str, SupportHistory]
     tips: dict[str, Floats]
+    springs: dict[str, SupportHistory]
     newton_iterations: Ints
     cutbacks: int
     substeps: int

@@ -61,7 +61,7 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
     layers = body.strip.mesh[1] if body.strip.mesh_file is None else SECTION_LAYERS
     points, shares, heights = section_points(body.mesh.nodes, body.mesh.edges, X, layers)
-    weights = body.strip.width * heights[:, None] * shares
+    weights = (body.strip.width_at(X) * heights)[:, None] * shares
     u = result.states[k].u[part]
     sampled = sample(body.mesh, points)
     F = sampled.deformation_gradient(u)

@@ -12,7 +12,7 @@ from fem_reference.observe import section_means
 from fem_reference.problem import SolidProblem
 from fem_reference.result import ContactHistory, Result, SolveError, SupportHistory
 from fem_reference.settings import Settings
-from fem_reference.state import State, contact_force, reactions
+from fem_reference.state import Reaction, State, contact_force, reactions, spring_forces
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
@@ -107,6 +107,7 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
             for number, pair in enumerate(model.pairs)
         },
         supports=_supports(model, states),
+        springs=_springs(model, states),
         tips={body.strip.name: _tips(model, body.strip.name, states) for body in model.bodies},
         newton_iterations=np.array([step.iterations for step in done], dtype=np.int64),
         cutbacks=sum(step.cutbacks for step in steps),
@@ -157,14 +158,24 @@ def _contact_history(
 
 
 def _supports(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
-    rows = [reactions(model, state) for state in states]
     clamps = [f"{strip.name}.{end}" for strip in model.problem.strips for end in strip.clamped]
+    nodes = [*clamps, *(support.node for support in model.problem.supports)]
+    return _histories(nodes, [reactions(model, state) for state in states])
+
+
+def _springs(model: Model, states: tuple[State, ...]) -> dict[str, SupportHistory]:
+    nodes = [spring.node for spring in model.problem.springs]
+    return _histories(nodes, [spring_forces(model, state) for state in states] if nodes else [])
+
+
+def _histories(nodes: list[str], rows: list[dict[str, Reaction]]) -> dict[str, SupportHistory]:
+    """Histories of forces and moments by end."""
     return {
         node: SupportHistory(
             force=np.array([row[node][0] for row in rows]).reshape(-1, 2),
             moment=np.array([row[node][1] for row in rows]),
         )
-        for node in (*clamps, *(support.node for support in model.problem.supports))
+        for node in nodes
     }
 
 

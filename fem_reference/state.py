@@ -175,7 +175,12 @@ def section_forces(model: Model, state: State, actions: Floats) -> Floats:
 
 def tie_residuals(model: Model, state: State) -> Floats:
     """Residuals ``(c,)`` of the ties [m or rad]."""
-    return np.array([tie.residual(state.poses, state.t) for tie in model.ties])
+    return np.array(
+        [
+            tie.residual(state.poses, state.t, force)
+            for tie, force in zip(model.ties, state.tie_forces.real, strict=True)
+        ]
+    )
 
 
 def contact_force(touch: Touch) -> Floats:
@@ -190,6 +195,23 @@ Reaction = tuple[Floats, float]
 """Force ``(2,)`` on a strip in the global frame [N], and moment about the supported point [N m]."""
 
 
+def spring_forces(model: Model, state: State) -> dict[str, Reaction]:
+    """Forces and moments of the springs to the ground by end. They act at the mean of the section."""
+    return _tie_reactions(model, state, [item.node for item in model.problem.springs], grounded=True)
+
+
+def _tie_reactions(model: Model, state: State, nodes: list[str], *, grounded: bool) -> dict[str, Reaction]:
+    """Sums of the ties' forces at the ends ``nodes`` that a support or, if ``grounded``, a spring holds."""
+    found = dict.fromkeys(nodes, (np.zeros(2), 0.0))
+    for tie, value in zip(model.ties, state.tie_forces, strict=True):
+        if tie.other is None and tie.grounded == grounded:
+            force, moment = found[model.sections[tie.section].node]
+            values = np.append(force, moment)
+            values[tie.component] = value
+            found[model.sections[tie.section].node] = (values[:2], float(values[ROTATION]))
+    return found
+
+
 def reactions(model: Model, state: State) -> dict[str, Reaction]:
     """Reactions of clamps and supports by end. The point is the middle of a clamped edge, or the mean of a section."""
     R, found = residual(model, state), dict[str, Reaction]()
@@ -200,21 +222,14 @@ def reactions(model: Model, state: State) -> dict[str, Reaction]:
             arm = body.mesh.nodes[edge] + state.u[part][edge] - body.middle(end)
             moment = _moment(arm, forces)
             found[f"{body.strip.name}.{end}"] = (np.asarray(body.strip.frame @ forces.sum(axis=0)), moment)
-    for support in model.problem.supports:
-        found[support.node] = (np.zeros(2), 0.0)
-    for tie, value in zip(model.ties, state.tie_forces, strict=True):
-        if tie.other is None:
-            force, moment = found[model.sections[tie.section].node]
-            values = np.append(force, moment)
-            values[tie.component] = value
-            found[model.sections[tie.section].node] = (values[:2], float(values[ROTATION]))
-    return found
+    nodes = [support.node for support in model.problem.supports]
+    return found | _tie_reactions(model, state, nodes, grounded=False)
 
 
 def imbalance(model: Model, state: State) -> float:
     """Largest component of the sum of all external forces and moments [N].
 
-    External are the reactions of clamps and supports, the forces of the pins and the dead loads. Moments refer to the start
+    External are the reactions of clamps, supports and springs, the forces of the pins and the dead loads. Moments refer to the start
     of the first strip and are divided by the length of the longest one.
     """
     origin = np.array(model.problem.strips[0].start)
@@ -231,7 +246,8 @@ def imbalance(model: Model, state: State) -> float:
         moment += _moment(points, loads)
         for end in body.strip.clamped:
             places[f"{body.strip.name}.{end}"] = start + body.strip.frame @ body.middle(end)
-    for node, (force, free_moment) in reactions(model, state).items():
+    held = (*reactions(model, state).items(), *spring_forces(model, state).items())
+    for node, (force, free_moment) in held:
         total += force
         moment += free_moment + _moment(places[node], force)
     for touch in state.closed:
@@ -246,6 +262,12 @@ def imbalance(model: Model, state: State) -> float:
 def contact_energy(state: State) -> float:
     """Energy ``eps g^2 / 2`` of all closed contacts [J]."""
     return sum(touch.pair.penalty * touch.gap**2 / 2 for touch in state.closed)
+
+
+def spring_energy(model: Model, state: State) -> float:
+    """Energy ``C F^2 / 2`` of the springs to the ground and in hinges [J]."""
+    flexibilities = np.array([tie.flexibility for tie in model.ties])
+    return float((flexibilities * state.tie_forces**2).sum() / 2)
 
 
 def _moment(arms: Floats, forces: Floats) -> float:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import hypot
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
-    """A straight strip.
+    """A strip with a straight axis.
 
     Parameters
     ----------
@@ -43,6 +44,8 @@ class Strip:
         Ends of the axis [m]; its direction is from start to end.
     height, width
         Dimensions of the section in the plane and out of it [m].
+    end_height, end_width
+        Dimensions of the section at the end, if the strip tapers: they change linearly along the axis. None for those at the start [m].
     youngs_modulus, poissons_ratio
         Elastic constants [Pa, -].
     clamped
@@ -78,6 +81,8 @@ class Strip:
     width: float
     youngs_modulus: float
     poissons_ratio: float
+    end_height: float | None = None
+    end_width: float | None = None
     clamped: tuple[str, ...] = ("start",)
     clamp: str = "rod"
     mesh: tuple[int, int] = (50, 2)
@@ -94,6 +99,13 @@ class Strip:
         require(self.length > 0, owner, "end", self.end, "must differ from start")
         for field in ("height", "width", "youngs_modulus", "grading"):
             require_positive(owner, field, getattr(self, field))
+        for field in ("end_height", "end_width"):
+            if getattr(self, field) is not None:
+                require_positive(owner, field, getattr(self, field))
+                rule = "must be None with a mesh file, which has the strip's shape"
+                require(
+                    self.mesh_file is None or field == "end_width", owner, field, getattr(self, field), rule
+                )
         nu = self.poissons_ratio
         require(-1 < nu < 0.5, owner, "poissons_ratio", nu, "must lie between -1 and 0.5")
         require_choice(owner, "clamped", self.clamped, ((), ("start",), ("end",), ("start", "end")))
@@ -123,8 +135,28 @@ class Strip:
 
     @property
     def bending_stiffness(self) -> float:
-        """``E b h^3 / 12`` [N m^2]."""
-        return self.youngs_modulus * self.width * self.height**3 / 12
+        """``E b h^3 / 12`` of the middle section [N m^2]."""
+        middle = self.length / 2
+        return float(self.youngs_modulus * self.width_at(middle) * self.height_at(middle) ** 3 / 12)
+
+    @property
+    def axial_stiffness(self) -> float:
+        """``E b h / L`` of the middle section [N/m]."""
+        middle = self.length / 2
+        return float(self.youngs_modulus * self.width_at(middle) * self.height_at(middle) / self.length)
+
+    def height_at(self, x: Any) -> Any:
+        """Height of the sections at the axial coordinates ``x`` [m]."""
+        return _linear(self.height, self.end_height, x / self.length)
+
+    def width_at(self, x: Any) -> Any:
+        """Width of the sections at the axial coordinates ``x`` [m]."""
+        return _linear(self.width, self.end_width, x / self.length)
+
+    @property
+    def largest_height(self) -> float:
+        """Largest height of a section [m]."""
+        return max(self.height, self.end_height or 0.0)
 
     @property
     def frame(self) -> Floats:
@@ -142,3 +174,7 @@ class Strip:
         """Transform points ``(..., 2)`` from the strip's frame to the global frame."""
         placed: Array = points @ self.frame.T + np.array(self.start)
         return placed
+
+
+def _linear(start: float, end: float | None, fraction: Any) -> Any:
+    return start if end is None else start + fraction * (end - start)

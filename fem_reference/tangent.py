@@ -3,7 +3,7 @@ r"""Equilibrium linearised about a state: Newton corrections, rates, and the ind
 The unknowns are displacements, contact forces and tie forces. U has the columns of closed contacts and end sections, see
 `fem_reference.contact` and `fem_reference.end_section`. In these columns the curvature of a gap times its force, and of a
 rotation times its moment, is a block of A, and the gradient of a constraint is a column of N. The flexibility C of a
-contact is ``1 / eps``, or zero where augmented Lagrangian steps remove the penetration; a tie has none. The motion of the
+contact is ``1 / eps``, or zero where augmented Lagrangian steps remove the penetration; that of a tie is zero or a spring's. The motion of the
 pin alone changes ``U^T u`` by p. With the constraint residual r,
 
     K du - U A (U^T du + p) - U N dlam = -R,     M^T (U^T du + p) + C dlam = -r.

@@ -207,6 +207,9 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         response,
         contacts=contacts,
         tips=_tips(scene, response, lambda beam, k: axis_line(beam, k)[1]),
+        springs={
+            end: SupportHistory(force=item.force, moment=item.moment) for end, item in result.springs.items()
+        },
         material_force=Deferred(lambda: j_integrals(scene, result)),
         deformation=deformation,
         sections=sections,

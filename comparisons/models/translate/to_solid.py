@@ -1,16 +1,17 @@
 """A scene as solid strips: plane stress, thickness equal to the width, unilateral contact."""
 
 from collections import defaultdict
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS, unstated
 from comparisons.scene.rules import Point
 
 if TYPE_CHECKING:
-    from fem_reference import SolidProblem, Strip
+    from fem_reference import EndLoad, Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
 
 ENDS = ("start", "end")
 LEAST_RATIO = -0.999
@@ -35,26 +36,19 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
     ValueError
         If the solid cannot state the scene, in one line.
     """
-    from fem_reference import Contact, EndLoad, Joint, Pin, SolidProblem, Support
+    from fem_reference import Contact, Pin, SolidProblem
 
     unknown = unstated(scene, "the solid", STRIPS)
     if unknown is not None:
         raise ModelError(unknown)
-    joints = tuple(Joint(ends=ends) for ends in _joints(scene))
     clamps = {spec.node for spec in scene.all_supports if _is_clamp(scene, spec)}
     return SolidProblem(
         strips=tuple(_strip(beam, clamps, mesh) for beam in scene.beams),
-        supports=tuple(
-            Support(strip=spec.beam, end=spec.end, motion=spec.motion)
-            for spec in scene.all_supports
-            if spec.node not in clamps
-        ),
-        joints=joints,
-        loads=tuple(
-            EndLoad(strip=load.beam, end=load.end, force=load.force, moment=load.moment)
-            for load in scene.loads
-            if load.end is not None
-        ),
+        supports=tuple(_support(scene, spec) for spec in scene.all_supports if spec.node not in clamps),
+        joints=tuple(_joint(scene, ends) for ends in _joints(scene)),
+        springs=tuple(_springs(scene)),
+        loads=tuple(_end_load(scene, load) for load in scene.loads if load.end is not None),
+        inner_loads=(*_inner_loads(scene), *_weights(scene)),
         pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
         contacts=tuple(
             Contact(
@@ -93,7 +87,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     """
     if len(spec.held) < len(COMPONENTS):
         return False
-    joined = any(spec.node in ends for ends in _joints(scene))
+    joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
     loaded = any(load.node == spec.node for load in scene.loads)
     if not (spec.moves or joined or loaded):
         return True
@@ -104,8 +98,99 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     return False
 
 
+def _hinged(scene: Scene) -> dict[str, float]:
+    """Return the ends with a hinge, and the stiffness of its spring."""
+    return {hinge.node: hinge.stiffness for hinge in scene.hinges}
+
+
+def _joint(scene: Scene, ends: tuple[str, ...]) -> "Joint":
+    """Return a joint. Its first end is one without a hinge, if there is one."""
+    from fem_reference import Joint
+
+    hinges = _hinged(scene)
+    first, *others = sorted(ends, key=lambda end: end in hinges)
+    hinged = tuple(end for end in others if end in hinges)
+    return Joint(ends=(first, *others), hinged=hinged, stiffness=tuple(hinges[end] for end in hinged))
+
+
+def _support(scene: Scene, spec: SupportSpec) -> "Support":
+    """Return a support. Where all ends of its joint turn freely in hinges, it holds no rotation."""
+    from fem_reference import Support
+
+    motion = spec.motion
+    if "rotation" in spec.held and not _turns_with_joint(scene, spec.node, "support"):
+        motion = (*motion[:2], None)
+    return Support(strip=spec.beam, end=spec.end, motion=motion)
+
+
+def _springs(scene: Scene) -> "Iterator[Spring]":
+    """Yield the springs."""
+    from fem_reference import Spring
+
+    for spec in scene.springs:
+        turning = spec.rotation if spec.rotation and _turns_with_joint(scene, spec.node, "spring") else 0.0
+        if any((*spec.stiffness, turning)):
+            yield Spring(strip=spec.beam, end=spec.end, stiffness=(*spec.stiffness, turning))
+
+
+def _turns_with_joint(scene: Scene, node: str, kind: str) -> bool:
+    """Whether the end at a condition on the rotation turns with its joint; False where all ends of the joint turn freely in hinges.
+
+    Raises
+    ------
+    ModelError
+        If the end has a hinge, and the joint's rotation is not free of the beams.
+    """
+    hinges = _hinged(scene)
+    ends = next((ends for ends in _joints(scene) if node in ends), (node,))
+    if node not in hinges:
+        return True
+    if any(end not in hinges or hinges[end] for end in ends):
+        raise ModelError(
+            f'the solid model states the rotation of a joint at an end without a hinge, the {kind} "{node}" has one'
+        )
+    return False
+
+
+def _end_load(scene: Scene, load: LoadSpec) -> "EndLoad":
+    from fem_reference import EndLoad
+
+    if load.moment and not _turns_with_joint(scene, load.node, "load"):
+        raise ModelError(f'the solid model states a moment on an end without a hinge, "{load.node}" has one')
+    return EndLoad(strip=load.beam, end=load.end or "end", force=load.force, moment=load.moment)
+
+
+def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
+    """Yield the forces inside the beams and the forces per length."""
+    from fem_reference import LineLoad, PointLoad
+
+    for load in scene.loads:
+        if load.force_per_length is not None:
+            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span)
+        elif load.at is not None:
+            if load.moment:
+                raise ModelError(
+                    f'the solid model does not state a moment inside a beam, which acts on "{load.node}"'
+                )
+            yield PointLoad(strip=load.beam, at=load.at, force=load.force)
+
+
+def _weights(scene: Scene) -> "Iterator[LineLoad]":
+    """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
+    from fem_reference import LineLoad
+
+    gx, gy = scene.gravity or (0.0, 0.0)
+    for beam in scene.beams:
+        if beam.density is not None and (gx or gy):
+            start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
+            mass = [start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end]
+            if not beam.tapers:
+                mass = [middle]
+            yield LineLoad(strip=beam.name, force=tuple((gx * m, gy * m) for m in mass))
+
+
 def rectangle(beam: BeamSpec) -> tuple[float, float]:
-    """Return width and height of a beam's section, or of the rectangle with its area and second moment.
+    """Return width and height of a beam's section at the start, or of the rectangle with its area and second moment.
 
     ``h = sqrt(12 I / A)``, ``b = A / h``.
 
@@ -114,8 +199,8 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
     ModelError
         If the rectangle is not slender in the plane.
     """
-    if isinstance(beam.width, float) and isinstance(beam.height, float):
-        return beam.width, beam.height
+    if beam.width is not None and beam.height is not None:
+        return _ends(beam.width)[0], _ends(beam.height)[0]
     height = beam.rectangle_height
     if height > SLENDER * beam.length:
         raise ModelError(
@@ -123,6 +208,11 @@ def rectangle(beam: BeamSpec) -> tuple[float, float]:
             f"moment is {height:.3g} high, more than an eighth of the length"
         )
     return beam.cross_section[0] / height, height
+
+
+def _ends(dimension: float | tuple[float, float]) -> tuple[float, float]:
+    """Return a dimension of the section at both ends."""
+    return dimension if isinstance(dimension, tuple) else (dimension, dimension)
 
 
 def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "Strip":
@@ -144,6 +234,8 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "S
         end=beam.end,
         height=height,
         width=width,
+        end_height=beam.height[1] if isinstance(beam.height, tuple) else None,
+        end_width=beam.width[1] if isinstance(beam.width, tuple) else None,
         youngs_modulus=beam.youngs_modulus,
         poissons_ratio=nu,
         clamped=tuple(end for end in ENDS if f"{beam.name}.{end}" in clamps),

@@ -1,0 +1,114 @@
+"""Loads along a beam, weight, taper, springs and hinges: the solid against the exact rod."""
+
+import numpy as np
+import pytest
+
+from comparisons.models import certified, solve
+from comparisons.models.options import ModelError, Options
+from comparisons.models.translate import to_solid
+from comparisons.referee import Verdict
+from comparisons.scene import load_scene
+from comparisons.scene.read import read_scene
+
+YOUNG, WIDTH = 2.1e9, 0.02
+CLAMP = 'clamped = ["start"]\n'
+LOAD = '[[load]]\nbeam = "s"\n'
+
+
+def scene(height, *, size="", gravity="", conditions=CLAMP):
+    """A strip of length 1. Forces are given in its EI over the squared length by ``{EI}``."""
+    EI = YOUNG * WIDTH * height**3 / 12
+    text = f"""[scene]
+name = "specimen"
+units = "N, m"
+load_parameters = 2
+{gravity}
+[[beam]]
+name = "s"
+start = [0.0, 0.0]
+end = [1.0, 0.0]
+{size or f"width = {WIDTH}{chr(10)}height = {height}"}
+youngs_modulus = {YOUNG}
+poissons_ratio = 0.3
+material = "biot-linear"
+{conditions}"""
+    for factor in ("-4", "-3", "3", "5"):
+        text = text.replace(f"{factor} EI", repr(float(factor) * EI))
+    return read_scene(text.replace("DENSITY", repr(3 * EI / (9.81 * WIDTH * height))), "s")
+
+
+def tapered(height):
+    return {"size": f"width = [{WIDTH}, 0.01]\nheight = [{height}, {0.6 * height}]"}
+
+
+CASES = {
+    "line": lambda h: scene(h, conditions=CLAMP + LOAD + "force_per_length = [0.0, -3 EI]\n"),
+    "part": lambda h: scene(
+        h, conditions=CLAMP + LOAD + "force_per_length = [3 EI, -4 EI]\npart = [0.3, 0.73]\n"
+    ),
+    "at": lambda h: scene(h, conditions=CLAMP + LOAD + "at = 0.41\nforce = [0.0, -4 EI]\n"),
+    "weight": lambda h: scene(h, gravity="gravity = [0.0, -9.81]", conditions=CLAMP + "density = DENSITY\n"),
+    "taper": lambda h: scene(
+        h,
+        **tapered(h),
+        gravity="gravity = [0.0, -9.81]",
+        conditions=CLAMP + "density = DENSITY\n",
+    ),
+    "springs": lambda h: scene(
+        h,
+        conditions='[[support]]\nbeam = "s"\nend = "start"\nfixed = ["x"]\n'
+        '[[spring]]\nbeam = "s"\nend = "start"\nstiffness = [0.0, 5 EI]\nrotation = 3 EI\n'
+        '[[spring]]\nbeam = "s"\nend = "end"\nstiffness = [0.0, 3 EI]\n'
+        + LOAD
+        + "force_per_length = [0.0, -3 EI]\n",
+    ),
+    "face": lambda h: scene(
+        h,
+        **tapered(h),
+        conditions=CLAMP
+        + f'[[pin]]\nname = "p"\nstart = [0.8, {0.05 + 0.341 * h}]\ndisplacement = [-0.1, -0.35]\nradius = 0.05\n'
+        '[[contact]]\nnode = "p"\nbeam = "s"\nside = "left"\nsurface = "face"\n',
+    ),
+}
+
+
+def difference(make, height, mesh):
+    """Largest distance of the tips over the length, with forces of contacts and springs over their largest."""
+    at = make(height)
+    solid, rod = solve(at, "solid", Options(mesh=mesh)), solve(at, "tsm", Options(element="exact"))
+    assert solid.completed
+    assert rod.completed
+    assert list(solid.index) == list(rod.index)
+    found = [np.abs(solid.tips["s"] - rod.tips["s"]).max()]
+    for name in ("contacts", "springs"):
+        for key, one in getattr(rod, name).items():
+            other = getattr(solid, name)[key]
+            found.append(np.abs(other.force - one.force).max() / np.abs(one.force).max())
+    return max(found)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_solid_is_the_rod(name):
+    assert difference(CASES[name], 0.02, (40, 1)) < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["part", "at", "weight", "taper"])
+def test_the_difference_falls_at_least_as_the_height_squared(name):
+    high, low = (difference(CASES[name], height, (100, 4)) for height in (0.08, 0.04))
+    assert high > 3.0 * low
+
+
+@pytest.mark.parametrize("name", ["hinged-truss", "beam-on-springs"])
+def test_built_in_scenes_are_certified(name):
+    at = load_scene(name)
+    response = certified(solve(at, "solid", Options(mesh=(8, 1))), at)
+    assert response.certificate.verdict is Verdict.CERTIFIED
+
+
+def test_what_the_solid_cannot_state_costs_one_line():
+    moment = scene(0.02, conditions=CLAMP + LOAD + "at = 0.41\nmoment = 3 EI\n")
+    with pytest.raises(
+        ModelError, match=r'does not state a moment inside a beam, which acts on "s at 0\.41"'
+    ):
+        to_solid(moment)
