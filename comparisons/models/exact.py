@@ -17,7 +17,8 @@ from comparisons.models.progress import Watch, unwatched
 from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.translate import RodScene, to_rod
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
-from comparisons.scene import Scene
+from comparisons.scene import Scene, unstated
+from comparisons.scene.keys import ONE_ROD
 
 POINTS = 401
 """Points of a deflected axis in pictures. The solution does not depend on this number."""
@@ -84,6 +85,9 @@ def elastica_scene(scene: Scene) -> RodScene:
     ModelError
         Unless a pin on the axis pushes one cantilever.
     """
+    unknown = unstated(scene, "the elastica", ONE_ROD)
+    if unknown is not None:
+        raise ModelError(unknown)
     local = to_rod(scene)
     if local.contact is None:
         raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")

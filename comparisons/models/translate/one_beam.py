@@ -29,7 +29,7 @@ def one_beam_with_tied_tip(scene: Scene, model: str) -> tuple[SupportSpec, Suppo
         If the scene has another form. The message begins with `model`.
     """
     if len(scene.beams) > 1 or scene.pins or scene.contacts:
-        raise ModelError(f"{model} one beam and no contact where its end is moved")
+        raise ModelError(f"{model} one beam, under one pin or with an end that is moved")
     clamp, *others = _supports(scene, scene.beams[0], model)
     if len(others) != 1 or others[0].held != ("x", "y"):
         raise ModelError(
