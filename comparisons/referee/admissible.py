@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.distance import least_force
+from comparisons.referee.distance import bending_force
 from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 INSIDE = 1e-9
 """Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
 PULL = 1e-9
-"""Largest accepted tensile contact force over EI/L^2, for the round-off of the models at a release."""
+"""Largest accepted tensile contact force over EI/L^2 of the touched beam, for the round-off of the models at a release."""
 _POINTS = 201
 _BESIDE = 1e-12
 """Relative distance of two arc positions on either side of a contact."""
@@ -28,7 +28,7 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)
         if contact is not None:
-            if contact.push < -PULL * least_force(scene):
+            if contact.push < -PULL * bending_force(scene.beam(spec.beam)):
                 yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
             if not 0.0 <= contact.arc_position <= beam.length:
                 yield f"{spec.pair} is closed beyond the end of its beam"

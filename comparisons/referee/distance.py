@@ -11,7 +11,7 @@ from comparisons.referee.faces import touching_distance
 from comparisons.referee.loads import dead_loads
 from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium
-from comparisons.scene import Scene
+from comparisons.scene import BeamSpec, Scene
 
 Array = NDArray[np.float64]
 
@@ -128,9 +128,14 @@ def _beyond(off: float, size: float, last: float) -> float:
     return 0.0 if off <= min(last, UNRESOLVED * size) else _size(off / size)
 
 
+def bending_force(beam: BeamSpec) -> float:
+    """EI/L^2 of a beam."""
+    return beam.EI / beam.length**2
+
+
 def least_force(scene: Scene) -> float:
     """Smallest EI/L^2 of the beams."""
-    return min(beam.EI / beam.length**2 for beam in scene.beams)
+    return min(map(bending_force, scene.beams))
 
 
 def scales(scene: Scene, exact: Equilibrium) -> tuple[float, float]:

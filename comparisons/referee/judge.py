@@ -9,7 +9,7 @@ import numpy as np
 from comparisons.referee.admissible import PULL, inadmissible
 from comparisons.referee.balance import unbalanced
 from comparisons.referee.certificate import Judgement, Verdict
-from comparisons.referee.distance import Distance, distance, least_force
+from comparisons.referee.distance import Distance, bending_force, distance
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.history import History, UnknownFrictionError
 from comparisons.referee.rubbing import rubs_wrongly, unlawful, wanders
@@ -135,7 +135,7 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
     force, arc = float(contact.force[k]), float(contact.arc_position[k])
     if not math.isfinite(force):
         yield f"the force of {spec.pair} is not finite"
-    elif force < -PULL * least_force(scene):
+    elif force < -PULL * bending_force(scene.beam(spec.beam)):
         yield f"the contact force of {spec.pair} pulls"
     elif force != 0.0 and not 0.0 <= arc <= scene.beam(spec.beam).length:
         yield f"the arc position of {spec.pair} is not on its beam"

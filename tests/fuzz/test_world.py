@@ -87,8 +87,11 @@ def test_a_slip_of_a_stiff_beam_ends_in_a_stick_with_any_number_of_load_paramete
 
 
 def test_drawn_scenes_with_special_keys_are_certified() -> None:
-    """Hinges, springs, stages, loads along a beam, weight, curvature, taper: exact and mixed elements against the referee."""
-    found = [judged(drawn_special(seed), BEAMS, ()).bare() for seed in (100, 101, 102, 103, 104)]
+    """Hinges, springs, stages, loads along a beam, weight, curvature, taper: exact and mixed elements against the referee.
+
+    In the scene of seed 116 a pin returns to where a stiff beam, joined to softer ones, bears no force but round-off.
+    """
+    found = [judged(drawn_special(seed), BEAMS, ()).bare() for seed in (100, 101, 102, 104, 116)]
     assert not [item.report() for item in found if item.findings]
     assert all(row.completed for item in found for row in item.rows)
 
