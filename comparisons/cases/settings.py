@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
-from comparisons.scene import Scene
+from comparisons.scene import LoadSpec, Scene
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError
 
@@ -17,11 +17,28 @@ OWN = {item.name for item in fields(Scene)} - {f"{kind}s" for kind in LISTS}
 """The keys of the table ``[scene]``."""
 
 
-def record_name(kind: str, record: Mapping[str, Any]) -> str:
-    """Return the name by which a study addresses a record: its `name`, the pair of a contact, or the node of a support or load."""
+def record_names(kind: str, records: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Return the names by which a study addresses records of a kind.
+
+    They are the `name` of a beam, pin or stage, the number of a stage without one, from 2 on, the pair of a contact, the place of a
+    load, and the node of a support, hinge or spring.
+    """
+    return tuple(_record_name(kind, record, number) for number, record in enumerate(records, 2))
+
+
+def _record_name(kind: str, record: Mapping[str, Any], number: int) -> str:
     if kind == "contact":
         return f"{record['node']}->{record['beam']}"
-    return f"{record['beam']}.{record['end']}" if kind in ("support", "load") else str(record["name"])
+    if kind == "load":
+        return LoadSpec(**record).node
+    if "end" in record and "beam" in record:
+        return f"{record['beam']}.{record['end']}"
+    return str(record.get("name") or number)
+
+
+def stated(record: Any) -> dict[str, Any]:
+    """Return the fields of a record."""
+    return {item.name: getattr(record, item.name) for item in fields(record)}
 
 
 def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
@@ -38,7 +55,11 @@ def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
         varied = {path: value for path, value in changes.items() if path[0] == kind}
         if varied:
             records = getattr(scene, f"{kind}s")
-            own[f"{kind}s"] = tuple(_changed_record(kind, record, varied, mistakes) for record in records)
+            names = record_names(kind, map(stated, records))
+            own[f"{kind}s"] = tuple(
+                _changed_record(kind, name, record, varied, mistakes)
+                for name, record in zip(names, records, strict=True)
+            )
     if mistakes:
         raise RecordError(mistakes)
     try:
@@ -50,10 +71,9 @@ def changed(scene: Scene, changes: Mapping[Path, object]) -> Scene:
 
 
 def _changed_record(
-    kind: str, record: Any, changes: Mapping[Path, object], mistakes: list[FieldError]
+    kind: str, name: str, record: Any, changes: Mapping[Path, object], mistakes: list[FieldError]
 ) -> Any:
     """Return a record with changed settings. Mistakes are added to `mistakes`, and the record is then left as it is."""
-    name = record_name(kind, vars(record))
     own = {path: changes[path] for path in sorted(changes, key=len) if len(path) == 2 or path[1] == name}
     places = {path[-1]: ".".join(path[:-1]) for path in own}
     try:
@@ -78,8 +98,8 @@ def settings(definition: str, options: str) -> dict[str, object]:
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
         records = tables.get(kind, [])
-        for record in records:
-            place = kind if len(records) == 1 else f"{kind}.{record_name(kind, record)}"
+        for name, record in zip(record_names(kind, records), records, strict=True):
+            place = kind if len(records) == 1 else f"{kind}.{name}"
             found |= {f"{place}.{key}": value for key, value in record.items()}
     return found
 

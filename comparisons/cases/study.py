@@ -135,7 +135,7 @@ def _places(
         known, named = settings.OWN, set[str]()
     else:
         known = {item.name for item in fields(LISTS[kind])}  # type: ignore[arg-type]  # every record is a dataclass
-        named = {settings.record_name(kind, vars(record)) for record in getattr(scene, f"{kind}s")}
+        named = set(settings.record_names(kind, map(settings.stated, getattr(scene, f"{kind}s"))))
         if not named:
             mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
             return {}

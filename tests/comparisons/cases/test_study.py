@@ -9,6 +9,7 @@ from comparisons.cases.study import Study, read_study
 from comparisons.cli import main
 from comparisons.models.options import Options
 from comparisons.scene import InputError, built_in_scenes, load_scene
+from docs.extensions.messages import SCENES
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\n'
 
@@ -87,6 +88,31 @@ def test_a_scene_beside_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.chdir("/")
     study = read(tmp_path, '[[run]]\nmodel = "rod"\n', HEAD.replace("ks-cantilever", "scenes/mine.toml"))
     assert study.cases[0].scene.name == "mine"
+
+
+def test_records_without_a_name_are_addressed_by_their_place(tmp_path: Path) -> None:
+    (tmp_path / "hinged.toml").write_text(
+        SCENES["portal"]
+        + '[[hinge]]\nbeam = "girder"\nend = "start"\n[[spring]]\nbeam = "girder"\nend = "start"\nstiffness = [0, 5]\n'
+        + '[[load]]\nbeam = "girder"\nat = 0.5\nforce = [0, -1]\n'
+        + '[[stage]]\nload_parameters = 3\nload = [{ beam = "column", end = "end", force = [1, 0] }]\n'
+    )
+    study = read(
+        tmp_path,
+        """
+        [[run]]
+        model = "tsm"
+        hinge."girder.start".stiffness = 2.0
+        spring."girder.start".rotation = 3.0
+        load."girder at 0.5".moment = 4.0
+        stage.2.load_parameters = 5
+        """,
+        HEAD.replace("ks-cantilever", "hinged.toml"),
+    )
+    (scene,) = (case.scene for case in study.cases)
+    assert (scene.hinges[0].stiffness, scene.springs[0].rotation) == (2.0, 3.0)
+    assert [load.moment for load in scene.loads] == [0.0, 4.0]
+    assert scene.stages[0].load_parameters == 5
 
 
 RUN = '[[run]]\nmodel = "tsm"\n'
