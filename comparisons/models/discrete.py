@@ -186,7 +186,8 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
 
     def sections(beam: str, k: int) -> Sections:
         found = fem_reference.section_forces(result, beam, k)
-        return Sections(arc=found.stations, N=found.N, V=found.V, M=found.M)
+        inner = Sections(arc=found.stations, N=found.N, V=found.V, M=found.M)
+        return _with_clamps(scene, result, beam, k, inner)
 
     response = _response(SOLID, scene, result, axis_line, grid)
     contacts = {
@@ -214,6 +215,28 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
         deformation=deformation,
         sections=sections,
     )
+
+
+def _with_clamps(scene: Scene, result: Any, beam: str, k: int, at: Sections) -> Sections:
+    """Add the sections of clamped ends that nothing else is joined to or acts on, where the reaction is the section force."""
+    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
+    table, own = np.stack([at.arc, at.N, at.V, at.M]), scene.beam(beam)
+    for support in scene.supports_of(beam):
+        place, turn = scene.place(support.node), support.motion_at(float(result.load_parameter[k]))[2]
+        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
+        if turn is None or joined or support.node in taken:
+            continue
+        first, held = support.end == "start", result.supports[support.node]
+        tx, ty = own.tangent(0.0 if first else 1.0)
+        c, s, sign = (
+            tx * np.cos(turn) - ty * np.sin(turn),
+            ty * np.cos(turn) + tx * np.sin(turn),
+            1 - 2 * first,
+        )
+        x, y, moment = sign * held.force[k, 0], sign * held.force[k, 1], sign * held.moment[k]
+        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
+        table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
+    return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
 
 
 def _half_turns(response: Response, beam: str) -> Array:

@@ -43,6 +43,16 @@ def test_extremes_are_those_of_the_referee(scene: str) -> None:
     assert own.keys() == other.keys()
 
 
+def test_extremes_of_the_solid_reach_its_clamps() -> None:
+    """The reaction is the section force at a clamp, where the stress of the solid is singular: h/L is .01, and forces differ by 1e-4."""
+    beams, solid = answer("portal-frame", load_parameters=2), answer("portal-frame", "solid", 2)
+    assert beams.definition is not None
+    own, other = (extremes_along(one, beams.definition)["left"] for one in (beams, solid))
+    for name in ("bending_moment", "tensile_stress", "compressive_stress", "axial_force", "displacement"):
+        assert other[name].value == pytest.approx(own[name].value, rel=3e-4)
+    assert np.all(other["bending_moment"].arc_position == 0.0)
+
+
 def test_extremes_by_statics() -> None:
     response = answer("tip-load")
     scene = response.definition
