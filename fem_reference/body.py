@@ -124,7 +124,7 @@ def force_round_off(strip: Strip, mesh: Discretisation, law: Law) -> float:
     displacements of order L over the element's short side, so that its round-off is ``eps L / short``. The stress ``M eps L /
     short`` acts on the width b times the long side. The factor 4 is twice the round-off measured for L/h = 50 to 2000.
     """
-    sides = np.ptp(mesh.nodes[mesh.cells[:, :4]], axis=1)
+    sides = np.ptp(mesh.places[mesh.cells[:, :4]], axis=1)
     aspect = float((sides.max(axis=1) / sides.min(axis=1)).max())
     modulus = float(law.tangent(np.eye(2)[:, :, None])[0, 0, 0, 0, 0])
     return (
@@ -158,7 +158,7 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
             below, above = 2 * edge[k - 1] + 1, 2 * edge[k] + 1
             master[above], factor[above] = below, y[k] / y[k - 1]
     order = np.lexsort(
-        (np.round(mesh.nodes[:, 1] / strip.height, 9), np.round(mesh.nodes[:, 0] / strip.height, 9))
+        (np.round(mesh.places[:, 1] / strip.height, 9), np.round(mesh.places[:, 0] / strip.height, 9))
     )
     along = (2 * order[:, None] + np.arange(2)).ravel()
     unknowns = along[(factor[along] != 0) & (master[along] == along)]

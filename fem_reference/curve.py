@@ -141,7 +141,7 @@ def contact_curve(strip: Strip, mesh: Discretisation, contact: Contact) -> Conta
     stations, rows = mesh.stations, mesh.sections
     if contact.surface == "face":
         face = mesh.edges[contact.side]
-        stations = mesh.nodes[face, 0]
+        stations = mesh.places[face, 0]
         rows = csr_matrix(
             (np.ones(face.size), (np.arange(face.size), face)), shape=(face.size, len(mesh.nodes))
         )

@@ -161,7 +161,7 @@ class Tie:
 def end_rows(strip: Strip, mesh: Discretisation, end: str) -> tuple[csr_matrix, float]:
     """Weights ``(2, n)`` of a strip's nodes in mean displacement and first moment of an end, and the end's height."""
     edge = mesh.edges[end]
-    y = mesh.nodes[edge, 1]
+    y = mesh.places[edge, 1]
     weights = edge_weights(strip.element, y)
     moments = edge_moments(strip.element, y - weights @ y)
     moments = moments * (strip.length / (moments @ y))

@@ -68,8 +68,10 @@ class Discretisation:
     ----------
     nodes
         Reference positions ``(n, 2)`` [m].
+    places
+        Axial coordinate and distance to the left of the axis of the nodes ``(n, 2)``; the positions of a straight strip [m].
     cells
-        Nodes of each element ``(e, k)``: four corners anticlockwise from the lower left one; biquadratic elements also
+        Nodes of each element ``(e, k)``: four positions anticlockwise from the lower left one; biquadratic elements also
         have four midside nodes and a centre node.
     gauss, at_nodes
         Quadrature points, and the element's own nodes.
@@ -84,10 +86,11 @@ class Discretisation:
     sections
         Weights ``(m, n)`` of the nodes in the section means; rows sum to one.
     basis
-        scikit-fem's scalar basis, for `fem_reference.sampling`.
+        scikit-fem's scalar basis over the places, for `fem_reference.sampling`.
     """
 
     nodes: Floats
+    places: Floats
     cells: Ints
     gauss: Points
     at_nodes: Points
@@ -165,12 +168,20 @@ def from_basis(
     element, cells = basis.elem, basis.element_dofs.T.astype(np.int64)
     shapes = len(element.doflocs)
     at_nodes = Basis(basis.mesh, element, quadrature=(element.doflocs.T, np.ones(shapes)))
+    places = basis.doflocs.T.copy()
+    nodes, gauss, own = strip.placed(places), _points(basis), _points(at_nodes)
+    weights = strip.width_at(np.asarray(basis.global_coordinates())[0]) * basis.dx
+    if strip.turn:
+        straight, gauss = gauss, _bent(gauss, nodes[cells])
+        weights = weights * _determinant(straight.inverse) / _determinant(gauss.inverse)
+        own = _bent(own, nodes[cells])
     return Discretisation(
-        nodes=basis.doflocs.T.copy(),
+        nodes=nodes,
+        places=places,
         cells=cells,
-        gauss=_points(basis),
-        at_nodes=_points(at_nodes),
-        weights=strip.width_at(np.asarray(basis.global_coordinates())[0]) * basis.dx,
+        gauss=gauss,
+        at_nodes=own,
+        weights=weights,
         gather=csr_matrix((np.ones(cells.size), (cells.ravel(), np.arange(cells.size)))),
         edges=edges,
         stations=stations,
@@ -214,3 +225,15 @@ def _points(basis: Any) -> Points:
     inverse = basis.mapping.invDF(basis.X)
     inverse = np.where(np.abs(inverse) > 1e-13 * np.abs(inverse).max(), inverse, 0.0)
     return Points(slopes=slopes, inverse=inverse, aligned=not (inverse[0, 1].any() or inverse[1, 0].any()))
+
+
+def _bent(points: Points, positions: Floats) -> Points:
+    """The points in elements whose nodes are at ``positions`` ``(e, k, 2)``, with the shape functions of the displacements."""
+    (a, b), (c, d) = np.einsum("eaj,Kqa->jKeq", positions, points.slopes)
+    inverse = np.stack([np.stack([d, -b]), np.stack([-c, a])]) / (a * d - b * c)
+    return replace(points, inverse=inverse, aligned=False)
+
+
+def _determinant(A: Floats) -> Floats:
+    determinant: Floats = A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
+    return determinant

@@ -164,7 +164,7 @@ def _dead_forces(problem: SolidProblem, body: Body) -> Floats:
     for load in problem.loads:
         if load.strip == body.strip.name:
             edge = body.mesh.edges[load.end]
-            share = edge_weights(body.strip.element, body.mesh.nodes[edge, 1])
+            share = edge_weights(body.strip.element, body.mesh.places[edge, 1])
             forces[edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
     for inner in problem.inner_loads:
         if inner.strip == body.strip.name:

@@ -45,7 +45,7 @@ def _nodal_stress(body: Body, u: Floats) -> Floats:
 
 
 def fibre_stress(result: Result, k: int) -> Floats:
-    """Cauchy stress ``t . sigma t`` ``(n,)`` at the nodes, with the unit vector t along the deformed fibre ``F e_x`` [Pa]."""
+    """Cauchy stress ``t . sigma t`` ``(n,)`` at the nodes, with the unit vector t along the deformed fibre along the axis [Pa]."""
     u = result.states[k].u
     return np.concatenate(
         [_fibre_stress(body, u[part])[:, 0] for body, part in result.model.bodies_and_nodes()]
@@ -54,7 +54,8 @@ def fibre_stress(result: Result, k: int) -> Floats:
 
 def _fibre_stress(body: Body, u: Floats) -> Floats:
     F, sigma = _cauchy_stress(body, u)
-    along = F[:, 0]
+    T, _ = body.strip.directions(body.mesh.places[body.mesh.cells, 0])
+    along = F[:, 0] * T[0] + F[:, 1] * T[1]
     stress = np.einsum("i...,ij...,j...->...", along, sigma, along) / np.einsum(
         "i...,i...->...", along, along
     )

@@ -234,7 +234,7 @@ class SolidProblem:
     def _gap(self, contact: Contact) -> tuple[float, float]:
         """Initial gap of a contact's node, and its axial coordinate on the strip [m]."""
         strip, (start, radius) = self.strip(contact.strip), self.start_of(contact)
-        axial, transverse = strip.to_local(np.array(start, dtype=float))
+        axial, transverse = strip.place(strip.to_local(np.array(start, dtype=float)))
         height = (
             strip.height_at(min(max(float(axial), 0.0), strip.length)) / 2
             if contact.surface == "face"
@@ -248,7 +248,7 @@ class SolidProblem:
         for contact in self.contacts:
             strip, pin, (gap, axial) = self.strip(contact.strip), self.pin(contact.node), self._gap(contact)
             if pin is not None and gap <= 1e-9 * strip.length and 0 <= axial <= strip.length:
-                normal = strip.frame[:, 1]
+                normal = strip.frame @ strip.directions(np.array(axial))[1]
                 found.append((strip.name, pin.path[0], (float(normal[0]), float(normal[1]))))
         return found
 

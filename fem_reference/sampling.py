@@ -1,6 +1,6 @@
 """Shape functions at arbitrary points of a strip, and Gauss points of its sections."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -42,14 +42,18 @@ class Sample:
 
 
 def sample(mesh: Discretisation, points: Floats) -> Sample:
-    """Evaluate the shape functions at ``points`` ``(p, 2)`` in the strip's frame.
+    """Evaluate the shape functions at the places ``points`` ``(p, 2)``: axial coordinate and distance to the left of the axis.
 
     Raises
     ------
     ValueError
         If a point is not in the strip.
     """
-    return sample_basis(mesh.basis, mesh.cells, points)
+    found = sample_basis(mesh.basis, mesh.cells, points)
+    if mesh.nodes is mesh.places:
+        return found
+    bent = np.einsum("pka,pbk->pab", mesh.nodes[found.cells], found.gradients)
+    return replace(found, gradients=np.linalg.inv(bent).swapaxes(1, 2) @ found.gradients)
 
 
 def sample_basis(basis: object, cells: Ints, points: Floats) -> Sample:

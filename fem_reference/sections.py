@@ -29,7 +29,7 @@ class SectionForces:
     force
         Resultant of N and V in the global frame, ``(m, 2)`` [N].
     material_force
-        J-integral ``integral (P_i1 F_i1 - W) dA`` [N]. It is constant between contacts and differs on the two sides of a contact by
+        J-integral ``integral (P N . F N - W) dA`` [N]. In a straight strip of one section without loads inside, it is constant between contacts and differs on the two sides of a contact by
         the tangential force. It vanishes beyond the last contact of a free end.
     """
 
@@ -45,7 +45,7 @@ class SectionForces:
 def section_forces(result: Result, strip: str, k: int, stations: Floats | None = None) -> SectionForces:
     """Integrate the stress over sections of a strip at the accepted load parameter ``k``.
 
-    The first Piola-Kirchhoff stress P gives the traction ``p = P e_1`` of an undeformed section with mean position ``x_m``.
+    The first Piola-Kirchhoff stress P gives the traction ``p = P N`` of an undeformed section with the normal N with mean position ``x_m``.
     Force and moment are ``f = integral p dA`` and ``M = integral (x - x_m) x p dA``. N and V are the components of f on
     the axes of the rotated section. The rotation is the least-squares fit of ``x - x_m`` to the undeformed section.
 
@@ -60,16 +60,18 @@ def section_forces(result: Result, strip: str, k: int, stations: Floats | None =
     body, part = result.model.body(strip)
     X = gauss_stations(body) if stations is None else np.asarray(stations, dtype=float)
     layers = body.strip.mesh[1] if body.strip.mesh_file is None else SECTION_LAYERS
-    points, shares, heights = section_points(body.mesh.nodes, body.mesh.edges, X, layers)
+    points, shares, heights = section_points(body.mesh.places, body.mesh.edges, X, layers)
     weights = (body.strip.width_at(X) * heights)[:, None] * shares
     u = result.states[k].u[part]
     sampled = sample(body.mesh, points)
     F = sampled.deformation_gradient(u)
     P = body.law.stress(F)
-    eshelby = (P[:, 0] * F[:, 0]).sum(axis=0) - body.law.energy(F)
-    x = points + sampled.rows(len(u)) @ u
+    N, _ = body.strip.directions(points[:, 0])
+    traction = P[:, 0] * N[0] + P[:, 1] * N[1]
+    eshelby = (traction * (F[:, 0] * N[0] + F[:, 1] * N[1])).sum(axis=0) - body.law.energy(F)
+    x = body.strip.placed(points) + sampled.rows(len(u)) @ u
     shape = (X.size, -1)
-    p = P[:, 0].T.reshape(*shape, 2)
+    p = traction.T.reshape(*shape, 2)
     mean = (weights[:, :, None] * x.reshape(*shape, 2)).sum(axis=1) / weights.sum(axis=1)[:, None]
     arm = x.reshape(*shape, 2) - mean[:, None]
     height = points[:, 1].reshape(shape)
@@ -93,7 +95,7 @@ def gauss_stations(body: Body) -> Floats:
     """Axial coordinates ``(2 n,)`` of two-point Gauss rules between the element corners on the right face [m]."""
     corners = np.unique(body.mesh.cells[:, :4])
     face = body.mesh.edges["right"]
-    x = body.mesh.nodes[face[np.isin(face, corners)], 0]
+    x = body.mesh.places[face[np.isin(face, corners)], 0]
     offsets = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2
     stations: Floats = (x[:-1, None] + offsets * np.diff(x)[:, None]).ravel()
     return stations
@@ -113,10 +115,12 @@ def face_strains(result: Result, strip: str, k: int) -> tuple[Floats, dict[str, 
     X = gauss_stations(body)
     strains = {}
     for name in ("right", "left"):
-        face = body.mesh.nodes[body.mesh.edges[name]]
+        face = body.mesh.places[body.mesh.edges[name]]
         y = np.interp(X, *face.T)
         piece = np.searchsorted(face[:, 0], X)
-        T = face[piece] - face[piece - 1]
+        along, across = (face[piece] - face[piece - 1]).T
+        tangent, normal = body.strip.directions(X)
+        T = ((1 - body.strip.curvature * y) * along * tangent + across * normal).T
         T = T / np.hypot(*T.T)[:, None]
         F = sample(body.mesh, np.stack([X, y], axis=1)).deformation_gradient(result.states[k].u[part])
         strains[name] = np.hypot(*np.einsum("ijp,pj->ip", F, T)) - 1

@@ -1,7 +1,7 @@
 """A strip: geometry, section, material, clamps and mesh."""
 
 from dataclasses import dataclass
-from math import hypot
+from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
 import numpy as np
@@ -34,7 +34,9 @@ def solution_cost(mesh: tuple[int, int], element: str) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
-    """A strip with a straight axis.
+    """A strip whose axis is straight or an arc of a circle.
+
+    Its frame has the origin at the start and x along the axis there.
 
     Parameters
     ----------
@@ -42,6 +44,8 @@ class Strip:
         Name of the strip in contacts, loads and results.
     start, end
         Ends of the axis [m]; its direction is from start to end.
+    turn
+        Angle by which the undeformed axis turns to the left from start to end; zero for a straight strip [rad].
     height, width
         Dimensions of the section in the plane and out of it [m].
     end_height, end_width
@@ -81,6 +85,7 @@ class Strip:
     width: float
     youngs_modulus: float
     poissons_ratio: float
+    turn: float = 0.0
     end_height: float | None = None
     end_width: float | None = None
     clamped: tuple[str, ...] = ("start",)
@@ -96,7 +101,9 @@ class Strip:
         owner = f"Strip({self.name!r})"
         require_point(owner, "start", self.start)
         require_point(owner, "end", self.end)
+        require(abs(self.turn) < 2 * pi, owner, "turn", self.turn, "must lie between -2 pi and 2 pi")
         require(self.length > 0, owner, "end", self.end, "must differ from start")
+        self._require_arc(owner)
         for field in ("height", "width", "youngs_modulus", "grading"):
             require_positive(owner, field, getattr(self, field))
         for field in ("end_height", "end_width"):
@@ -128,10 +135,28 @@ class Strip:
         require_choice(owner, "material", self.material, tuple(MATERIALS))
         require_choice(owner, "plane", self.plane, PLANES)
 
+    def _require_arc(self, owner: str) -> None:
+        """Require an arc that has room for its section and is clamped at its start only."""
+        if self.turn:
+            narrow = abs(self.curvature) * self.largest_height < 2
+            require(
+                narrow, owner, "turn", self.turn, "must leave the radius of the axis above half the height"
+            )
+            require(
+                "end" not in self.clamped, owner, "clamped", self.clamped, "must not be the end of an arc"
+            )
+            require(self.mesh_file is None, owner, "turn", self.turn, "must be zero with a mesh file")
+
     @property
     def length(self) -> float:
         """Length of the axis [m]."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+        chord, half = hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]), self.turn / 2
+        return chord * (half / sin(half)) if half else chord
+
+    @property
+    def curvature(self) -> float:
+        """Curvature of the undeformed axis, positive to the left [1/m]."""
+        return self.turn / self.length
 
     @property
     def bending_stiffness(self) -> float:
@@ -161,9 +186,34 @@ class Strip:
     @property
     def frame(self) -> Floats:
         """Rotation ``Q (2, 2)`` from the strip's frame (x along the axis, origin at start) to the global one."""
-        c = (self.end[0] - self.start[0]) / self.length
-        s = (self.end[1] - self.start[1]) / self.length
+        chord = hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+        c, s = (self.end[0] - self.start[0]) / chord, (self.end[1] - self.start[1]) / chord
+        if self.turn:
+            angle = atan2(s, c) - self.turn / 2
+            c, s = cos(angle), sin(angle)
         return np.array([[c, -s], [s, c]])
+
+    def directions(self, x: Array) -> tuple[Array, Array]:
+        """Tangents and left normals ``(2, ...)`` of the undeformed axis at axial coordinates, in the strip's frame."""
+        c, s = np.cos(self.curvature * x), np.sin(self.curvature * x)
+        return np.stack([c, s]), np.stack([-s, c])
+
+    def placed(self, places: Array) -> Array:
+        """Positions ``(..., 2)`` in the strip's frame of undeformed ``places``: axial coordinate, and distance to the left of the axis."""
+        k = self.curvature
+        if not k:
+            return places
+        x, y = places[..., 0], places[..., 1]
+        s = np.sin(k * x)
+        return np.stack([s / k - y * s, 2 * np.sin(k * x / 2) ** 2 / k + y * np.cos(k * x)], axis=-1)
+
+    def place(self, point: Array) -> tuple[float, float]:
+        """Axial coordinate, and distance to the left of the axis, of a ``point`` ``(2,)`` in the strip's frame."""
+        k, (x, y) = self.curvature, point
+        if not k:
+            return float(x), float(y)
+        radius = hypot(k * x, 1 - k * y)
+        return atan2(k * x, 1 - k * y) / k, (2 * y - k * (x * x + y * y)) / (1 + radius)
 
     def to_local(self, points: Array) -> Array:
         """Transform points ``(..., 2)`` from the global frame to the strip's frame."""

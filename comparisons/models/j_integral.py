@@ -20,6 +20,7 @@ def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
     The J-integral is the same for all sections between the clamp and the nearest contact. Its error changes its sign between
     neighbouring Gauss stations and is largest beside clamp and contact. The value is therefore the mean over the Gauss stations in
     between, without those nearer to clamp or contact than 1.5 heights or a quarter of the distance. It is nan where no station is left.
+    The J-integral of a naturally curved beam is not constant, and is left out.
 
     Parameters
     ----------
@@ -32,6 +33,7 @@ def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
     return {
         beam: np.array([_mean(scene, result, beam, clamp.end, k) for k in steps])
         for beam, clamp in clamped(scene).items()
+        if not scene.beam(beam).turn
     }
 
 

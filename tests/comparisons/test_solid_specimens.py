@@ -41,6 +41,15 @@ def tapered(height):
     return {"size": f"width = [{WIDTH}, 0.01]\nheight = [{height}, {0.6 * height}]"}
 
 
+def over_arc(height, friction=""):
+    """A round pin above the top of an arc that turns by -1.4."""
+    top = 0.5 * (1 - np.cos(0.7)) / np.sin(0.7) + height / 2
+    return (
+        f'[[pin]]\nname = "p"\nstart = [0.5, {top + 0.0501}]\ndisplacement = [0.1, -0.2]\nradius = 0.05\n'
+        f'[[contact]]\nnode = "p"\nbeam = "s"\nside = "left"\nsurface = "face"\n{friction}'
+    )
+
+
 CASES = {
     "line": lambda h: scene(h, conditions=CLAMP + LOAD + "force_per_length = [0.0, -3 EI]\n"),
     "part": lambda h: scene(
@@ -62,6 +71,14 @@ CASES = {
         + LOAD
         + "force_per_length = [0.0, -3 EI]\n",
     ),
+    "turn": lambda h: scene(
+        h, conditions="turn = -1.4\n" + CLAMP + LOAD + 'end = "end"\nforce = [3 EI, -3 EI]\n'
+    ),
+    "other end": lambda h: scene(
+        h, conditions='turn = 1.0\nclamped = ["end"]\n' + LOAD + "force_per_length = [0.0, -3 EI]\n"
+    ),
+    "arc": lambda h: scene(h, conditions="turn = -1.4\n" + CLAMP + over_arc(h)),
+    "sliding": lambda h: scene(h, conditions="turn = -1.4\n" + CLAMP + over_arc(h, "friction = 0.2\n")),
     "face": lambda h: scene(
         h,
         **tapered(h),

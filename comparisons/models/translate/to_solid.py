@@ -89,7 +89,8 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
         return False
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
     loaded = any(load.node == spec.node for load in scene.loads)
-    if not (spec.moves or joined or loaded):
+    arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
+    if not (spec.moves or joined or loaded or arc):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
@@ -232,6 +233,7 @@ def _strip(beam: BeamSpec, clamps: set[str], mesh: tuple[int, int] | None) -> "S
         name=beam.name,
         start=beam.start,
         end=beam.end,
+        turn=beam.turn,
         height=height,
         width=width,
         end_height=beam.height[1] if isinstance(beam.height, tuple) else None,
