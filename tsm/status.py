@@ -18,7 +18,7 @@ class Status(Enum):
     STEP_LIMIT = (
         "the load steps stayed so short that the next load parameter was not reached within their limit"
     )
-    INACCURATE = "the integration inside an exact element does not reach its accuracy"
+    INACCURATE = "the integration inside an element does not reach its accuracy"
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
     LIMIT_POINT = "the load has a limit point: no equilibrium lies beyond it on this branch"

@@ -172,6 +172,20 @@ def test_too_few_mixed_elements_say_how_much_they_bend():
         assert (result.deformation.turn[-1] > result.deformation.bearable) == (elements == 1)
 
 
+def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
+    """Tension along the clamp's normal, 40,000 EI/L^2: the layer at the clamp has the length L/200."""
+    tight = {"loads": (((((0.0, 1e-3),)), 0.0, 1.0),), "tip": (0.0, 4e4, 0.0)}
+    stiff = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
+
+    def status(elements, element):
+        given = structure(**tight, elements=elements, element=element)
+        stiffer = replace(given, beams=(replace(given.beams[0], section=stiff),))
+        return tsm.solve(stiffer, [1.0], throw=False).status
+
+    assert status(4, "mixed") is tsm.Status.INACCURATE
+    assert status(400, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
+
+
 def test_an_arc_is_straightened_by_its_natural_moment():
     """A moment ``-EI k0`` at the tip makes a straight line of an arc of almost a full circle."""
     turn = 5.0
