@@ -7,7 +7,7 @@ THREADS := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 WAITING = $(PYTHON) .ci/waiting.py "installing the libraries of .constraints.txt, which takes minutes" $(VENV)
 PYTEST := $(THREADS) $(BIN)/python -m pytest -n auto --dist worksteal -q
 
-.PHONY: run test test-all results coverage mutation docs bench fuzz platforms peers lint format setup clean
+.PHONY: run test test-all results coverage mutation docs figures bench fuzz platforms peers lint format setup clean
 
 run: setup
 	@echo "comparing all models on ks-cantilever"
@@ -35,6 +35,10 @@ mutation: setup
 docs: setup
 	rm -rf out/docs
 	$(THREADS) $(BIN)/python -m sphinx -W --keep-going -n -q -d out/docs/doctrees docs out/docs/html
+
+# the pictures of the README, the tutorial and the pages, by the commands that they show
+figures: setup
+	$(THREADS) $(BIN)/python -m docs.extensions.figures
 
 bench: setup
 	$(THREADS) $(BIN)/python -m tests.benchmarks.bench --out bench.json

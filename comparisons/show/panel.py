@@ -15,6 +15,8 @@ from comparisons.show.symbols import Segments, hinge_symbol, placed, spring_symb
 
 Body = tuple[Array, NDArray[np.int64], Array]
 """Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of a body."""
+ARROW = 0.2
+"""Length of the longest arrow over the size of the picture."""
 SYMBOL = 0.03
 """Size of a support's symbol over the size of the undeformed structure."""
 COLOURS = {OPEN: CONTACT_STATES[OPEN], "contact": PIN, **CONTACT_STATES}
@@ -61,6 +63,11 @@ class Panel:
         """Return the numbers of the pins by their states, in the order of drawing."""
         found = {state: np.flatnonzero(self.states == state) for state in COLOURS}
         return {state: numbers for state, numbers in found.items() if len(numbers)}
+
+    def outline(self) -> list[Array]:
+        """Return points (..., 2) within which all is drawn but the arrows."""
+        reach = self.radii[:, None]
+        return [self.points, self.pins + reach, self.pins - reach, self.supports.reshape(-1, 2)]
 
 
 def joined(title: str, bodies: Sequence[Body], drawn: Sequence[Mapping[str, NDArray[Any]]]) -> Panel:
@@ -136,8 +143,8 @@ class Scale:
     ----------
     centre : tuple of float
         Middle of the view.
-    half : float
-        Half the size of the view.
+    extent : tuple of float
+        Half the width and half the height of what is shown.
     stress : tuple of float
         Lowest and highest stress of the colours.
     force : float
@@ -149,7 +156,7 @@ class Scale:
     """
 
     centre: tuple[float, float]
-    half: float
+    extent: tuple[float, float]
     stress: tuple[float, float]
     force: float
     label: str
@@ -158,30 +165,30 @@ class Scale:
     @classmethod
     def of(cls, panels: Sequence[Panel], label: str, unit: str = "") -> "Scale":
         """Return the scale that shows all of `panels`, with forces in `unit`; the colours of a stress with both signs are symmetric."""
-        shown = [
-            part
-            for panel in panels
-            for part in (
-                panel.points,
-                panel.pins + panel.radii[:, None],
-                panel.pins - panel.radii[:, None],
-                panel.supports.reshape(-1, 2),
-            )
-        ]
-        points = np.concatenate(shown)
-        low, high = points.min(axis=0), points.max(axis=0)
-        half = float((high - low).max()) / 2.0
+        points = [part for panel in panels for part in panel.outline()]
+        largest = max(float(np.hypot(*panel.forces.T).max(initial=0.0)) for panel in panels)
+        force = ARROW * float(np.ptp(np.concatenate(points), axis=0).max()) / (largest or 1.0)
+        points += [panel.pins - force * panel.forces for panel in panels]
+        low, high = (
+            np.min([part.min(axis=0) for part in points if len(part)], axis=0),
+            np.max([part.max(axis=0) for part in points if len(part)], axis=0),
+        )
+        extent = float(high[0] - low[0]) / 2.0, float(high[1] - low[1]) / 2.0
         top = max(float(np.abs(panel.stress).max()) for panel in panels)
         signed = any(float(panel.stress.min()) < 0.0 for panel in panels)
-        largest = max(float(np.hypot(*panel.forces.T).max(initial=0.0)) for panel in panels)
         return cls(
             centre=(float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0),
-            half=half,
+            extent=extent,
             stress=(-top if signed else 0.0, top),
-            force=0.4 * half / largest if largest else 0.0,
+            force=force if largest else 0.0,
             label=label,
             arrow=f"longest arrow {largest:.4g} {unit}".strip() if largest else "",
         )
+
+    @property
+    def half(self) -> float:
+        """Half the size of what is shown."""
+        return max(self.extent)
 
     @property
     def colours(self) -> str:

@@ -165,9 +165,10 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
     """Draw deformed bodies side by side, coloured by stress, in place of the rendered picture."""
     from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
-    fig = figure(figsize=(WIDTH, WIDTH / len(panels) + 1.3))
+    wide, tall = (1.12 * max(half, 0.25 * scale.half) for half in scale.extent)
+    fig = figure(figsize=(WIDTH, min(WIDTH / len(panels) * tall / wide, 7.0) + 1.7))
     frames = fig.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-    (x, y), reach = scale.centre, 1.12 * scale.half
+    x, y = scale.centre
     for axes, panel in zip(frames, panels, strict=True):
         bodies = PolyCollection(
             list(panel.points[panel.quads]),
@@ -194,7 +195,7 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
                     tip = pin + radius * force / np.hypot(*force)
                     arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 2}
                     axes.annotate("", tip, tip - scale.force * force, arrowprops=arrow)
-        axes.set(aspect="equal", xlim=(x - reach, x + reach), ylim=(y - reach, y + reach))
+        axes.set(aspect="equal", xlim=(x - wide, x + wide), ylim=(y - tall, y + tall))
         axes.set_title(panel.title, fontsize="medium")
         axes.tick_params(labelsize="small")
     fig.colorbar(bodies, ax=list(frames), label=scale.label, location="bottom", shrink=0.5)

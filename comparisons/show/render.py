@@ -32,26 +32,14 @@ ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "v
 INSTEAD = "off-screen rendering is not available here (no OpenGL, or a broken pyvista), matplotlib drew the picture instead"
 NOT_INSTALLED = f"pyvista is not installed ({install('pyvista')}), matplotlib drew the picture instead"
 
-ROOM = 1.35
-"""Half the height of the view over half the size of what it shows; title, legend and colours lie around it."""
 POINT = 0.014
 """Radius of the mark of a pin without radius, over half the size of the view."""
 PANEL, LEAST = 900, 1400
-"""Pixels of a panel, and of a picture at least."""
-BAR = {
-    "color": "black",
-    "fmt": "%.4g",
-    "width": 0.7,
-    "height": 0.08,
-    "position_x": 0.15,
-    "position_y": 0.01,
-    "n_labels": 3,
-    "unconstrained_font_size": True,
-}
-TITLE, LABEL = 15, 30
-"""Sizes of the letters of a panel of 900 pixels: of a title in points of VTK, of other words in pixels."""
-LINE, BELOW_TITLE = 0.045, 0.91
-"""Height of a line of the legend, and its upper edge, over the height of a panel."""
+"""Pixels of a panel's width, and of a picture's at least; the other sizes are of a panel of 900 pixels and grow with it."""
+LOWEST, AROUND, TALLEST, RIM = 520, 380, 610, 1.12
+"""Pixels of a panel's height at least, of title, legend and colours together, and of the tallest drawing; rim beside a wide drawing."""
+TITLE, LABEL, LINE, BELOW_TITLE, BAR = 15, 30, 40, 85, 70
+"""Sizes of the title in points of VTK, of other words, of a line and the place of the legend, and of the colours, in pixels."""
 ARRAYS = ("points", "quads", "stress", "pins", "radii", "forces", "states", "supports")
 
 
@@ -149,7 +137,7 @@ def _write(path: Path, frames: Sequence[list[Panel]], scale: Scale) -> None:
         for name in ARRAYS
     }
     titles = np.array([[panel.title for panel in panels] for panels in frames])
-    numbers = np.array([*scale.centre, scale.half, *scale.stress, scale.force])
+    numbers = np.array([*scale.centre, *scale.extent, *scale.stress, scale.force])
     words = np.array([scale.label, scale.arrow])
     np.savez(path, allow_pickle=False, titles=titles, words=words, scale=numbers, **arrays)
 
@@ -163,18 +151,20 @@ def _read(path: Path) -> tuple[list[list[Panel]], Scale]:
             ]
             for k, titles in enumerate(data["titles"])
         ]
-        x, y, half, low, high, force = data["scale"].tolist()
+        x, y, wide, high, least, most, force = data["scale"].tolist()
         label, arrow = map(str, data["words"])
-    return frames, Scale(centre=(x, y), half=half, stress=(low, high), force=force, label=label, arrow=arrow)
+    return frames, Scale(
+        centre=(x, y), extent=(wide, high), stress=(least, most), force=force, label=label, arrow=arrow
+    )
 
 
 def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
     """Return a plotter with the panels in one view."""
     import pyvista
 
-    side = _side(panels)
+    width, height, pixels = _window(panels, scale)
     plotter = pyvista.Plotter(
-        off_screen=off_screen, shape=(1, len(panels)), window_size=(side * len(panels), side), border=False
+        off_screen=off_screen, shape=(1, len(panels)), window_size=(width * len(panels), height), border=False
     )
     plotter.set_background("white")
     _draw(plotter, panels, scale)
@@ -184,7 +174,7 @@ def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
         plotter.camera.focal_point = (*scale.centre, 0.0)
         plotter.camera.position = (*scale.centre, 10.0 * scale.half)
         plotter.camera.up = (0.0, 1.0, 0.0)
-        plotter.camera.parallel_scale = ROOM * scale.half
+        plotter.camera.parallel_scale = height / (2.0 * pixels)
         plotter.camera.clipping_range = (0.1 * scale.half, 100.0 * scale.half)
     plotter.link_views()
     return plotter
@@ -194,19 +184,15 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
     """Put the panels into the plotter, in place of what was there."""
     import pyvista
 
+    width, height, _ = _window(panels, scale)
+    factor = width / PANEL
     for i, panel in enumerate(panels):
         plotter.subplot(0, i)
         faces = np.insert(panel.quads, 0, 4, axis=1)
         body = pyvista.PolyData(np.pad(panel.points, ((0, 0), (0, 1))), faces.ravel())
         body.point_data["stress"] = panel.stress
-        letters = LABEL * _side(panels) // PANEL
         # one bar in each panel takes different titles
-        bar = {
-            **BAR,
-            "title": scale.label + " " * i + "\n",
-            "title_font_size": letters,
-            "label_font_size": letters,
-        }
+        bar = {**_bar(factor * LABEL, factor * BAR / height), "title": scale.label + " " * i + "\n"}
         plotter.add_mesh(
             body,
             name="body",
@@ -248,16 +234,16 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
             name="title",
             position="upper_edge",
             color="black",
-            font_size=TITLE * _side(panels) // PANEL,
+            font_size=round(factor * TITLE),
             render=False,
         )
         entries = [[state, COLOURS[state]] for state in there]
         if scale.arrow:
             entries.append([scale.arrow, "black"])
         if entries:
-            size = (0.45, LINE * len(entries))
+            size = (0.45, factor * LINE / height * len(entries))
             legend = plotter.add_legend(entries, name="legend", face="circle", bcolor=None, size=size)
-            legend.SetPosition(0.02, BELOW_TITLE - size[1])
+            legend.SetPosition(0.02, 1.0 - factor * BELOW_TITLE / height - size[1])
 
 
 def _discs(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
@@ -302,9 +288,30 @@ def _lines(panel: Panel, scale: Scale) -> Any:
     return pyvista.line_segments_from_points(ends)
 
 
-def _side(panels: list[Panel]) -> int:
-    """Pixels of a panel's side."""
-    return max(PANEL, LEAST // len(panels))
+def _window(panels: list[Panel], scale: Scale) -> tuple[int, int, float]:
+    """Return width and height of a panel in pixels, and the pixels of a unit of length: a flat drawing has a flat panel."""
+    width = max(PANEL, LEAST // len(panels))
+    factor = width / PANEL
+    wide, tall = (max(half, 1e-3 * scale.half) for half in scale.extent)
+    pixels = min(width / (2.0 * RIM * wide), factor * TALLEST / (2.0 * tall))
+    height = min(max(factor * AROUND + 2.0 * tall * pixels, factor * LOWEST), float(width))
+    return width, round(height), pixels
+
+
+def _bar(letters: float, height: float) -> dict[str, Any]:
+    """Return the options of the colours, for letters of that size in pixels and a part of the panel's height."""
+    return {
+        "color": "black",
+        "fmt": "%.4g",
+        "width": 0.7,
+        "height": height,
+        "position_x": 0.15,
+        "position_y": 0.01,
+        "n_labels": 3,
+        "unconstrained_font_size": True,
+        "title_font_size": round(letters),
+        "label_font_size": round(letters),
+    }
 
 
 def _draw_files(frames: list[list[Panel]], scale: Scale, folder: Path) -> None:

@@ -67,13 +67,13 @@ def test_a_round_pin_has_its_true_radius_beside_the_beam() -> None:
         nearest = [np.hypot(*(panel.points - centre).T).min() for centre in panel.pins]
         assert nearest == pytest.approx([0.05], abs=2e-3)
         scale = Scale.of([panel], "stress")
-        assert scale.centre[1] - scale.half <= -0.05
+        assert scale.centre[1] - scale.extent[1] <= panel.pins[0, 1] - 0.05
 
 
 def test_brightness_grows_with_the_stress() -> None:
     """In grey print, for stress of one sign and of both."""
     for low in (0.0, -1.0):
-        scale = Scale(centre=(0.0, 0.0), half=1.0, stress=(low, 1.0), force=0.0, label="")
+        scale = Scale(centre=(0.0, 0.0), extent=(1.0, 1.0), stress=(low, 1.0), force=0.0, label="")
         grey = colormaps[scale.colours](np.linspace(0.0, 1.0, 50))[:, :3] @ [0.299, 0.587, 0.114]
         assert np.diff(grey).min() > 0.0
         assert grey[-1] - grey[0] > 0.5

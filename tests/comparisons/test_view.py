@@ -158,7 +158,7 @@ def test_files_give_the_same_film(responses: list[Response], series: list[Series
     ours, theirs = film(series), film(read)
     assert ours.scale.label == theirs.scale.label == "axial stress [N/m^2]"
     assert ours.scale.arrow == theirs.scale.arrow
-    assert ours.scale.half == pytest.approx(theirs.scale.half)
+    assert ours.scale.extent == pytest.approx(theirs.scale.extent)
     assert ours.scale.stress == pytest.approx(theirs.scale.stress)
     for one, other in zip(ours.frames, theirs.frames, strict=True):
         for a, b in zip(one, other, strict=True):
