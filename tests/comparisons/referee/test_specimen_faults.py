@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from comparisons.referee import Verdict, certify
+from comparisons.referee.march import tangent
 from comparisons.response import Response
 from comparisons.scene import HingeSpec, LoadSpec, Scene, SpringSpec, StageSpec, SupportSpec
 from tests.comparisons.referee.forged import stated
@@ -103,3 +105,13 @@ def test_no_key_is_left_out_of_the_balance() -> None:
     refused = certify(answer, lighter, allowance=1.0)
     assert refused.verdict is Verdict.NOT_AN_EQUILIBRIUM
     assert "do not balance" in refused.reason
+
+
+def test_nothing_moves_in_a_stage_that_changes_nothing() -> None:
+    """The round-off of an equilibrium does not count as a rate: over a short step it would lead the path elsewhere."""
+    rest = StageSpec(load_parameters=1, load=(LoadSpec(beam="a", end="start", force=(0.0, 1.0)),))
+    idle = replace(RIGHT["heavy taper"], stages=(rest,))
+    solution = found(idle, undeformed(idle, 1.5)).solution
+    change, inside = tangent(idle, solution, 1e-7)
+    assert not np.any(change)
+    assert not np.any(inside)
