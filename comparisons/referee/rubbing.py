@@ -102,15 +102,22 @@ def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
 
 
 def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed: float) -> Iterator[str]:
-    """Yield a contact that moves though it sticks, apart from what it rolls."""
+    """Yield a contact whose held material point moves though it sticks.
+
+    ``A (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0`` holds the point. An answer states s alone; the angles are those of the exact
+    equilibrium, and the answer knows each of the three terms to its accuracy only.
+    """
     assert touch.grip is not None, "a contact that sticks has friction"
-    assert touch.grip.hold is not None, "a contact that sticks has a place"
+    hold = touch.grip.hold
+    assert hold is not None, "a contact that sticks has a place"
     length = history.scene.beam(touch.spec.beam).length
-    rolled = exact.contacts[touch.spec.pair].arc_position - touch.grip.hold.arc_position
+    here, unit = place(exact.solution, touch), exact.solution.layout.length
+    rolled = here.arc_position - hold.arc_position
     moved = _moved(history, touch.spec, k) - rolled
-    # on a face the shear strain moves the contact by part of the offset, which an element knows to its accuracy only
-    rolls = allowed * (abs(rolled) + history.scene.offset(touch.spec))
-    if abs(moved) > _law(history.response, allowed) * length + rolls:
+    sheared = unit * touch.lever(here.arc_position / unit) * math.remainder(here.shear - hold.shear, math.tau)
+    turned = unit * touch.roll * (here.direction - hold.direction)
+    terms = abs(rolled), abs(sheared), abs(turned)
+    if abs(moved) > _law(history.response, allowed) * length + allowed * max(terms):
         yield f"{touch.spec.pair} sticks and moves by {moved / length:.2g} L"
 
 
