@@ -49,7 +49,7 @@ def test_an_extreme_scene_is_refused(case: str, tmp_path: Path, capsys: pytest.C
         text = text.replace("elements = 20 ", "elements = 100_000 ")
     file = tmp_path / "my.toml"
     file.write_text(text)
-    assert sentence in refused(["solve", str(file), "--model", "tsm"], capsys)
+    assert sentence in refused(["solve", str(file), "--model", "tsm", "--element", "mixed"], capsys)
 
 
 @pytest.mark.parametrize(
