@@ -14,8 +14,6 @@ NOT_BY_THE_SOLID = {
     "hysteresis-stages": "a stage after the first one",
     "ks-printed-shear": "a Poisson's ratio between",
     "lees-frame": "a Poisson's ratio between",
-    "straightened-arc": "a natural curvature",
-    "tapered-spring": "a section that tapers",
     "williams-toggle": "a Poisson's ratio between",
 }
 """Scenes that no solid is: a section higher than a beam's, beams that do not shear, and keys that the solid does not state."""
