@@ -25,6 +25,8 @@ class Support:
     motion
         Mean displacement x, y [m] and rotation, anticlockwise [rad], at the load parameter 1, in the global frame; None where
         free. They are proportional to the load parameter.
+    onward
+        Changes of the three in the stages after the first one, from one whole load parameter to the next; the free ones do not count.
 
     Raises
     ------
@@ -35,9 +37,12 @@ class Support:
     strip: str
     end: str
     motion: Motion = (0.0, 0.0, 0.0)
+    onward: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
         owner = f"Support({self.node!r})"
+        moved = all(len(change) == 3 and all(map(isfinite, change)) for change in self.onward)
+        require(moved, owner, "onward", self.onward, "must be three finite values for every stage")
         require_choice(owner, "end", self.end, ENDS)
         held = [value for value in self.motion if value is not None]
         finite = len(self.motion) == 3 and all(map(isfinite, held))
@@ -104,6 +109,8 @@ class EndLoad:
         Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
     moment
         Moment at the load parameter 1, anticlockwise [N m]. It is proportional to the load parameter.
+    stage
+        Number from 0 of the stage during which force and moment are added.
 
     Raises
     ------
@@ -115,11 +122,13 @@ class EndLoad:
     force: Point = (0.0, 0.0)
     moment: float = 0.0
     end: str = "end"
+    stage: int = 0
 
     def __post_init__(self) -> None:
         owner = f"EndLoad({self.node!r})"
         require_choice(owner, "end", self.end, ENDS)
         require_point(owner, "force", self.force)
+        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
         require(isfinite(self.moment), owner, "moment", self.moment, "must be finite")
         rule = "must not be zero without a moment"
         require(any((*self.force, self.moment)), owner, "force", self.force, rule)

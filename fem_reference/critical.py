@@ -9,6 +9,7 @@ from fem_reference.arrays import Floats
 from fem_reference.model import Model
 from fem_reference.newton import check_convergence, updated
 from fem_reference.settings import Settings
+from fem_reference.stages import amount
 from fem_reference.state import State, build_state, contact_energy, residual, spring_energy
 from fem_reference.status import Status
 from fem_reference.tangent import Tangent, linearise
@@ -301,6 +302,8 @@ def potential(model: Model, state: State, near: State) -> float:
         float(np.remainder(pose.rotation - other.rotation + np.pi, 2 * np.pi) - np.pi)
         for pose, other in zip(state.poses, near.poses, strict=True)
     ]
-    work = float(np.sum(model.load * state.u)) + float(model.moments @ turns)
+    work = float(np.sum(amount(model.loads, state.t) * state.u)) + float(
+        amount(model.moments, state.t) @ turns
+    )
     stored = model.strain_energy(state.u) + contact_energy(state) + spring_energy(model, state)
-    return stored - state.t * work
+    return stored - work

@@ -20,6 +20,7 @@ from scipy.sparse import csr_matrix
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.mesh import Discretisation, edge_moments, edge_weights
+from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
 COLUMNS = 4
@@ -130,8 +131,8 @@ class Tie:
         Number of the end section, and of the component: x, y or rotation.
     other
         Number of the other end section; None if the component is prescribed.
-    rate
-        Prescribed motion at the load parameter 1 [m or rad].
+    rates
+        Change of the prescribed motion in every stage [m or rad].
     flexibility
         Difference of the motions over the force against it, the inverse of a spring's stiffness; zero for a rigid tie.
     """
@@ -139,7 +140,7 @@ class Tie:
     section: int
     component: int
     other: int | None = None
-    rate: float = 0.0
+    rates: tuple[float, ...] = (0.0,)
     flexibility: float = 0.0
 
     @property
@@ -149,7 +150,7 @@ class Tie:
 
     def residual(self, poses: tuple[Pose, ...], t: float, force: Any) -> float:
         """Motion less the prescribed one or the other end's, plus the flexibility times the ``force``; an angle is in [-pi, pi] [m or rad]."""
-        target = t * self.rate if self.other is None else poses[self.other].motion[self.component]
+        target = amount(self.rates, t) if self.other is None else poses[self.other].motion[self.component]
         difference = float(poses[self.section].motion[self.component] - target + self.flexibility * force)
         return (
             float(np.remainder(difference + np.pi, 2 * np.pi) - np.pi)

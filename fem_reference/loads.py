@@ -26,6 +26,8 @@ class PointLoad:
         Position of the section over the length, between 0 and 1.
     force
         Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
+    stage
+        Number from 0 of the stage during which the force is added.
 
     Raises
     ------
@@ -36,9 +38,11 @@ class PointLoad:
     strip: str
     at: float
     force: Point
+    stage: int = 0
 
     def __post_init__(self) -> None:
         owner = f"PointLoad({self.strip!r})"
+        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
         require(0 < self.at < 1, owner, "at", self.at, "must lie between 0 and 1")
         require_point(owner, "force", self.force)
         require(any(self.force), owner, "force", self.force, "must not be zero")
@@ -67,6 +71,8 @@ class LineLoad:
         frame [N/m]. It is proportional to the load parameter.
     part
         Positions over the length between which the force acts.
+    stage
+        Number from 0 of the stage during which the force is added.
 
     Raises
     ------
@@ -77,9 +83,11 @@ class LineLoad:
     strip: str
     force: tuple[Point, ...]
     part: tuple[float, float] = (0.0, 1.0)
+    stage: int = 0
 
     def __post_init__(self) -> None:
         owner = f"LineLoad({self.strip!r})"
+        require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
         for coefficient in self.force:
             require_point(owner, "force", coefficient)
         require(any(map(any, self.force)), owner, "force", self.force, "must not be zero")

@@ -123,6 +123,8 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
         if status is not Status.CONVERGED:
             return
         track, trial = progress.track, progress.trial
+        if target.is_integer():  # a stage may follow
+            track, trial = track[-1:], settings.first_step
 
 
 def _start(model: Model) -> State:

@@ -33,14 +33,14 @@ class Model:
         Contacts.
     expansion
         Matrix ``(2 n, m)`` from the unknowns to the displacements.
-    load
-        Nodal forces ``(n, 2)`` of the dead forces at the load parameter 1, each in the frame of its strip [N].
+    loads
+        Nodal forces ``(s, n, 2)`` of the dead forces that are added in every stage, each in the frame of its strip [N].
     sections, columns
         End sections that are supported, joined, anchored or loaded by a moment, and their columns ``(2 n, 4 e)``.
     ties
         Ties of these sections: components of supports, then of springs, then of joints.
     moments
-        Dead moments on the sections at the load parameter 1, ``(e,)`` [N m].
+        Dead moments on the sections that are added in every stage, ``(s, e)`` [N m].
     """
 
     problem: SolidProblem
@@ -48,7 +48,7 @@ class Model:
     parts: tuple[slice, ...]
     pairs: tuple[Pair, ...]
     expansion: csr_matrix
-    load: Floats
+    loads: Floats
     sections: tuple[EndSection, ...]
     columns: Floats
     ties: tuple[Tie, ...]
@@ -81,16 +81,18 @@ class Model:
         return max(body.force_scale for body in self.bodies)
 
     @cached_property
-    def largest_load(self) -> float:
-        """Largest dead force, or moment over the longest strip, at the load parameter 1 [N]."""
-        forces = [float(np.hypot(*load.force)) for load in self.problem.loads]
-        forces += [
-            float(np.hypot(*item.on_sections(body.strip, body.mesh.stations).sum(axis=0)))
-            for item in self.problem.inner_loads
-            for body in self.bodies
-            if body.strip.name == item.strip
-        ]
-        return max([*forces, *(abs(load.moment) / self.length for load in self.problem.loads)], default=0.0)
+    def largest_loads(self) -> tuple[float, ...]:
+        """Largest dead force, or moment over the longest strip, that is added in every stage [N]."""
+        found = [0.0] * self.problem.stages
+        for load in self.problem.loads:
+            found[load.stage] = max(
+                found[load.stage], float(np.hypot(*load.force)), abs(load.moment) / self.length
+            )
+        for inner in self.problem.inner_loads:
+            body, _ = self.body(inner.strip)
+            total = inner.on_sections(body.strip, body.mesh.stations).sum(axis=0)
+            found[inner.stage] = max(found[inner.stage], float(np.hypot(*total)))
+        return tuple(found)
 
     @cached_property
     def axial_stiffness(self) -> float:
@@ -140,17 +142,17 @@ def build(problem: SolidProblem) -> Model:
     sections = _sections(problem, bodies, parts)
     columns = [section.columns for section in sections]
     numbers = {section.node: number for number, section in enumerate(sections)}
-    moments = np.zeros(len(sections))
+    moments = np.zeros((problem.stages, len(sections)))
     for load in problem.loads:
         if load.moment:
-            moments[numbers[load.node]] += load.moment
+            moments[load.stage, numbers[load.node]] += load.moment
     return Model(
         problem=problem,
         bodies=bodies,
         parts=parts,
         pairs=tuple(_pair(problem, contact, bodies, parts) for contact in problem.contacts),
         expansion=block_diag([body.expansion for body in bodies], format="csr"),
-        load=np.concatenate([_dead_forces(problem, body) for body in bodies]),
+        loads=np.concatenate([_dead_forces(problem, body) for body in bodies], axis=1),
         sections=sections,
         columns=np.hstack(columns) if columns else np.zeros((2 * parts[-1].stop, 0)),
         ties=_ties(problem, numbers),
@@ -159,17 +161,17 @@ def build(problem: SolidProblem) -> Model:
 
 
 def _dead_forces(problem: SolidProblem, body: Body) -> Floats:
-    """Nodal forces ``(n, 2)`` of the dead forces on a body's ends and inside it, in the strip's frame [N]."""
-    forces = np.zeros((len(body.mesh.nodes), 2))
+    """Nodal forces ``(s, n, 2)`` of the dead forces of every stage on a body's ends and inside it, in the strip's frame [N]."""
+    forces = np.zeros((problem.stages, len(body.mesh.nodes), 2))
     for load in problem.loads:
         if load.strip == body.strip.name:
             edge = body.mesh.edges[load.end]
             share = edge_weights(body.strip.element, body.mesh.places[edge, 1])
-            forces[edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
+            forces[load.stage, edge] += share[:, None] * (np.array(load.force) @ body.strip.frame)
     for inner in problem.inner_loads:
         if inner.strip == body.strip.name:
             on_sections = inner.on_sections(body.strip, body.mesh.stations)
-            forces += body.mesh.sections.T @ on_sections @ body.strip.frame
+            forces[inner.stage] += body.mesh.sections.T @ on_sections @ body.strip.frame
     return forces
 
 
@@ -209,8 +211,13 @@ def _section(
 
 def _ties(problem: SolidProblem, numbers: dict[str, int]) -> tuple[Tie, ...]:
     """Ties of supports and joints between the sections with the given ``numbers``."""
+    rest = (0.0,) * (problem.stages - 1)
     supports = [
-        Tie(section=numbers[support.node], component=component, rate=rate)
+        Tie(
+            section=numbers[support.node],
+            component=component,
+            rates=(rate, *(change[component] for change in support.onward), *rest[len(support.onward) :]),
+        )
         for support in problem.supports
         for component, rate in enumerate(support.motion)
         if rate is not None

@@ -8,6 +8,7 @@ from fem_reference.arrays import Floats
 from fem_reference.end_section import ROTATION
 from fem_reference.model import Model
 from fem_reference.settings import Settings
+from fem_reference.stages import amount
 from fem_reference.state import State, build_state, residual, tie_residuals, with_contact_forces
 from fem_reference.status import Status
 from fem_reference.tangent import Correction, linearise
@@ -99,7 +100,7 @@ def force_scale(model: Model, state: State) -> float:
         for tie, force in zip(model.ties, state.tie_forces, strict=True)
     ]
     contacts = [abs(float(force)) for force in state.contact_forces]
-    return max(model.force_scale, state.t * model.largest_load, *contacts, *ties)
+    return max(model.force_scale, float(amount(model.largest_loads, state.t)), *contacts, *ties)
 
 
 def largest_tie_residual(model: Model, state: State) -> float:

@@ -17,6 +17,7 @@ from fem_reference.checks import (
 )
 from fem_reference.conditions import EndLoad, Joint, Spring, Support, require_held, require_known_ends
 from fem_reference.loads import LineLoad, PointLoad
+from fem_reference.stages import stage_of
 from fem_reference.strip import Strip
 
 TURN = 0.5
@@ -35,6 +36,8 @@ class Pin:
         At least two positions of the centre [m]. The load parameter t in [0, 1] is the fraction of the path's length.
     radius
         Radius [m]; zero for a sharp pin.
+    onward
+        Points that the pin moves to in every stage after the first one, from one whole load parameter to the next; none where it rests.
 
     Raises
     ------
@@ -45,31 +48,38 @@ class Pin:
     name: str
     path: tuple[Point, ...]
     radius: float = 0.0
+    onward: tuple[tuple[Point, ...], ...] = ()
 
     def __post_init__(self) -> None:
         owner = f"Pin({self.name!r})"
         for point in self.path:
             require_point(owner, "path", point)
-        require(len(self.path) >= 2, owner, "path", self.path, "must have at least two points")
-        require(len(set(self.path)) > 1, owner, "path", self.path, "must have a positive length")
+        for point in (point for points in self.onward for point in points):
+            require_point(owner, "onward", point)
+        whole = (*self.path, *(point for points in self.onward for point in points))
+        least = 1 if any(self.onward) else 2
+        require(len(self.path) >= least, owner, "path", self.path, "must have at least two points")
+        require(len(set(whole)) > 1, owner, "path", self.path, "must have a positive length")
         finite = isfinite(self.radius) and self.radius >= 0
         require(finite, owner, "radius", self.radius, "must be finite and not negative")
 
     def position(self, t: float) -> Floats:
         """Return the position ``(2,)`` of the pin's centre at the load parameter ``t``."""
-        return np.array([np.interp(t, self._fractions, axis) for axis in self._axes])
+        stage = stage_of(t, len(self._ways))
+        fractions, axes = self._ways[stage]
+        return np.array([np.interp(t - stage, fractions, axis) for axis in axes])
 
     @cached_property
-    def _axes(self) -> Floats:
-        """Coordinates of the path's points, ``(2, k)``."""
-        return np.array(self.path, dtype=float).T.copy()
-
-    @cached_property
-    def _fractions(self) -> Floats:
-        """Load parameters of the path's points."""
-        legs = np.hypot(*np.diff(np.array(self.path, dtype=float), axis=0).T)
-        fractions: Floats = np.concatenate([[0.0], np.cumsum(legs)]) / legs.sum()
-        return fractions
+    def _ways(self) -> tuple[tuple[Floats, Floats], ...]:
+        """Fractions of the length ``(k,)`` and coordinates ``(2, k)`` of the path's points in every stage."""
+        ways, last = [], self.path[:1]
+        for points in (self.path[1:], *self.onward):
+            way = np.array((*last, *points), dtype=float)
+            legs = np.hypot(*np.diff(way, axis=0).T)
+            whole = legs.sum() or 1.0
+            ways.append((np.concatenate([[0.0], np.cumsum(legs)]) / whole, way.T.copy()))
+            last = (points or last)[-1:]
+        return tuple(ways)
 
     @property
     def turns(self) -> tuple[float, ...]:
@@ -78,14 +88,15 @@ class Pin:
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).turns
         (0.5,)
         """
-        directions = np.arctan2(*np.diff(np.array(self.path, dtype=float), axis=0).T[::-1])
-        bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
-        load_parameters, turned = [], 0.0
-        for t, bend in zip(self._fractions[1:-1].tolist(), bends.tolist(), strict=True):
-            turned += bend
-            if turned >= TURN:
-                load_parameters.append(t)
-                turned = 0.0
+        load_parameters = []
+        for stage, (fractions, axes) in enumerate(self._ways):
+            directions, turned = np.arctan2(*np.diff(axes)[::-1]), 0.0
+            bends = np.abs(np.remainder(np.diff(directions) + np.pi, 2 * np.pi) - np.pi)
+            for t, bend in zip(fractions[1:-1].tolist(), bends.tolist(), strict=True):
+                turned += bend
+                if turned >= TURN:
+                    load_parameters.append(stage + t)
+                    turned = 0.0
         return tuple(load_parameters)
 
 
@@ -215,8 +226,16 @@ class SolidProblem:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """Load parameters at which a load step must end because the path of a pin turns, see `Pin.turns`."""
-        return tuple(sorted({turn for pin in self.pins for turn in pin.turns}))
+        """Load parameters at which a load step must end because a stage ends or the path of a pin turns, see `Pin.turns`."""
+        ends = (float(stage) for stage in range(1, self.stages))
+        return tuple(sorted({*ends, *(turn for pin in self.pins for turn in pin.turns)}))
+
+    @cached_property
+    def stages(self) -> int:
+        """Number of stages. The load parameter of the last state is at most this number."""
+        loads = (1 + load.stage for load in (*self.loads, *self.inner_loads))
+        paths = [len(pin.onward) for pin in self.pins] + [len(support.onward) for support in self.supports]
+        return max([1, *loads, *(1 + count for count in paths)])
 
     def penalty(self, contact: Contact) -> float:
         """Contact stiffness eps of a contact [N/m]."""

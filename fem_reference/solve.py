@@ -33,7 +33,7 @@ def solve(
     problem
         Strips, pins, contacts, and supports, joints and loads of ends.
     load_parameters
-        Increasing values in (0, 1], ``(n,)``. Each is reached exactly.
+        Increasing values in (0, s] with the number s of stages, ``(n,)``. Each is reached exactly.
     settings
         Tolerances and limits; None for the defaults.
     throw
@@ -49,11 +49,11 @@ def solve(
     Raises
     ------
     ValueError
-        If the load parameters are not a one-dimensional increasing array in (0, 1].
+        If the load parameters are not a one-dimensional increasing array in (0, s].
     SolveError
         If the solution stops early and ``throw`` is set; ``SolveError.result`` is the incomplete solution.
     """
-    loads = _checked(load_parameters)
+    loads = _checked(load_parameters, problem.stages)
     settings = settings or Settings()
     model = build(problem)
     begin = perf_counter()
@@ -68,12 +68,12 @@ def solve(
     return result
 
 
-def _checked(load_parameters: Floats) -> Floats:
+def _checked(load_parameters: Floats, stages: int) -> Floats:
     loads = np.asarray(load_parameters, dtype=float)
     ordered = loads.ndim == 1 and loads.size > 0 and bool(np.all(np.diff(loads, prepend=0.0) > 0))
-    if not (ordered and loads[-1] <= 1):
+    if not (ordered and loads[-1] <= stages):
         raise ValueError(
-            f"load_parameters = {load_parameters!r}: must be a one-dimensional increasing array in (0, 1]"
+            f"load_parameters = {load_parameters!r}: must be a one-dimensional increasing array in (0, {stages}]"
         )
     return loads
 

@@ -9,6 +9,7 @@ from fem_reference.arrays import Floats
 from fem_reference.end_section import ROTATION, Pose
 from fem_reference.friction import friction_at, settled, stretch_column
 from fem_reference.model import Model
+from fem_reference.stages import amount
 from fem_reference.touch import Condition, Touch
 
 
@@ -146,7 +147,7 @@ def with_conditions(state: State, conditions: tuple[Condition, ...]) -> State:
 
 def residual(model: Model, state: State) -> Floats:
     """Internal forces minus dead loads, contact and tie forces, ``(n, 2)``; in equilibrium the clamp forces [N]."""
-    R = state.internal_force - state.t * model.load
+    R: Floats = state.internal_force - amount(model.loads, state.t)
     for touch in state.closed:
         R -= touch.force * touch.slopes[:, 0].reshape(-1, 2)
         if touch.friction is not None:
@@ -159,7 +160,7 @@ def residual(model: Model, state: State) -> Floats:
 def section_actions(model: Model, state: State) -> Floats:
     """Forces x, y and moment of ties and dead moments on every end section, ``(e, 3)`` [N, N m]."""
     actions = np.zeros((len(model.sections), 3), dtype=state.tie_forces.dtype)
-    actions[:, ROTATION] = state.t * model.moments
+    actions[:, ROTATION] = amount(model.moments, state.t)
     for tie, force in zip(model.ties, state.tie_forces, strict=True):
         actions[tie.section, tie.component] += force
         if tie.other is not None:
@@ -233,7 +234,8 @@ def imbalance(model: Model, state: State) -> float:
     of the first strip and are divided by the length of the longest one.
     """
     origin = np.array(model.problem.strips[0].start)
-    total, moment = np.zeros(2), state.t * float(model.moments.sum())
+    total, moment = np.zeros(2), float(amount(model.moments, state.t).sum())
+    nodal = amount(model.loads, state.t)
     places = {
         section.node: section.position + pose.displacement
         for section, pose in zip(model.sections, state.poses, strict=True)
@@ -241,7 +243,7 @@ def imbalance(model: Model, state: State) -> float:
     for body, part in model.bodies_and_nodes():
         start = np.array(body.strip.start) - origin
         points = start + (body.mesh.nodes + state.u[part]) @ body.strip.frame.T
-        loads = state.t * model.load[part] @ body.strip.frame.T
+        loads = nodal[part] @ body.strip.frame.T
         total += loads.sum(axis=0)
         moment += _moment(points, loads)
         for end in body.strip.clamped:

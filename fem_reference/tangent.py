@@ -25,6 +25,7 @@ from fem_reference.end_section import ROTATION
 from fem_reference.factor import Factor
 from fem_reference.model import Model
 from fem_reference.problem import Pin
+from fem_reference.stages import increment
 from fem_reference.state import State, section_forces, tie_residuals
 from fem_reference.touch import Touch
 
@@ -88,10 +89,15 @@ class Tangent:
         p = np.concatenate(
             [*(pin_motion(touch, before, after) for touch in state.closed), np.zeros(model.columns.shape[1])]
         )
-        r = np.array([*(0.0 for _ in state.contact_forces), *(-tie.rate for tie in model.ties)])
-        load = model.load
+        r = np.array(
+            [
+                *(0.0 for _ in state.contact_forces),
+                *(-increment(tie.rates, before, after) for tie in model.ties),
+            ]
+        )
+        load = increment(model.loads, before, after)
         if model.sections:
-            actions = np.outer(model.moments, np.eye(3)[ROTATION])
+            actions = np.outer(increment(model.moments, before, after), np.eye(3)[ROTATION])
             load = load + section_forces(model, self.state, actions)
         return self._correction(self._respond(-(model.restriction @ load.ravel()), p, r, augmented=True))
 

@@ -19,7 +19,7 @@ SPECIAL: Final = {
 
 BEAMS: Final = frozenset(SPECIAL)
 """Keys that the tangent stiffness method states."""
-STRIPS: Final = frozenset({"turn", "taper", "density", "force_per_length", "at", "hinge", "spring"})
+STRIPS: Final = frozenset(SPECIAL)
 """Keys that the solid states."""
 REFEREE: Final[frozenset[str]] = frozenset(SPECIAL)
 """Keys that the referee judges."""

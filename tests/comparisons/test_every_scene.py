@@ -11,12 +11,11 @@ from comparisons.scene import Scene, built_in_scenes, load_scene
 
 NOT_BY_THE_SOLID = {
     "cantilever-critical-area": "more than an eighth of the length",
-    "hysteresis-stages": "a stage after the first one",
     "ks-printed-shear": "a Poisson's ratio between",
     "lees-frame": "a Poisson's ratio between",
     "williams-toggle": "a Poisson's ratio between",
 }
-"""Scenes that no solid is: a section higher than a beam's, beams that do not shear, and keys that the solid does not state."""
+"""Scenes that no solid is: a section higher than a beam's, and beams that do not shear."""
 WITH_ELASTICA = {"cantilever-critical-area", "ks-cantilever", "ks-printed-shear", "touch-again"}
 """Scenes of one cantilever under one pin on its axis."""
 WITHOUT_FRICTION = "contacts without friction only"

@@ -116,7 +116,7 @@ def test_the_difference_falls_at_least_as_the_height_squared(name):
     assert high > 3.0 * low
 
 
-@pytest.mark.parametrize("name", ["hinged-truss", "beam-on-springs"])
+@pytest.mark.parametrize("name", ["hinged-truss", "beam-on-springs", "hysteresis-stages"])
 def test_built_in_scenes_are_certified(name):
     at = load_scene(name)
     response = certified(solve(at, "solid", Options(mesh=(8, 1))), at)

@@ -47,9 +47,17 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> "SolidProb
         supports=tuple(_support(scene, spec) for spec in scene.all_supports if spec.node not in clamps),
         joints=tuple(_joint(scene, ends) for ends in _joints(scene)),
         springs=tuple(_springs(scene)),
-        loads=tuple(_end_load(scene, load) for load in scene.loads if load.end is not None),
+        loads=tuple(_end_loads(scene)),
         inner_loads=(*_inner_loads(scene), *_weights(scene)),
-        pins=tuple(Pin(name=pin.name, path=pin.points, radius=pin.radius or 0.0) for pin in scene.pins),
+        pins=tuple(
+            Pin(
+                name=pin.name,
+                path=pin.stage_points[0],
+                radius=pin.radius or 0.0,
+                onward=tuple(points[1:] for points in pin.stage_points[1:]),
+            )
+            for pin in scene.pins
+        ),
         contacts=tuple(
             Contact(
                 node=contact.node,
@@ -88,7 +96,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     if len(spec.held) < len(COMPONENTS):
         return False
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
-    loaded = any(load.node == spec.node for load in scene.loads)
+    loaded = any(load.node == spec.node for _, load in _staged(scene))
     arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
     if not (spec.moves or joined or loaded or arc):
         return True
@@ -121,7 +129,7 @@ def _support(scene: Scene, spec: SupportSpec) -> "Support":
     motion = spec.motion
     if "rotation" in spec.held and not _turns_with_joint(scene, spec.node, "support"):
         motion = (*motion[:2], None)
-    return Support(strip=spec.beam, end=spec.end, motion=motion)
+    return Support(strip=spec.beam, end=spec.end, motion=motion, onward=spec.onward)
 
 
 def _springs(scene: Scene) -> "Iterator[Spring]":
@@ -153,41 +161,55 @@ def _turns_with_joint(scene: Scene, node: str, kind: str) -> bool:
     return False
 
 
-def _end_load(scene: Scene, load: LoadSpec) -> "EndLoad":
+def _staged(scene: Scene) -> Iterator[tuple[int, LoadSpec]]:
+    """Yield the number of the stage, from 0, of every load, and the load."""
+    for stage, loads in enumerate((scene.loads, *(stage.load for stage in scene.stages))):
+        yield from ((stage, load) for load in loads)
+
+
+def _end_loads(scene: Scene) -> "Iterator[EndLoad]":
+    """Yield the forces and moments on the ends."""
     from fem_reference import EndLoad
 
-    if load.moment and not _turns_with_joint(scene, load.node, "load"):
-        raise ModelError(f'the solid model states a moment on an end without a hinge, "{load.node}" has one')
-    return EndLoad(strip=load.beam, end=load.end or "end", force=load.force, moment=load.moment)
+    for stage, load in _staged(scene):
+        if load.end is None:
+            continue
+        if load.moment and not _turns_with_joint(scene, load.node, "load"):
+            raise ModelError(
+                f'the solid model states a moment on an end without a hinge, "{load.node}" has one'
+            )
+        yield EndLoad(strip=load.beam, end=load.end, force=load.force, moment=load.moment, stage=stage)
 
 
 def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
     """Yield the forces inside the beams and the forces per length."""
     from fem_reference import LineLoad, PointLoad
 
-    for load in scene.loads:
+    for stage, load in _staged(scene):
         if load.force_per_length is not None:
-            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span)
+            yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
         elif load.at is not None:
             if load.moment:
                 raise ModelError(
                     f'the solid model does not state a moment inside a beam, which acts on "{load.node}"'
                 )
-            yield PointLoad(strip=load.beam, at=load.at, force=load.force)
+            yield PointLoad(strip=load.beam, at=load.at, force=load.force, stage=stage)
 
 
 def _weights(scene: Scene) -> "Iterator[LineLoad]":
     """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
     from fem_reference import LineLoad
 
-    gx, gy = scene.gravity or (0.0, 0.0)
+    gravities = (scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages))
     for beam in scene.beams:
-        if beam.density is not None and (gx or gy):
+        if beam.density is not None:
             start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
             mass = [start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end]
             if not beam.tapers:
                 mass = [middle]
-            yield LineLoad(strip=beam.name, force=tuple((gx * m, gy * m) for m in mass))
+            for stage, (gx, gy) in enumerate(gravities):
+                if gx or gy:
+                    yield LineLoad(strip=beam.name, force=tuple((gx * m, gy * m) for m in mass), stage=stage)
 
 
 def rectangle(beam: BeamSpec) -> tuple[float, float]:
