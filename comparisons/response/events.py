@@ -6,10 +6,12 @@ from typing import NamedTuple
 from comparisons.response.along import FIRST
 from comparisons.response.record import ContactEvent, Response
 
+RELEASE, SLIP_OFF = "release", "slip-off"
+"""Events that open a contact."""
 _WORDS = {
     "touch": "{node} touches {beam} at arc position {arc}",
-    "release": "{node} leaves {beam} at arc position {arc}",
-    "slip-off": "{node} slips off {beam} at arc position {arc}; contact force before {force}",
+    RELEASE: "{node} leaves {beam} at arc position {arc}",
+    SLIP_OFF: "{node} slips off {beam} at arc position {arc}; contact force before {force}",
     "slip": "{node} begins to slip on {beam} at arc position {arc}; contact force {force}",
     "stick": "{node} comes to stick on {beam} at arc position {arc}; contact force {force}",
     "limit-point": "limit point of the path",
@@ -39,6 +41,14 @@ def event_words(event: ContactEvent, with_unit: Callable[[float, str], str]) -> 
         force=with_unit(event.force, "force"),
     )
     return f"{words}; {with_unit(event.released, 'energy')} released" if words and event.released else words
+
+
+def opening(response: Response, pair: str) -> ContactEvent | None:
+    """Return the last event that opened a contact; None if there is none, or the model locates no events."""
+    opened = [
+        event for event in response.events or () if event.pair == pair and event.kind in (RELEASE, SLIP_OFF)
+    ]
+    return opened[-1] if opened else None
 
 
 class ContactForce(NamedTuple):

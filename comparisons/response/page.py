@@ -11,7 +11,7 @@ from html import escape
 import numpy as np
 
 from comparisons.response.along import ALONG, FIRST, Extreme, extremes_along
-from comparisons.response.events import event_words, last_force, peak_force
+from comparisons.response.events import SLIP_OFF, event_words, last_force, opening, peak_force
 from comparisons.response.record import ContactHistory, Response
 from comparisons.response.round_off import RoundOff, round_off
 from comparisons.response.table import unit_names
@@ -208,10 +208,13 @@ class _Page:
     def _state(self, pair: str, contact: ContactHistory) -> str:
         if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
             return "closed" if contact.friction is None else contact.friction.states(contact.force)[-1]
+        opened = opening(self.response, pair)
+        if opened is not None:
+            return f"{'slipped off' if opened.kind == SLIP_OFF else 'opened'} at {opened.load_parameter:.6g}"
         if np.isfinite(contact.slip_off):
             return f"slipped off at {contact.slip_off:.6g}"
         last = last_force(self.response, pair)
-        return "never touched" if last is None else f"open from {last.load_parameter:.6g} on"
+        return "never touched" if last is None else f"open after {last.load_parameter:.6g}"
 
     def tips(self) -> Block:
         rows = []
@@ -259,7 +262,8 @@ class _Page:
             place = self._place(beam, float(own[beam].arc_position[k]))
             at = f"{self.response.load_parameter[k]:.6g}"
             value = self.with_unit(values[b, k], kind)
-            yield (WORDS[name], value, at, place) if values[b, k] else (WORDS[name], value, "", "")
+            resolved = abs(values[b, k]) > getattr(self.round_off, kind)
+            yield (WORDS[name], value, at, place) if resolved else (WORDS[name], value, "", "")
 
     def _place(self, beam: str, arc: float) -> str:
         assert self.scene is not None, "extremes along a beam are those of a scene"

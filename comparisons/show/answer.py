@@ -9,11 +9,19 @@ from comparisons.errors import forces, size
 from comparisons.response import Array, Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names
-from comparisons.scene import Scene
+from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.symbols import held_components, inward, placed, support_name, support_symbol
+from comparisons.show.symbols import (
+    held_components,
+    hinge_symbol,
+    inward,
+    placed,
+    spring_symbol,
+    support_name,
+    support_symbol,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,18 +145,29 @@ def _outline(arc: Array, line: Array, height_at: Any, length: float) -> Array:
 
 
 def _supports(axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]], extent: float) -> None:
+    """Draw the symbols of supports, springs and hinges where their ends are."""
     from matplotlib.collections import LineCollection
 
-    named = set()
-    for support in scene.all_supports:
-        at = lines[support.beam][1][0 if support.end == "start" else -1]
-        symbol = placed(support_symbol(held_components(support), inward(scene, support)), at, SYMBOL * extent)
-        words = support_name(support)
+    symbols: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Array]] = [
+        (one, support_name(one), support_symbol(held_components(one), inward(scene, one)))
+        for one in scene.all_supports
+    ]
+    symbols += [
+        (one, "spring", spring_symbol(component, inward(scene, one)))
+        for one in scene.springs
+        for component in one.held
+    ]
+    symbols += [(one, "hinge", hinge_symbol()) for one in scene.hinges]
+    named: set[str] = set()
+    for one, words, symbol in symbols:
+        at = lines[one.beam][1][0 if one.end == "start" else -1]
         label = None if words in named else words
         named.add(words)
+        drawn = list(placed(symbol, at, SYMBOL * extent))
         axes.add_collection(
-            LineCollection(list(symbol), colors=palette.BLACK, linewidths=1.0, zorder=4, label=label)
+            LineCollection(drawn, colors=palette.BLACK, linewidths=1.0, zorder=4, label=label)
         )
+        axes.update_datalim(np.concatenate(drawn))
 
 
 def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:
@@ -165,25 +184,26 @@ def _arrows(
     """Draw contact forces and loads as arrows with a common scale, and their values."""
     unit, t = unit_names(scene.units)["force"], float(response.load_parameter[k])
     extent = float(np.ptp(np.concatenate([line for _, line in lines.values()]), axis=0).max())
-    found: list[tuple[Array, Array, str]] = []
+    found: list[tuple[Array, Array, str, str]] = []
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
         if contact.vector is not None and contact.force[k] > 0.0:
             at = _at(lines[spec.beam], float(contact.arc_position[k]))
-            found.append((at, contact.vector[k], palette.PIN))
+            found.append((at, contact.vector[k], palette.PIN, f"{contact.force[k]:.4g} {unit}"))
     for history in scene.load_histories:
-        found += [(at, force, palette.BLACK) for at, force in _load(history, scene, lines, t)]
-    largest = max((float(np.hypot(*force)) for _, force, _ in found), default=0.0)
+        x, y, _ = history.at(t)
+        per = "" if history.load.force_per_length is None else f"/{unit_names(scene.units)['length']}"
+        words = f"{np.hypot(x, y):.4g} {unit}{per}"
+        found += [(at, force, palette.BLACK, words) for at, force in _load(history, scene, lines, t)]
+    largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
     shown: set[str] = set()
-    for at, force, colour in found:
-        length = float(np.hypot(*force))
-        if length <= 1e-6 * largest:
+    for at, force, colour, words in found:
+        if np.hypot(*force) <= 1e-6 * largest:
             continue
         tail = at - ARROW * extent * force / largest
         arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", (at[0], at[1]), (tail[0], tail[1]), arrowprops=arrow, zorder=6)
         axes.update_datalim([tail])
-        words = f"{length:.4g} {unit}"
         if words not in shown:
             axes.annotate(
                 words,
@@ -196,7 +216,7 @@ def _arrows(
             )
         shown.add(words)
     for colour, words in ((palette.PIN, "contact force on the beam"), (palette.BLACK, "load")):
-        if any(own == colour for _, _, own in found):
+        if any(own == colour for _, _, own, _ in found):
             axes.plot([], [], color=colour, marker=">", markersize=4, linewidth=1.3, label=words)
 
 
