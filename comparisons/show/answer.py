@@ -13,6 +13,7 @@ from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
 from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
+from comparisons.show.sketch import legend_symbol
 from comparisons.show.symbols import (
     held_components,
     hinge_symbol,
@@ -121,7 +122,7 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
             *_outline(arc, line, beam.height_at, beam.length).T, color=colour, alpha=0.35, linewidth=0.0
         )
         axes.plot(*line.T, color=colour, linewidth=1.6, label=beam.name)
-    _supports(axes, scene, lines, extent)
+    symbols = _supports(axes, scene, lines, extent)
     for pin in scene.pins:
         _pin(axes, np.array(pin.position(t)), pin.radius, pin.name)
     _arrows(axes, response, scene, lines, k)
@@ -131,7 +132,17 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     axes.set_title(f"{scene.name}, {title}: {response.status}, load parameter {t:.6g}", fontsize="medium")
     axes.set(xlabel=f"x [{units['length']}]", ylabel=f"y [{units['length']}]")
     axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), fontsize="x-small", frameon=False, ncols=5)
+    handles, labels = axes.get_legend_handles_labels()
+    entries = ([*handles, *symbols.values()], [*labels, *symbols])
+    axes.legend(
+        *entries,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.17),
+        fontsize="x-small",
+        frameon=False,
+        ncols=5,
+        labelspacing=1.2,
+    )
 
 
 def _outline(arc: Array, line: Array, height_at: Any, length: float) -> Array:
@@ -144,8 +155,10 @@ def _outline(arc: Array, line: Array, height_at: Any, length: float) -> Array:
     return np.concatenate([line + half * normal, (line - half * normal)[::-1]])
 
 
-def _supports(axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]], extent: float) -> None:
-    """Draw the symbols of supports, springs and hinges where their ends are."""
+def _supports(
+    axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]], extent: float
+) -> dict[str, Any]:
+    """Draw the symbols of supports, springs and hinges where their ends are, and return their entries in a legend."""
     from matplotlib.collections import LineCollection
 
     symbols: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Array]] = [
@@ -158,16 +171,12 @@ def _supports(axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]],
         for component in one.held
     ]
     symbols += [(one, "hinge", hinge_symbol()) for one in scene.hinges]
-    named: set[str] = set()
-    for one, words, symbol in symbols:
+    for one, _, symbol in symbols:
         at = lines[one.beam][1][0 if one.end == "start" else -1]
-        label = None if words in named else words
-        named.add(words)
-        drawn = list(placed(symbol, at, SYMBOL * extent))
-        axes.add_collection(
-            LineCollection(drawn, colors=palette.BLACK, linewidths=1.0, zorder=4, label=label)
-        )
-        axes.update_datalim(np.concatenate(drawn))
+        drawn = placed(symbol, at, SYMBOL * extent)
+        axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
+        axes.update_datalim(drawn.reshape(-1, 2))
+    return {words: legend_symbol(symbol) for _, words, symbol in symbols}
 
 
 def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:

@@ -174,7 +174,7 @@ class _Sketch:
         for support, segments in zip(scene.all_supports, symbols, strict=True):
             self._segments(segments, HELD, 1.1)
             symbol = support_symbol(held_components(support), UP)
-            self.legend.setdefault(support_name(support), _handle(symbol))
+            self.legend.setdefault(support_name(support), legend_symbol(symbol))
             at = np.array(scene.place(support.node))
             for stage, motion in enumerate((support.motion, *support.onward), 1):
                 dx, dy, turn = (value or 0.0 for value in motion)
@@ -195,7 +195,7 @@ class _Sketch:
             self._segments(placed(symbol, np.array(scene.place(hinge.node)), SYMBOL * self.size), HELD, 1.1)
             force, length = self.units
             stiff = f" of {hinge.stiffness:.6g} {force} {length}/rad" if hinge.stiffness else ""
-            self.legend.setdefault(f"hinge{' with a spring' if stiff else ''}{stiff}", _handle(symbol))
+            self.legend.setdefault(f"hinge{' with a spring' if stiff else ''}{stiff}", legend_symbol(symbol))
 
     def _spring(self, spring: SpringSpec) -> None:
         force, length = self.units
@@ -206,7 +206,7 @@ class _Sketch:
             self._segments(placed(symbol, at, SYMBOL * self.size), HELD, 1.1)
             unit = f"{force} {length}/rad" if component == "rotation" else f"{force}/{length}"
             words = f"spring of {stiffness[component]:.6g} {unit} in {component}"
-            self.legend.setdefault(words, _handle(spring_symbol(component, UP)))
+            self.legend.setdefault(words, legend_symbol(spring_symbol(component, UP)))
 
     def loads(self) -> None:
         """Draw the loads of every stage with their values, and the weights of the beams."""
@@ -230,7 +230,7 @@ class _Sketch:
                 if load.moment:
                     words = f"{abs(load.moment):.6g} {force} {length}{_after(stage)}"
                     self._turn(at, load.moment, words, LOAD)
-                    self.legend.setdefault("moment", _handle(chain(arc(1.0)), LOAD))
+                    self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
         for stage, gravity in enumerate((self.scene.gravity, *(one.gravity for one in self.scene.stages)), 1):
             for beam in self.scene.beams if gravity is not None and any(gravity) else ():
                 if beam.density:
@@ -360,7 +360,7 @@ def _line(colour: str, **style: Any) -> Any:
     return Line2D([], [], color=colour, **style)
 
 
-def _handle(segments: Array, colour: str = HELD) -> Any:
+def legend_symbol(segments: Array, colour: str = HELD) -> Any:
     """Return a symbol as an entry of a legend."""
     from matplotlib.path import Path as Outline
 
