@@ -77,7 +77,7 @@ def json_schema() -> Schema:
 
     Examples
     --------
-    >>> json_schema()["properties"]["beam"]["items"]["properties"]["height"]["exclusiveMinimum"]
+    >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
     0
     """
     tables = {kind: _list(record) for kind, record in LISTS.items()}
