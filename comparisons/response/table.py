@@ -1,17 +1,26 @@
 """The histories of an answer as columns of equal length, for data frames and CSV files.
 
-| column | what |
-| --- | --- |
-| `load_parameter`, `stage`, `newton_iterations`, `index` | load parameter, stage, Newton iterations since the previous one, index |
-| `PAIR.force`, `.force_x`, `.force_y` | contact force and its components on the beam |
-| `PAIR.arc_position`, `.gap` | where the contact is, and its gap |
-| `PAIR.tangential`, `.normal`, `.slip`, `.dissipated` | with friction: components of the force, sign of the slip rate, dissipated energy |
-| `BEAM.start.force_x`, `.force_y`, `.moment` | reactions of the support at the start of the beam |
-| `BEAM.start.spring_force_x`, `.spring_force_y`, `.spring_moment` | forces of the springs to the ground at the start of the beam |
-| `BEAM.tip_x`, `.tip_y` | position of the tip |
-| `BEAM.bending_moment`, `.bending_moment_at` and so on | the extreme along the beam and its arc position, for each of `comparisons.response.along.ALONG` |
-| `BEAM.material_force` | material force |
-| `work` | work of pins, supports and loads |
+``load_parameter``, ``stage``, ``newton_iterations``, ``index``
+    Load parameter, stage, Newton iterations since the previous load parameter, index.
+``PAIR.force``, ``.force_x``, ``.force_y``
+    Contact force, and its components on the beam.
+``PAIR.arc_position``, ``.gap``
+    Where the contact is, and its gap.
+``PAIR.tangential``, ``.normal``, ``.slip``, ``.dissipated``
+    With friction: components of the force, sign of the slip rate, dissipated energy.
+``BEAM.start.force_x``, ``.force_y``, ``.moment``
+    Reactions of the support at the start of the beam.
+``BEAM.start.spring_force_x``, ``.spring_force_y``, ``.spring_moment``
+    Forces of the springs to the ground at the start of the beam.
+``BEAM.tip_x``, ``.tip_y``
+    Position of the tip.
+``BEAM.bending_moment``, ``.bending_moment_at`` and so on
+    The extreme along the beam and its arc position: ``axial_force``, ``shear_force``, ``bending_moment``, ``tensile_stress``,
+    ``compressive_stress``, ``displacement``.
+``BEAM.material_force``
+    Material force.
+``work``
+    Work of pins, supports and loads.
 """
 
 import csv
@@ -25,7 +34,7 @@ from comparisons.output import plain
 from comparisons.response.along import ALONG, extremes_along
 from comparisons.response.record import ContactHistory, Response
 
-Column = tuple[str, str, NDArray[Any]]
+_Column = tuple[str, str, NDArray[Any]]
 """Name, kind (an attribute of `comparisons.response.round_off.RoundOff`) and values (s,)."""
 
 
@@ -70,7 +79,7 @@ def unit_names(units: str) -> dict[str, str]:
     }
 
 
-def _columns(response: Response) -> Iterator[Column]:
+def _columns(response: Response) -> Iterator[_Column]:
     yield "load_parameter", "number", response.load_parameter
     yield "stage", "number", response.stage
     for pair, contact in response.contacts.items():
@@ -100,7 +109,7 @@ def _columns(response: Response) -> Iterator[Column]:
     yield "newton_iterations", "number", response.newton_iterations
 
 
-def _contact(pair: str, contact: ContactHistory) -> Iterator[Column]:
+def _contact(pair: str, contact: ContactHistory) -> Iterator[_Column]:
     yield f"{pair}.force", "force", contact.force
     if contact.vector is not None:
         yield f"{pair}.force_x", "force", contact.vector[:, 0]
