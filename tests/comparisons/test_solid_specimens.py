@@ -123,6 +123,27 @@ def test_built_in_scenes_are_certified(name):
     assert response.certificate.verdict is Verdict.CERTIFIED
 
 
+def test_a_frame_with_hinges_is_the_rods():
+    """A moment on a joint that names a hinged end, a spring in a hinge, and a clamp with a hinge, which is a pinned end."""
+    EI = YOUNG * WIDTH * 0.02**3 / 12
+    beam = 'name = "{}"\nstart = {}\nend = {}\n'
+    rest = f'width = {WIDTH}\nheight = 0.02\nyoungs_modulus = {YOUNG}\npoissons_ratio = 0.3\nmaterial = "biot-linear"\n'
+    beams = [("a", [0.0, 0.0], [0.0, 1.0]), ("b", [0.0, 1.0], [1.0, 1.0]), ("c", [1.0, 1.0], [1.0, 0.0])]
+    text = '[scene]\nname = "frame"\nunits = "N, m"\nload_parameters = 2\n'
+    for name, start, end in beams:
+        held = {"a": 'clamped = ["start"]\n', "b": "", "c": 'clamped = ["end"]\n'}[name]
+        text += "[[beam]]\n" + beam.format(name, start, end) + rest + held
+    text += f'[[hinge]]\nbeam = "b"\nend = "start"\nstiffness = {EI}\n[[hinge]]\nbeam = "c"\nend = "end"\n'
+    text += f'[[load]]\nbeam = "b"\nend = "start"\nforce = [{EI / 2}, 0.0]\nmoment = {EI / 2}\n'
+    frame = read_scene(text, "frame")
+    solid, rod = solve(frame, "solid", Options(mesh=(40, 1))), solve(frame, "tsm", Options(element="exact"))
+    for node, one in rod.supports.items():
+        np.testing.assert_allclose(solid.supports[node].force, one.force, atol=1e-3 * EI)
+        np.testing.assert_allclose(solid.supports[node].moment, one.moment, atol=1e-3 * EI)
+    for name, tip in rod.tips.items():
+        np.testing.assert_allclose(solid.tips[name], tip, atol=1e-4)
+
+
 def test_what_the_solid_cannot_state_costs_one_line():
     moment = scene(0.02, conditions=CLAMP + LOAD + "at = 0.41\nmoment = 3 EI\n")
     with pytest.raises(

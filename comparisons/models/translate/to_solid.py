@@ -174,11 +174,27 @@ def _end_loads(scene: Scene) -> "Iterator[EndLoad]":
     for stage, load in _staged(scene):
         if load.end is None:
             continue
-        if load.moment and not _turns_with_joint(scene, load.node, "load"):
-            raise ModelError(
-                f'the solid model states a moment on an end without a hinge, "{load.node}" has one'
-            )
-        yield EndLoad(strip=load.beam, end=load.end, force=load.force, moment=load.moment, stage=stage)
+        beam, end = load.beam, load.end
+        if load.moment and load.node in _hinged(scene):
+            beam, end = _fixed_end(scene, load.node).split(".")
+        yield EndLoad(strip=beam, end=end, force=load.force, moment=load.moment, stage=stage)
+
+
+def _fixed_end(scene: Scene, node: str) -> str:
+    """Return an end without a hinge at the joint of ``node``, on which a moment on the joint acts.
+
+    Raises
+    ------
+    ModelError
+        If all ends of the joint have hinges.
+    """
+    ends = next((ends for ends in _joints(scene) if node in ends), (node,))
+    fixed = next((end for end in ends if end not in _hinged(scene)), None)
+    if fixed is None:
+        raise ModelError(
+            f'the solid model states a moment on a joint with an end without a hinge, "{node}" has none'
+        )
+    return fixed
 
 
 def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
