@@ -46,6 +46,7 @@ def test_all_stages_complete_and_are_verified(both: tuple[Response, Response]) -
         np.testing.assert_allclose(tip[-1], place, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_forces_and_jumps_are_those_of_the_beams(
     both: tuple[Response, Response], request: pytest.FixtureRequest, stated
 ) -> None:

@@ -54,7 +54,7 @@ SAID = {
 """What a command prints, beside its exit status."""
 
 
-@pytest.mark.slow_at("crossval doctor")
+@pytest.mark.slow_at("crossval doctor", "crossval solve ks-cantilever --model rod")
 @pytest.mark.parametrize(
     "line",
     [

@@ -317,7 +317,7 @@ def test_rod_of_the_reference_has_the_published_digits(mu):
         assert (half.force, half.s) == pytest.approx((1.440282590723e-3, 0.613373425413), rel=1e-11)
 
 
-@pytest.mark.slow_at("0.1", "0.3")
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", ROD)
 def test_strip_with_friction_is_the_rod_at_every_load_parameter(mu):
     """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured."""

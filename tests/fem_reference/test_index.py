@@ -105,6 +105,7 @@ def dense_index(model, state):
     return int((np.linalg.eigvalsh(Z.T @ A @ Z) < 0).sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "count"), [(14, 60), pytest.param(1, 300, marks=pytest.mark.slow)])
 def test_index_is_that_of_the_dense_reduced_hessian_on_every_drawn_state(strip, seed, count):
     rng, seen = np.random.default_rng(seed), Counter()

@@ -83,6 +83,7 @@ def test_the_promise_is_kept_on_random_scenes(element, stated):
 
 @pytest.mark.slow_at(
     "mixed-shape",
+    "mixed-shape_mean",
     "timoshenko-arc",
     "timoshenko-force",
     "timoshenko-friction",

@@ -46,6 +46,8 @@ def test_check_draws_a_scene(name: str, tmp_path, capsys) -> None:
     "double-beam-friction-mixed",
     "hysteresis-exact",
     "hysteresis-mixed",
+    "hysteresis-stages-exact",
+    "hysteresis-stages-mixed",
     "ks-friction-exact",
     "ks-friction-mixed",
     "three-point-friction-exact",
@@ -148,6 +150,7 @@ def test_three_point_bending_with_friction() -> None:
     assert limits == pytest.approx(exact, rel=3e-4)
 
 
+@pytest.mark.slow
 def test_a_cycle_with_friction_closes() -> None:
     """At equal places of the pin the second cycle has the state of the first, and its work is dissipated."""
     response = answer(load_scene("hysteresis"))

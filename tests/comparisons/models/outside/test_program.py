@@ -134,6 +134,7 @@ answer["load_parameter"], answer["newton_iterations"] = answer["load_parameter"]
 }
 
 
+@pytest.mark.slow_at("memory")
 @pytest.mark.parametrize("failure", FAILURES)
 def test_a_failure_has_its_name(failure: str, program: Make) -> None:
     lines, status, message = FAILURES[failure]
