@@ -11,7 +11,7 @@ from comparisons.cost.points import COSTS, OnFront, Point, Trade, front
 from comparisons.cost.tables import short
 from comparisons.models import MODELS, ROD, SOLID
 from comparisons.show import palette
-from comparisons.show.plot import figure, save
+from comparisons.show.plot import WIDTH, figure, save
 
 AXES = {
     "seconds": "processor seconds of one thread, scene to checked answer",
@@ -25,7 +25,7 @@ ALIKE = 1.2
 
 
 def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) -> None:
-    """Draw the errors of all settings over a cost, in two panels: errors against the reference, and errors against each model's limit.
+    """Draw the errors of all settings over a cost, in two panels, one above the other: errors against the reference, and errors against each model's limit.
 
     Parameters
     ----------
@@ -36,21 +36,26 @@ def plot_work(trade: Trade, quantity: str, scope: str, cost: str, *paths: Path) 
     paths : Path
         Files, in the formats of their suffixes.
     """
-    fig = figure(figsize=(13.0, 6.6))
-    left, right = fig.subplots(1, 2, sharex=True, sharey=True)
-    _draw(left, trade, quantity, scope, cost, own=False)
-    _draw(right, trade, quantity, scope, cost, own=True)
-    _mark_uncertainty(right, trade, quantity, scope)
-    for axes in (left, right):
-        axes.set(xscale="log", yscale="log", xlabel=AXES[cost])
+    fig = figure(figsize=(WIDTH, 9.2))
+    upper, lower = fig.subplots(2, 1, sharex=True, sharey=True)
+    _draw(upper, trade, quantity, scope, cost, own=False)
+    _draw(lower, trade, quantity, scope, cost, own=True)
+    _mark_uncertainty(lower, trade, quantity, scope)
+    for axes in (upper, lower):
+        axes.set(xscale="log", yscale="log")
         axes.margins(x=0.3, y=0.06)
         axes.grid(visible=True, linewidth=0.3)
     for model in meshed():
-        _draw_front(right, trade, model, quantity, scope, cost)
-    left.set(ylabel=_title(trade, quantity, scope), title=f"against the {trade.reference.name}")
-    right.set_title("against what each model converges to, Pareto fronts")
-    fig.legend(*_legend(left), loc="outside lower center", ncols=6, fontsize="small")
-    fig.suptitle(f"{trade.scene.name}: what accuracy costs; [n]: load steps, hollow: fewer than the scene's")
+        _draw_front(lower, trade, model, quantity, scope, cost)
+    lower.set_xlabel(AXES[cost])
+    fig.supylabel(_title(trade, quantity, scope), fontsize="medium")
+    upper.set_title(f"against the {trade.reference.name}", fontsize="medium")
+    lower.set_title("against what each model converges to, Pareto fronts", fontsize="medium")
+    fig.legend(*_legend(upper), loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    fig.suptitle(
+        f"{trade.scene.name}: what accuracy costs\n[n]: load steps; hollow: fewer than the scene's",
+        fontsize="large",
+    )
     save(fig, *paths)
 
 
@@ -143,7 +148,7 @@ def _label_beside(axes: Any, one: OnFront) -> None:
     """Name a point to its left, where a front leaves nothing of its model."""
     axes.annotate(
         short(one.point), (one.cost, one.error), (-7, 0), textcoords="offset points", ha="right", va="center",
-        fontsize="small",
+        fontsize="small", bbox={"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5},
     )  # fmt: skip
 
 

@@ -13,9 +13,9 @@ from comparisons.models.outside.programs import used
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.show import palette
 from comparisons.show.pages import Section, folded, picture, provenance, table, write_page
-from comparisons.show.plot import figure, save
+from comparisons.show.plot import WIDTH, figure, save
 
-COLUMNS = 3
+COLUMNS = 2
 """Panels of the diagram beside each other."""
 FLOOR = 1e-14
 """Errors below are drawn here: they are round-off."""
@@ -44,13 +44,14 @@ def plot_league(league: League, *paths: Path) -> None:
     success and the referee refused.
     """
     rows = ceil(len(league.scenes) / COLUMNS)
-    fig = figure(figsize=(5.0 * COLUMNS, 3.6 * rows + 1.0))
+    fig = figure(figsize=(WIDTH, 2.4 * rows + 1.4))
     panels = fig.subplots(rows, COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
     for axes, scene in zip(panels, league.scenes, strict=False):
         for program in league.programs:
             _draw(axes, program, league.of(scene.name, program))
-        axes.set(xscale="log", yscale="log", title=scene.name)
-        axes.tick_params(labelbottom=True, labelleft=True)
+        axes.set(xscale="log", yscale="log")
+        axes.set_title(scene.name, fontsize="medium")
+        axes.tick_params(labelbottom=True, labelleft=True, labelsize="small")
         axes.grid(visible=True, linewidth=0.3)
     _whole_decades(panels[0])
     for axes in panels[len(league.scenes) :]:
@@ -60,7 +61,14 @@ def plot_league(league: League, *paths: Path) -> None:
     handles: dict[str, Any] = {}
     for axes in panels:
         handles |= dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
-    fig.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=6, fontsize="small")
+    fig.legend(
+        list(handles.values()),
+        list(handles),
+        loc="outside upper center",
+        ncols=3,
+        fontsize="small",
+        frameon=False,
+    )
     save(fig, *paths)
 
 

@@ -10,7 +10,11 @@ from matplotlib.image import imread
 from docs.extensions.figures import COMMANDS, FOLDER, draw
 from tests.docs.snippets import ROOT
 
-FAST = {command: drawn for command, drawn in COMMANDS.items() if not command.startswith("compare")}
+FAST = {
+    command: drawn
+    for command, drawn in COMMANDS.items()
+    if not command.startswith(("compare", "reproduce", "trade"))
+}
 
 
 def test_every_picture_is_shown() -> None:

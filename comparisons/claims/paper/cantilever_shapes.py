@@ -16,12 +16,14 @@ from comparisons.models.translate import to_rod
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette
-from comparisons.show.plot import EXACT, figure, save
+from comparisons.show.plot import EXACT, WIDTH, figure, save
 
 Report = Callable[[str], None]
 
 ELEMENTS = (18, 72)
 """The paper's number of elements, and four times as many."""
+COLUMNS = 2
+"""Panels beside each other."""
 DEPTHS = (0.25, 0.5, 0.75, 1.0)
 """Shapes shown, in parts of the displacement at slip-off: the last load parameter before."""
 
@@ -132,12 +134,16 @@ def _reached(scene: Scene, element: str) -> float:
 
 def plot_lifts(found: Lifts, *paths: Path) -> None:
     """Draw the deformed beams over the exact rod, one panel per starting position."""
-    rows = -(-len(found.drawn) // 3)
-    fig = figure(figsize=(12.5, 0.7 + 1.95 * rows))
-    panels = fig.subplots(rows, min(len(found.drawn), 3), sharex=True, sharey=True, squeeze=False)
+    rows = -(-len(found.drawn) // COLUMNS)
+    fig = figure(figsize=(WIDTH, 0.8 + 1.5 * rows))
+    panels = fig.subplots(rows, min(len(found.drawn), COLUMNS), sharex=True, sharey=True, squeeze=False)
+    for axes in panels.flat[len(found.drawn) :]:
+        axes.set_axis_off()
     for axes, lift, (start, scene, beams, rod) in zip(panels.flat, found.lifts, found.drawn, strict=False):
         _draw_lift(axes, scene, beams, rod)
-        axes.set_title(f"pin at {start:g} m: slips off at {lift.slip_off[ELEMENTS[0]]:.4f} m")
+        axes.set_title(
+            f"pin at {start:g} m: slips off at {lift.slip_off[ELEMENTS[0]]:.4f} m", fontsize="small"
+        )
         axes.set_aspect("equal", adjustable="box")
         axes.set_xlim(-0.1, 5.35)
         axes.grid(visible=True, linewidth=0.3)
@@ -146,7 +152,7 @@ def plot_lifts(found: Lifts, *paths: Path) -> None:
     for axes in panels[:, 0]:
         axes.set_ylabel("y [m]")
     handles, labels = panels.flat[0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=3)
+    fig.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
     save(fig, *paths)
 
 

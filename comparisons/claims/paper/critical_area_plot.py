@@ -18,7 +18,10 @@ from comparisons.claims.paper.critical_area import (
 )
 from comparisons.claims.paper.formulations import FORMULATIONS, Formulation
 from comparisons.show import palette
-from comparisons.show.plot import figure, save
+from comparisons.show.plot import WIDTH, figure, save
+
+COLUMNS = 2
+"""Panels beside each other."""
 
 
 def plot_curves(found: CriticalAreas, *paths: Path) -> None:
@@ -26,24 +29,29 @@ def plot_curves(found: CriticalAreas, *paths: Path) -> None:
     tolerance = nearest_tolerance(found)
     shown = [one for one in found.measured if one.tolerance == tolerance]
     starts = sorted({one.start for one in shown})
-    rows = -(-len(starts) // 3)
-    fig = figure(figsize=(12.0, 1.0 + 3.3 * rows))
-    panels = fig.subplots(rows, min(len(starts), 3), sharey=True, squeeze=False)
+    rows = -(-len(starts) // COLUMNS)
+    fig = figure(figsize=(WIDTH, 1.3 + 2.3 * rows))
+    panels = fig.subplots(rows, min(len(starts), COLUMNS), sharey=True, squeeze=False)
     for axes, start in zip(panels.flat, starts, strict=False):
         for formulation in FORMULATIONS:
             own = [one for one in shown if (one.start, one.element) == (start, formulation.element)]
             for number, one in enumerate(own):
                 _draw_curve(axes, formulation, one, labelled=number == 0)
-        axes.set(title=f"pin starts at {start:g} m", xlabel="displacement of the pin [m]", yscale="log")
+        axes.set_title(f"pin starts at {start:g} m", fontsize="medium")
+        axes.set_xlabel("displacement of the pin [m]", fontsize="small")
+        axes.set_yscale("log")
+        axes.tick_params(labelsize="small")
         axes.set_ylim(NEAREST / 3.0, 3.0)
         axes.grid(visible=True, linewidth=0.3)
-    for axes in panels[:, 0]:
-        axes.set_ylabel("$l_i/l$: distance to the next node")
+    for axes in panels.flat[len(starts) :]:
+        axes.set_axis_off()
+    fig.supylabel("$l_i/l$: distance to the next node", fontsize="medium")
     handles, labels = panels.flat[0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=4)
+    fig.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small", frameon=False)
     fig.suptitle(
-        f"How near to a beam node equilibrium is found, tolerance {tolerance:.0e} EI/L$^2$; "
-        "a large mark is the last equilibrium"
+        f"How near to a beam node equilibrium is found, tolerance {tolerance:.0e} EI/L$^2$;\n"
+        "a large mark is the last equilibrium",
+        fontsize="medium",
     )
     save(fig, *paths)
 
@@ -77,7 +85,7 @@ def _draw_curve(axes: Any, formulation: Formulation, one: Measured, *, labelled:
 
 def plot_tolerances(found: CriticalAreas, *paths: Path) -> None:
     """Draw the range of the critical area over nodes and starting positions against the tolerance."""
-    fig = figure(figsize=(9.0, 6.2))
+    fig = figure(figsize=(WIDTH, 5.2))
     axes = fig.subplots()
     tolerances = np.array(found.tolerances)
     for formulation in FORMULATIONS:
@@ -97,7 +105,7 @@ def plot_tolerances(found: CriticalAreas, *paths: Path) -> None:
         xlim=(tolerances[0] * 2.5, tolerances[-1] / 100.0),
         xlabel="tolerance on the unbalanced force [EI/L$^2$]",
         ylabel="smallest $l_i/l$ with equilibrium",
-        title="Critical area against tolerance: median and range over nodes and starting positions",
+        title="Critical area against tolerance:\nmedian and range over nodes and starting positions",
     )
     axes.annotate(
         f"search ends at {NEAREST:.0e}",
@@ -107,14 +115,14 @@ def plot_tolerances(found: CriticalAreas, *paths: Path) -> None:
         fontsize="small",
     )
     axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.06))
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.06), fontsize="small")
     save(fig, *paths)
 
 
 def _draw_printed(axes: Any, formulation: Formulation) -> None:
     """Mark the paper's range at the right-hand edge."""
     low, high = PRINTED[formulation.element]
-    axes.axhspan(low, high, xmin=0.82, color=formulation.color, alpha=0.45, linewidth=0)
+    axes.axhspan(low, high, xmin=0.7, color=formulation.color, alpha=0.45, linewidth=0)
     axes.annotate(
         f"paper: {100.0 * low:.3f} - {100.0 * high:.3f} %",
         (1.0, np.sqrt(low * high)),
@@ -129,7 +137,7 @@ def _draw_printed(axes: Any, formulation: Formulation) -> None:
 
 def plot_floors(found: CriticalAreas, *paths: Path) -> None:
     """Draw the floor of the unbalanced force against l_i/l with the fitted slopes."""
-    fig = figure(figsize=(9.0, 6.4))
+    fig = figure(figsize=(WIDTH, 5.4))
     axes = fig.subplots()
     for formulation in FORMULATIONS:
         slopes = found.slopes(formulation.element)
@@ -157,5 +165,5 @@ def plot_floors(found: CriticalAreas, *paths: Path) -> None:
         title="What round-off leaves of the unbalanced force, section of 4.1",
     )
     axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper right", fontsize="small")
     save(fig, *paths)

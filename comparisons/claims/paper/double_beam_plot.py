@@ -9,7 +9,7 @@ from comparisons.claims.paper.double_beam import PAIRS, DoubleBeam, Stage
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.response import Array
 from comparisons.show import palette
-from comparisons.show.plot import figure, save
+from comparisons.show.plot import WIDTH, figure, save
 
 BEAMS = {"upper": palette.BLUE, "lower": palette.SKY}
 STYLES: dict[str, tuple[str, Any]] = {
@@ -18,29 +18,34 @@ STYLES: dict[str, tuple[str, Any]] = {
     LOWER: (palette.GREEN, (0, (2, 1))),
 }
 NAMES = {UPPER: "pin on upper", TIP: "upper's tip on lower", LOWER: "pin on lower"}
+ROOM = 1.7
+"""Height of the forces' diagram over the largest force; the list of the events stands above."""
 ARROW = 0.16
 """Length of an arrow per force [m/N]."""
 
 
 def plot_stages(found: DoubleBeam, *paths: Path) -> None:
     """Draw both beams, the pin and the contact forces at the six stages."""
-    fig = figure(figsize=(13.0, 7.6))
-    panels = fig.subplots(2, 3, sharex=True, sharey=True)
+    fig = figure(figsize=(WIDTH, 8.4))
+    panels = fig.subplots(3, 2, sharex=True, sharey=True)
     for axes, stage in zip(panels.flat, found.stages, strict=True):
         _draw_stage(axes, found, stage)
-        axes.set_title(f"({stage.key}) {stage.title}, depth {stage.depth:.3f} m", fontsize="medium")
+        axes.set_title(f"({stage.key}) {stage.title},\ndepth {stage.depth:.3f} m", fontsize="small")
         axes.set_aspect("equal", adjustable="box")
         axes.grid(visible=True, linewidth=0.3)
         axes.set(xlim=(-0.05, 1.08), ylim=(-0.8, 0.2))
-    for axes in panels[1]:
+    for axes in panels[-1]:
         axes.set_xlabel("x [m]")
     for axes in panels[:, 0]:
         axes.set_ylabel("y [m]")
     handles = [handle for axes in panels.flat for handle in axes.get_legend_handles_labels()[0]]
     unique = {handle.get_label(): handle for handle in handles}
-    fig.legend(unique.values(), unique.keys(), loc="outside lower center", ncols=6)
+    fig.legend(
+        unique.values(), unique.keys(), loc="outside lower center", ncols=3, fontsize="small", frameon=False
+    )
     fig.suptitle(
-        "Mixed elements, 10 + 10; arrows are the forces on the touched beams, grey the beams at rest"
+        "Mixed elements, 10 + 10;\narrows are the forces on the touched beams, grey the beams at rest",
+        fontsize="medium",
     )
     save(fig, *paths)
 
@@ -74,7 +79,7 @@ def _draw_force(axes: Any, found: DoubleBeam, pair: str, k: int) -> None:
     axes.annotate("", point, point - ARROW * contact.vector[k], arrowprops=arrow)
     axes.plot([], [], color=color, linewidth=1.8, label=f"force of {NAMES[pair]}")
     place = (0.0, -0.76 + 0.07 * (len(PAIRS) - 1 - PAIRS.index(pair)))
-    axes.annotate(f"{NAMES[pair]}: {contact.force[k]:.3f} N", place, color=color)
+    axes.annotate(f"{NAMES[pair]}: {contact.force[k]:.3f} N", place, color=color, fontsize="small")
 
 
 def _point(found: DoubleBeam, pair: str, k: int) -> Array:
@@ -86,7 +91,7 @@ def _point(found: DoubleBeam, pair: str, k: int) -> Array:
 
 def plot_histories(found: DoubleBeam, *paths: Path) -> None:
     """Draw forces and places of all contacts against the depth, with the exact rods and the events."""
-    fig = figure(figsize=(11.0, 8.0))
+    fig = figure(figsize=(WIDTH, 8.0))
     forces, places = fig.subplots(2, 1, sharex=True, height_ratios=(1.5, 1.0))
     for pair in PAIRS:
         color, dashes = STYLES[pair]
@@ -101,12 +106,12 @@ def plot_histories(found: DoubleBeam, *paths: Path) -> None:
     beam = found.scene.beams[0]
     for node in np.linspace(0.0, beam.length, beam.elements + 1)[-4:]:
         places.axhline(node, color="0.8", linewidth=0.6, zorder=0)
-    forces.set(ylabel="contact force [N]", ylim=(0.0, None))
+    forces.set(ylabel="contact force [N]", ylim=(0.0, ROOM * forces.dataLim.y1))
     places.set(xlabel="depth of the pin [m]", ylabel="arc position [m]", xlim=(0.0, found.depth[-1]))
     handles, labels = forces.get_legend_handles_labels()
     unique = dict(zip(labels, handles, strict=True))
-    forces.legend(unique.values(), unique.keys(), loc="lower right")
-    forces.set_title("Double beam, 10 + 10 mixed elements: all contacts against the depth", pad=20)
+    forces.legend(unique.values(), unique.keys(), loc="lower right", fontsize="small")
+    forces.set_title("Double beam, 10 + 10 mixed elements", pad=20)
     save(fig, *paths)
 
 
