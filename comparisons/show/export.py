@@ -113,17 +113,15 @@ def support_points(response: Response, scene: Scene, k: int) -> Grid:
     """Return the ends on supports and springs: displacement, force and moment on the beam, and what a picture of them needs.
 
     `held` has 1 for each component x, y and rotation that a support holds, 2 for one that a spring resists; `inward` is the unit vector
-    into the beam. The force of a spring is its stiffness times the displacement, its moment is nan: no rotation is stated.
+    into the beam. What a model does not state is nan.
     """
     start = np.array([scene.place(one.node) for one in scene.holding])
     displacement = np.array([_end(response, one.beam, one.end, k) for one in scene.holding]) - start
     reactions = [response.supports.get(one.node) for one in scene.all_supports]
+    reactions += [response.springs.get(one.node) for one in scene.springs]
     force = [np.full(2, np.nan) if one is None else one.force[k] for one in reactions]
     moment = [np.nan if one is None else one.moment[k] for one in reactions]
-    for spring, moved in zip(scene.springs, displacement[len(reactions) :], strict=True):
-        force.append(-np.array(spring.stiffness) * moved)
-        moment.append(np.nan if spring.rotation else 0.0)
-    kinds = [1] * len(reactions) + [2] * len(scene.springs)
+    kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
     data = {
         "displacement": displacement,
         "deformed": start + displacement,

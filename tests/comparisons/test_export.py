@@ -88,6 +88,8 @@ def test_springs_and_hinges_are_points_with_their_forces(tmp_path: Path) -> None
     assert data["held"].tolist() == [[1, 1, 1], [1, 1, 1], [2, 0, 2]]
     top = response.axis_line("link", len(response.load_parameter) - 1)[1][-1]
     assert data["reaction_force"][2, :2] == pytest.approx([-3.5 * (top[0] - 140.0), 0.0])
+    turned = found["link"].point_data["rotation"][-1]
+    assert data["reaction_moment"][2] == pytest.approx(-100.0 * turned)
     for name in ("flat", "link"):
         assert response.axis_line(name, 0)[1][0] == pytest.approx(
             blocks(response, scene, 0)[HINGES].point_data["deformed"][0]
