@@ -20,6 +20,7 @@ from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.to_json import as_dict
 from comparisons.scene import Scene, to_toml
+from comparisons.scene.keys import special_keys
 from comparisons.show.budget_plot import plot_budget, write_budget
 from comparisons.show.compare_report import write_comparison_page
 from comparisons.show.export import check_series, write_series
@@ -191,10 +192,11 @@ def _row(run: Run, responses: Mapping[str, Response], scene: Scene) -> Row:
 
 
 def _cause(model: Model, options: Options, scene: Scene, reference: Response) -> str:
-    """Return the largest part of the error that theory allows, without its formula; empty but for a cantilever along x."""
+    """Return the largest part of the error that theory allows, without its formula; empty but for a straight, uniform cantilever along x."""
     (beam, *others), ends = scene.beams, [support.node for support in scene.all_supports]
     if (
         others
+        or any(special_keys(scene))
         or beam.direction != (1.0, 0.0)
         or ends != [f"{beam.name}.start"]
         or not len(reference.load_parameter)

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models.options import Options
+from comparisons.models.translate.to_solid import rectangle
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, Scene
 
@@ -151,11 +152,11 @@ def solid_errors(scene: Scene, options: Options, bent: Bending) -> dict[str, flo
     beam = scene.beams[0]
     length = 1 / (options.mesh or beam.mesh)[0]
     turn = min(bent.curvature * length, bent.turn)
-    assert isinstance(beam.width, float), "the strip is a rectangle"
-    slender = beam.height_at(0.5) / beam.length
+    width, height = rectangle(beam)
+    slender = height / beam.length
     strain = slender * bent.curvature / 2
     contraction = abs(beam.poissons_ratio or 0.0) * strain * slender / 4
-    penalty = DEFAULT_PENALTY * beam.youngs_modulus * beam.width
+    penalty = DEFAULT_PENALTY * beam.youngs_modulus * width
     return {
         "a bent strip, softer by 4/5 of the square of its strain": strain**2,
         "shear and dent of a strip of this height": 2 * slender**2,

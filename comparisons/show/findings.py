@@ -134,14 +134,18 @@ def _falling(rows: list[Row], scene: Scene) -> str:
 
 
 def _parts(budget: Budget) -> str:
-    """Return what makes the largest difference of the force between beams and solid."""
+    """Return what makes the largest difference between beams and solid, of a force where there is one."""
+    names = [name for name in budget.total if "force" in name] or list(budget.total)
     quantity, k = max(
-        ((name, k) for name in budget.total for k in range(len(TIMES)) if "force" in name),
+        ((name, k) for name in names for k in range(len(TIMES))),
         key=lambda item: np.nan_to_num(abs(budget.total[item[0]][item[1]])),
     )
+    largest = np.nan_to_num(abs(budget.total[quantity][k]))
+    if largest < AGREES:
+        return f"In the error budget, beams and solid agree to {_size(largest)}."
     parts = {name: float(values[k]) for name, values in budget.parts[quantity].items()}
-    largest = max(map(abs, parts.values()))
-    shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * largest), key=lambda n: -abs(parts[n]))
+    greatest = max(map(abs, parts.values()))
+    shown = sorted((n for n in parts if abs(parts[n]) > LEAST_PART * greatest), key=lambda n: -abs(parts[n]))
     words = _listed(f"{_size(parts[name])} {name}" for name in shown)
     kind, _, column = quantity.partition(" ")
     name = f"{kind.replace('_', ' ')} {column}".strip()

@@ -15,7 +15,8 @@ from comparisons.compare import PAPER, RUNS, compare
 from comparisons.errors import errors
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from comparisons.scene import Scene, built_in_scenes, load_scene, read_scene, to_toml
+from comparisons.scene.keys import special_keys
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 FILES = {
@@ -73,6 +74,28 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None
     assert any(line.startswith("budget.json: left out") for line in lines)
     assert not (tmp_path / "solid").exists()
     assert (tmp_path / "tsm" / "tsm.pvd").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in built_in_scenes() if any(special_keys(load_scene(name)))])
+def test_scenes_with_special_keys_are_compared(name: str, tmp_path: Path) -> None:
+    found = compare(load_scene(name), tmp_path, print)
+    rods = [row for row in found.rows if row.label == "TSM exact, 1 element"]
+    assert all(row.errors and row.errors["path"]["tip"] < 1e-8 for row in rods)
+    assert len(rods) == 1
+
+
+@pytest.mark.parametrize(
+    ("section", "cause"),
+    [({"area": 2e-4, "second_moment": 1.6e-9}, "a bent strip"), ({"width": 0.02, "height": (0.02, 0.01)}, "")],
+)
+def test_theory_names_a_cause_where_it_holds(section: dict[str, Any], cause: str) -> None:
+    """The cause of the solid's difference is stated for a beam by area and second moment, and for no beam that tapers."""
+    beam = replace(KS.beams[0], **{"width": None, "height": None, **section})
+    scene = replace(KS, beams=(beam,), load_parameters=2)
+    rod = models.solve(scene, "rod")
+    assert compared._cause(models.MODELS["solid"], Options(), scene, rod).startswith(cause)
+    assert bool(compared._cause(models.MODELS["solid"], Options(), scene, rod)) == bool(cause)
 
 
 @pytest.mark.slow
