@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,6 +83,8 @@ def table(result: Result) -> dict[str, Array]:
 
 def html(result: Result) -> str:
     """Return the status and the last value of every column of `table` as HTML."""
+    from html import escape
+
     rows = [
         f"<tr><td>{escape(name)}</td><td>{values[-1]:.6g}</td></tr>"
         for name, values in table(result).items()

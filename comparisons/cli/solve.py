@@ -103,7 +103,7 @@ def run(given: "argparse.Namespace") -> int:
     if given.json != "-":
         from comparisons.response.page import text
 
-        print(text(response, [*_found(response, scene), *lines, ("program", _program())], rule))
+        print(text(response, [*_found(response, scene), *lines], rule))
     stages.end("write")
     if given.times:
         print(f"\n{stages.line(response)}", file=sys.stderr if given.json == "-" else sys.stdout)
@@ -130,12 +130,15 @@ class _Stages:
         self.began = now
 
     def line(self, response: "Response") -> str:
-        """Return the times in one line, with that of the solution and what it took."""
+        """Return the times in one line, with that of the solution, what it took, and the version, whose look-up costs time itself."""
+        from comparisons.version import release
+
         spent = {**self.seconds, "solve": response.wall_seconds}
         times = ", ".join(
             f"{stage} {spent[stage]:.3f}" for stage in ("read", "set up", "solve", "certify", "write")
         )
-        return f"seconds: {times}; {response.iterations} Newton iterations, {response.cutbacks} cut-backs"
+        steps = f"{response.iterations} Newton iterations, {response.cutbacks} cut-backs"
+        return f"seconds: {times}; {steps}; tsm-crossval {release()}"
 
 
 def _check_files(given: "argparse.Namespace", scene: "Scene") -> None:
@@ -186,13 +189,6 @@ def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", mo
         from comparisons.show.export import write_series
 
         write_series(given.vtk, response, scene)
-
-
-def _program() -> str:
-    """Return the name and the version of this program."""
-    from comparisons.version import release
-
-    return f"tsm-crossval {release()}"
 
 
 def _found(response: "Response", scene: "Scene") -> list[tuple[str, str]]:

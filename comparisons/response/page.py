@@ -6,7 +6,6 @@ Numbers have six significant digits, fewer where the last ones are round-off; a 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from html import escape
 
 import numpy as np
 
@@ -305,6 +304,8 @@ def _numeric(cells: Sequence[str]) -> bool:
 
 
 def _markup(block: Block, scene: str) -> str:
+    from html import escape
+
     heading = f"<h4>{escape(block.title or scene)}</h4>"
     head = "".join(f"<th>{escape(name)}</th>" for name in block.columns)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in block.rows)

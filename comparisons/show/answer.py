@@ -23,6 +23,7 @@ from comparisons.show.symbols import (
     support_name,
     support_symbol,
 )
+from comparisons.version import release
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -89,6 +90,7 @@ def picture(response: Response, scene: Scene | None = None) -> "Figure":
         if len(scene.beams) > 1:
             panels[0].legend(loc="best", fontsize="x-small", ncols=len(scene.beams))
     _history(history, response, scene)
+    fig.supxlabel(f"tsm-crossval {release()}", fontsize="xx-small", x=0.99, ha="right")
     return fig
 
 

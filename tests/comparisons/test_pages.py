@@ -19,11 +19,11 @@ NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]\d+)?(?![\w.])")
 
 
 def printed(scene: str) -> str:
-    """Return the page, without the line of the version."""
+    """Return the page."""
     out = StringIO()
     with redirect_stdout(out):
         assert main(["solve", scene, "--quiet"]) == 0
-    return re.sub(r"\n  program .*", "", out.getvalue())
+    return out.getvalue()
 
 
 def parts(page: str) -> tuple[list[str], list[float]]:
