@@ -87,7 +87,10 @@ def test_scenes_with_special_keys_are_compared(name: str, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     ("section", "cause"),
-    [({"area": 2e-4, "second_moment": 1.6e-9}, "a bent strip"), ({"width": 0.02, "height": (0.02, 0.01)}, "")],
+    [
+        ({"area": 2e-4, "second_moment": 1.6e-9}, "a bent strip"),
+        ({"width": 0.02, "height": (0.02, 0.01)}, ""),
+    ],
 )
 def test_theory_names_a_cause_where_it_holds(section: dict[str, Any], cause: str) -> None:
     """The cause of the solid's difference is stated for a beam by area and second moment, and for no beam that tapers."""

@@ -130,6 +130,14 @@ def test_the_difference_of_beams_and_solid_is_that_of_the_budget(rows: list[Row]
     assert not any(words.startswith("In the error budget") for words in told(rows))
     law = sentence("In the error budget", told(rows, budget(load_steps=0.5)))
     assert law.endswith("by 50 %, made of 50 % load steps.")
+    small = sentence("In the error budget", told(rows, budget(solid_mesh=1e-11)))
+    assert small.startswith("In the error budget, beams and solid agree to "), small
+    given = budget(solid_mesh=0.01)
+    pair = "contact_force a->b"
+    bent = replace(
+        given, total={"clamp_moment": given.total[pair]}, parts={"clamp_moment": given.parts[pair]}
+    )
+    assert "differ most in the clamp moment" in sentence("In the error budget", told(rows, bent))
 
 
 def test_the_elastica_has_neither_stretch_nor_shear(rows: list[Row]) -> None:
