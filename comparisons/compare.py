@@ -284,9 +284,7 @@ def _write_all(
     count(4, WRITTEN)
     write_text(folder / "table.csv", table_csv(rows))
     files = [folder / "summary.json", folder / "table.csv", *files, *series.values()]
-    page = write_comparison_page(
-        scene, rows, budget, files, series, folder, reference=ROD.label, left_out=left_out
-    )
+    page = write_comparison_page(scene, rows, budget, files, series, folder, left_out)
     files = [page, *files]
     write_text(folder / "summary.json", _summary(scene, rows, [path.relative_to(folder) for path in files]))
     return files

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from comparisons.budget import PARTS, Budget, budget_rows
+from comparisons.models import ROD
+from comparisons.models.options import Options
 from comparisons.scene import Scene
 from comparisons.show.findings import findings
 from comparisons.show.pages import (
@@ -19,6 +21,9 @@ from comparisons.show.pages import (
 )
 from comparisons.show.table import HEADER, Row, cells
 
+EXACT = ROD.run_label(Options())
+"""Label of the run of the exact rod, to which all others are compared."""
+
 
 def write_comparison_page(
     scene: Scene,
@@ -27,8 +32,6 @@ def write_comparison_page(
     files: Sequence[Path],
     series: Mapping[str, Path],
     folder: Path,
-    *,
-    reference: str,
     left_out: Mapping[str, str],
 ) -> Path:
     """Write ``report.html`` to `folder`, with what is in `files` there; return its path.
@@ -43,13 +46,11 @@ def write_comparison_page(
         What else the comparison wrote.
     series : mapping of Path
         The exported series of VTU files, by the label of the run.
-    reference : str
-        The label of the exact rod.
     left_out : mapping of str
         Why a run or the budget is left out, as `comparisons.show.findings.findings` takes it.
     """
-    lead = " ".join(findings(scene, rows, reference, budget, left_out))
-    sections = [_errors(rows, reference), _motion(scene, rows, series, folder, reference)]
+    lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
+    sections = [_errors(rows), _motion(scene, rows, series, folder)]
     states = states_section({row.label: row.response for row in rows})
     if states is not None:
         sections.append(states)
@@ -62,24 +63,22 @@ def write_comparison_page(
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
 
 
-def _errors(rows: Sequence[Row], reference: str) -> Section:
+def _errors(rows: Sequence[Row]) -> Section:
     caption = (
-        f"Largest error over all load parameters against the {reference}; forces and moments over their largest, positions "
+        f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
         "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
     )
     return Section(title="Errors", html=table(caption, HEADER, map(cells, rows)))
 
 
-def _motion(
-    scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path, reference: str
-) -> Section:
+def _motion(scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path) -> Section:
     responses = {row.label: row.response for row in rows}
     return motion_section(
         "Shapes and histories",
         scene,
         responses,
-        tracks(responses, reference, scene),
-        focus=reference,
+        tracks(responses, EXACT, scene),
+        focus=EXACT,
         vtu={
             label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
             for label, path in series.items()
