@@ -170,15 +170,19 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
         node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
         arc, place = response.axis_line(spec.beam, k)
         offset = np.array([scene.offset(spec, part) for part in arc / beam.length])
+        if beam.tapers and spec.surface == "face":
+            # the face is the envelope of circles about the points of the axis
+            lean = np.hypot(1.0, (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length))
+            offset = scene.radius(spec) + (offset - scene.radius(spec)) / lean
         away, along = node - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:
             half_kink = 0.5 * min(contact.force[k] / beam.GA, kink)
             distance += half_kink * np.abs(arc - contact.arc_position[k])
-        ahead = np.einsum("mi,mi->m", along, away)
+        ahead, slack = np.einsum("mi,mi->m", along, away), distance - offset
         least = np.r_[
             ahead[0] > 0.0,
-            (distance[1:-1] <= distance[:-2]) & (distance[1:-1] <= distance[2:]),
+            (slack[1:-1] <= slack[:-2]) & (slack[1:-1] <= slack[2:]),
             ahead[-1] < 0.0,
         ]
         facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
