@@ -199,9 +199,8 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
     response = history.response
     stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
     work = 0.0 if response.work is None else abs(float(response.work[k]))
-    whole = sum(
-        float(item.dissipated[k]) for item in stated.values()
-    )  # where the work is not stated, the least that it can be
+    # where the work is not stated, it is at least the dissipation
+    whole = sum(float(item.dissipated[k]) for item in stated.values())
     largest = max(work, whole, exact.strain_energy, _least_energy(history.scene))
     for pair, own in dissipated(history, k, exact).items():
         if pair in stated:

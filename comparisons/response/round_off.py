@@ -36,11 +36,12 @@ class RoundOff:
     Attributes
     ----------
     force, moment, energy : float
-        Of forces `force_round_off` or, where it is larger, `RESIDUAL`; of moments and energies this times the length of the longest beam.
+        The round-off F of a force is `force_round_off` or, where it is larger, `RESIDUAL`. That of moments and energies is F times the
+        length of the longest beam.
     length : float
         `LAST_PLACES` of the size of the scene, and the deflection ``F L^3/EI`` by the round-off F of a force.
     stress : float
-        Of a force over the smallest area, and of a moment over the smallest section modulus.
+        The larger of two stresses: F over the smallest area, and the round-off of a moment over the smallest section modulus.
     number : float
         Zero: a number without a scale is printed as it is.
     """

@@ -125,15 +125,15 @@ def assembly(gates: list[Gate], times: dict[str, float]) -> None:
         def factorised(K: Any = K) -> None:
             factorise(lambda: K.copy(order="F"))
 
-        ours, theirs, factor = seconds(batched, bilinear, factorised, repeats=repeats)
+        own, general, factor = seconds(batched, bilinear, factorised, repeats=repeats)
         times |= {
-            f"tangent + residual {name}, batched": ours,
-            f"tangent + residual {name}, BilinearForm": theirs,
+            f"tangent + residual {name}, batched": own,
+            f"tangent + residual {name}, BilinearForm": general,
             f"factorisation {name}": factor,
         }
-        gates.append(Gate(f"BilinearForm over batched products, {name}", theirs / ours, 15, True))
+        gates.append(Gate(f"BilinearForm over batched products, {name}", general / own, 15, True))
         if mesh == (200, 4):
-            gates.append(Gate(f"assembly over factorisation, {name}", ours / factor, 1, False))
+            gates.append(Gate(f"assembly over factorisation, {name}", own / factor, 1, False))
 
 
 PEAK = """

@@ -155,12 +155,12 @@ def test_files_give_the_same_film(responses: list[Response], series: list[Series
         write_series(writable_folder(tmp_path / response.model), response, SCENE)
     read = read_series(tmp_path)
     assert [one.title for one in read] == ["tsm", "solid"]
-    ours, theirs = film(series), film(read)
-    assert ours.scale.label == theirs.scale.label == "axial stress [N/m^2]"
-    assert ours.scale.arrow == theirs.scale.arrow
-    assert ours.scale.extent == pytest.approx(theirs.scale.extent)
-    assert ours.scale.stress == pytest.approx(theirs.scale.stress)
-    for one, other in zip(ours.frames, theirs.frames, strict=True):
+    direct, stored = film(series), film(read)
+    assert direct.scale.label == stored.scale.label == "axial stress [N/m^2]"
+    assert direct.scale.arrow == stored.scale.arrow
+    assert direct.scale.extent == pytest.approx(stored.scale.extent)
+    assert direct.scale.stress == pytest.approx(stored.scale.stress)
+    for one, other in zip(direct.frames, stored.frames, strict=True):
         for a, b in zip(one, other, strict=True):
             assert a.title == b.title
             np.testing.assert_allclose(a.points, b.points, atol=1e-9)

@@ -39,27 +39,27 @@ def test_stages_of_a_pin_are_its_path_with_corners(element: str, friction: float
     single = tsm.solve(
         cantilever(element, (BACK, THERE, BACK, THERE), friction), np.array([*T, *(1 + T), *(2 + T)]) / 3
     )
-    ours, theirs = staged.contacts[PAIR], single.contacts[PAIR]
-    assert ours.force == pytest.approx(theirs.force, abs=1e-12)
-    assert ours.arc_position == pytest.approx(theirs.arc_position, abs=1e-9, nan_ok=True)
+    parts, whole = staged.contacts[PAIR], single.contacts[PAIR]
+    assert parts.force == pytest.approx(whole.force, abs=1e-12)
+    assert parts.arc_position == pytest.approx(whole.arc_position, abs=1e-9, nan_ok=True)
     inner = [(e.kind, e.load_parameter) for e in staged.events if e.kind is not tsm.EventKind.PASS_THROUGH]
     others = [
         (e.kind, 3 * e.load_parameter) for e in single.events if e.kind is not tsm.EventKind.PASS_THROUGH
     ]
     assert [kind for kind, _ in inner] == [kind for kind, _ in others]
     assert [t for _, t in inner] == pytest.approx([t for _, t in others], abs=1e-9)
-    assert ours.force[:4] == pytest.approx(ours.force[8:], abs=1e-12)
+    assert parts.force[:4] == pytest.approx(parts.force[8:], abs=1e-12)
     stages = [event.stage for event in staged.events]
     assert stages == sorted(stages)
     assert set(stages) == {1, 2, 3}
     if friction:
-        assert abs(ours.force[1] - ours.force[5]) > 1e-6
+        assert abs(parts.force[1] - parts.force[5]) > 1e-6
         (turn,) = [
             e for e in staged.events if e.kind is tsm.EventKind.STICK and abs(e.load_parameter - 1.0) < 1e-15
         ]
         assert turn.stage == 2
     else:
-        assert ours.force[:3] == pytest.approx(ours.force[6:3:-1], abs=1e-9)
+        assert parts.force[:3] == pytest.approx(parts.force[6:3:-1], abs=1e-9)
 
 
 def loaded(

@@ -27,9 +27,9 @@ class Explicit(NamedTuple):
     Attributes
     ----------
     vector : ndarray, shape (2, n)
-        Of the sum of the tangent vectors.
+        Derivatives of the sum of the tangent vectors.
     turn : ndarray, shape (n,)
-        Of the mean derivative of the angle in the arc position.
+        Derivatives of the mean of the angle's derivative in the arc position.
     """
 
     vector: Array
