@@ -165,15 +165,15 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     depth, side = np.zeros(len(response.load_parameter)), 1.0 if spec.side == "left" else -1.0
     if scene.offset(spec) == 0.0:
         return depth
+    radius, face = scene.radius(spec), spec.surface == "face"
+    half = beam.height_at(0.5) / 2.0 if face else 0.0
+    steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length) if face else 0.0
     for k, t in enumerate(response.load_parameter):
         owner, dot, _ = spec.node.partition(".")
         node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
         arc, place = response.axis_line(spec.beam, k)
-        offset = np.array([scene.offset(spec, part) for part in arc / beam.length])
-        if beam.tapers and spec.surface == "face":
-            # the face is the envelope of circles about the points of the axis
-            lean = np.hypot(1.0, (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length))
-            offset = scene.radius(spec) + (offset - scene.radius(spec)) / lean
+        # a tapered face is the envelope of circles about the points of the axis
+        offset = radius + (half + steep * (arc - beam.length / 2.0)) / math.hypot(1.0, steep)
         away, along = node - place, np.gradient(place, arc, axis=0)
         distance = np.hypot(*away.T)
         if contact.force[k] > 0.0:
