@@ -6,6 +6,7 @@ import numpy as np
 
 from tests.benchmarks import bench
 from tests.benchmarks.measure import Gate
+from tests.stated import MARK, NUMBER, ROOT
 
 
 def test_measured_ratios_are_written_and_read():
@@ -23,3 +24,18 @@ def test_a_ratio_that_has_moved_is_named():
     (failure,) = bench.compared([*ratios, Gate("cut-backs", 1, 0, False)], write=False)
     assert "bench.mixed-over-timoshenko-seconds-per-iteration" in failure
     assert "2.5" in failure
+
+
+def test_the_page_says_which_targets_are_missed():
+    page = (ROOT / "docs" / "results" / "speed.md").read_text()
+    rows = [line.split("|")[2:4] for line in page.splitlines() if "<!--bench." in line]
+    assert len(rows) > 15
+    for measured, target in rows:
+        values = [float(number) for number, _ in NUMBER.findall(MARK.sub(" ", measured))]
+        bars = [float(number) for number, _ in NUMBER.findall(target)]
+        bars *= len(values) // len(bars)
+        met = all(
+            value >= bar if "or more" in target else value <= bar
+            for value, bar in zip(values, bars, strict=True)
+        )
+        assert met == ("not met" not in target), (measured, target)
