@@ -105,7 +105,7 @@ def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
             join(contact.node.split(".")[0], contact.beam)
     driven = {contact.beam for contact in scene.contacts if contact.node in pins}
     driven |= {load.beam for load in scene.loads}
-    driven |= {support.beam for support in scene.all_supports if support.moves}
+    driven |= {motion.support.beam for motion in scene.prescribed_motions.values() if motion.moves}
     idle = [beam.name for beam in scene.beams if not groups[beam.name] & driven]
     if not idle:
         return scene, ()

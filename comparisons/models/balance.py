@@ -73,7 +73,8 @@ def _place(response: Response, scene: Scene, node: str) -> Array:
     beam, end = node.split(".")
     for support in scene.supports_of(beam):
         if support.end == end and {"x", "y"}.issubset(support.held):
-            moved = [support.motion_at(t)[:2] for t in response.load_parameter.tolist()]
+            motion = scene.prescribed_motions[node]
+            moved = [motion.at(t)[:2] for t in response.load_parameter.tolist()]
             return np.asarray(np.array(scene.place(node)) + np.array(moved, dtype=np.float64).reshape(-1, 2))
     if end == scene.tip(beam):
         return response.tips[beam]

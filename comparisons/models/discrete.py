@@ -222,7 +222,10 @@ def _with_clamps(scene: Scene, result: Any, beam: str, k: int, at: Sections) -> 
     taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
     table, own = np.stack([at.arc, at.N, at.V, at.M]), scene.beam(beam)
     for support in scene.supports_of(beam):
-        place, turn = scene.place(support.node), support.motion_at(float(result.load_parameter[k]))[2]
+        place, turn = (
+            scene.place(support.node),
+            scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))[2],
+        )
         joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
         if turn is None or joined or support.node in taken:
             continue

@@ -59,9 +59,9 @@ def unbalanced(scene: Scene, answer: AnswerState, exact: Equilibrium) -> str:
 def _place(scene: Scene, answer: AnswerState, node: str) -> Array:
     """Position of a node: prescribed if a support holds it, stated as a tip, or else the end of the stated axis, which is sampled."""
     if "." in node:
-        for support in scene.all_supports:
-            x, y, _ = support.motion_at(answer.load_parameter)
-            if support.node == node and x is not None and y is not None:
+        if node in scene.prescribed_motions:
+            x, y, _ = scene.prescribed_motions[node].at(answer.load_parameter)
+            if x is not None and y is not None:
                 return np.asarray(np.array(scene.place(node)) + np.array([x, y]))
         beam, end = node.split(".")
         if end == scene.tip(beam) and beam in answer.tips:

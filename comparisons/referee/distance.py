@@ -171,7 +171,9 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         way = (_end(answer, support.node) - here).tolist()
         off = [
             abs(x - motion) / scene.beam(support.beam).length
-            for x, motion in zip(way, support.motion_at(answer.load_parameter)[:2], strict=True)
+            for x, motion in zip(
+                way, scene.prescribed_motions[support.node].at(answer.load_parameter)[:2], strict=True
+            )
             if motion is not None
         ]
         if off:

@@ -80,7 +80,7 @@ def joints(scene: Scene, t: float, units: Units, rods: Sequence[Rod]) -> tuple[l
         motion: tuple[float | None, ...] = (None, None, None)
         for support in scene.all_supports:
             if support.node in ends:
-                motion = support.motion_at(t)
+                motion = scene.prescribed_motions[support.node].at(t)
         station = Station(
             place=Position(reference=relative(scene, point, length)),
             rotation_unknown=NONE,

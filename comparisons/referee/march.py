@@ -73,7 +73,7 @@ def tangent(scene: Scene, now: Solution, little: float) -> tuple[Array, Array]:
 def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
     """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
     t, sign = now.layout.load_parameter, -1.0 if behind else 1.0
-    turned = any(item[2] for support in scene.all_supports for item in (support.motion, *support.onward))
+    turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
     apart = [sign * (corner - t) for corner in corners(scene)]
     little = [part / 2.0 for part in apart if part > _CORNER]
     return tangent(scene, now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]

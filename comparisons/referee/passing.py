@@ -131,7 +131,7 @@ def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
     joined = any(
         {events.start, events.end} & {item.start, item.end} for item in scene.beams if item is not events
     )
-    still = len(held) == 1 and None not in held[0].motion and not held[0].moves
+    still = len(held) == 1 and None not in held[0].motion and not scene.prescribed_motions[held[0].node].moves
     loaded = any(item.load.beam == beam for item in scene.load_histories) or events.density is not None
     if joined or not still or loaded:
         return False

@@ -1,10 +1,11 @@
 """The scene: one file that states beams, supports, loads, pins and contacts for every model."""
 
+from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.keys import SPECIAL, unstated
 from comparisons.scene.read import built_in_scenes, load_scene, read_scene
-from comparisons.scene.records import BeamSpec, Scene
+from comparisons.scene.records import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import InputError, SceneError

@@ -2,19 +2,39 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from comparisons.scene import rules
-from comparisons.scene.amounts import amount
 from comparisons.scene.record import Record, exactly_one_of
-from comparisons.scene.rules import MISSING, FieldError, Name, NotNegative, Number, Point, Vector
+from comparisons.scene.rules import MISSING, End, FieldError, Name, NotNegative, Number, Point, Vector
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportSpec(Record):
+class AtEnd(Record):
+    """Base of the records of what is at one end of a beam.
+
+    Parameters
+    ----------
+    beam : str
+        Name of the beam.
+    end : {"start", "end"}
+        Which end.
+    """
+
+    beam: Name
+    end: End
+
+    @property
+    def node(self) -> str:
+        """Name of the end, as ``upper.end``."""
+        return f"{self.beam}.{self.end}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SupportSpec(AtEnd):
     """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter.
 
     Parameters
@@ -40,15 +60,11 @@ class SupportSpec(Record):
         A ``ValueError`` that names field, value and rule.
     """
 
-    beam: Name
-    end: Annotated[str, rules.choice("start", "end")]
     kind: Annotated[str, rules.choice("clamped", "pinned", "roller")] | None = None
     free: Annotated[str, rules.choice("x", "y")] | None = None
     fixed: Annotated[tuple[str, ...], rules.subset(*COMPONENTS)] | None = None
     displacement: Vector | None = None
     rotation: Number | None = None
-    onward: ClassVar[tuple[tuple[float, float, float], ...]] = ()
-    """Motions in the stages after the first one, which the scene states."""
 
     def own_rules(self) -> Iterable[Iterator[FieldError]]:
         """Return the rules: one way to state what is held, a direction for a roller, motion only where it is held."""
@@ -72,11 +88,6 @@ class SupportSpec(Record):
             yield FieldError("rotation", self.rotation, "must not be given, the rotation is free")
 
     @property
-    def node(self) -> str:
-        """Name of the end, as ``upper.end``."""
-        return f"{self.beam}.{self.end}"
-
-    @property
     def held(self) -> tuple[str, ...]:
         """The components held."""
         if self.kind == "clamped":
@@ -95,19 +106,10 @@ class SupportSpec(Record):
         x_, y_, rotation = (given[name] if name in self.held else None for name in COMPONENTS)
         return x_, y_, rotation
 
-    def motion_at(self, load_parameter: float) -> tuple[float | None, float | None, float | None]:
-        """Return displacement x, y and rotation at `load_parameter`, None where free."""
-        first = tuple(value or 0.0 for value in self.motion)
-        x, y, rotation = (
-            value if name in self.held else None
-            for name, value in zip(COMPONENTS, amount((first, *self.onward), load_parameter), strict=True)
-        )
-        return x, y, rotation
-
     @property
     def moves(self) -> bool:
-        """Whether a prescribed component is not zero in some stage."""
-        return any(map(any, (self.motion, *self.onward)))
+        """Whether a prescribed component is not zero at load parameter 1."""
+        return any(self.motion)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +140,7 @@ class LoadSpec(Record):
     """
 
     beam: Name
-    end: Annotated[str, rules.choice("start", "end")] | None = None
+    end: End | None = None
     at: Annotated[float, rules.fraction] | None = None
     force: Vector = (0.0, 0.0)
     moment: Number = 0.0
@@ -192,7 +194,7 @@ class LoadSpec(Record):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HingeSpec(Record):
+class HingeSpec(AtEnd):
     """A hinge between a beam's end and its joint: the end turns against the joint without a moment, or against a spring.
 
     Parameters
@@ -211,18 +213,11 @@ class HingeSpec(Record):
         A ``ValueError`` that names field, value and rule.
     """
 
-    beam: Name
-    end: Annotated[str, rules.choice("start", "end")]
     stiffness: NotNegative = 0.0
-
-    @property
-    def node(self) -> str:
-        """Name of the end, as ``upper.end``."""
-        return f"{self.beam}.{self.end}"
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpringSpec(Record):
+class SpringSpec(AtEnd):
     """Linear springs between a beam's end and the ground, free of force in the undeformed state.
 
     Parameters
@@ -242,8 +237,6 @@ class SpringSpec(Record):
         A ``ValueError`` that names field, value and rule.
     """
 
-    beam: Name
-    end: Annotated[str, rules.choice("start", "end")]
     stiffness: Annotated[Point, rules.stiffnesses] = (0.0, 0.0)
     rotation: NotNegative = 0.0
 
@@ -254,11 +247,6 @@ class SpringSpec(Record):
     def _resists(self) -> Iterator[FieldError]:
         if not any((*self.stiffness, self.rotation)):
             yield FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
-
-    @property
-    def node(self) -> str:
-        """Name of the end, as ``upper.end``."""
-        return f"{self.beam}.{self.end}"
 
     @property
     def held(self) -> tuple[str, ...]:

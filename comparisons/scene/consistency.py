@@ -18,7 +18,8 @@ from comparisons.scene.rules import MISSING, FieldError, Point
 from comparisons.scene.stage_rules import stage_rules
 
 if TYPE_CHECKING:
-    from comparisons.scene.records import BeamSpec, Scene
+    from comparisons.scene.beam import BeamSpec
+    from comparisons.scene.records import Scene
 
 
 def scene_rules(scene: Scene) -> Iterable[Iterator[FieldError]]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from comparisons.scene.rules import FieldError, Point
 
 if TYPE_CHECKING:
-    from comparisons.scene.records import BeamSpec, Scene
+    from comparisons.scene.beam import BeamSpec
+    from comparisons.scene.records import Scene
 
 Row = list[float]
 LEAST = 1e-9

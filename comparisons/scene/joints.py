@@ -14,8 +14,9 @@ from comparisons.scene.record import Unjudged, right
 from comparisons.scene.rules import FieldError, Point
 
 if TYPE_CHECKING:
+    from comparisons.scene.beam import BeamSpec
     from comparisons.scene.names import Names
-    from comparisons.scene.records import BeamSpec, Scene
+    from comparisons.scene.records import Scene
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""

@@ -10,7 +10,8 @@ from comparisons.scene.record import Unjudged
 from comparisons.scene.rules import FieldError, shown
 
 if TYPE_CHECKING:
-    from comparisons.scene.records import BeamSpec, Scene
+    from comparisons.scene.beam import BeamSpec
+    from comparisons.scene.records import Scene
 
 Named = TypeVar("Named", bound=Any)
 

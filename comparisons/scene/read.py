@@ -7,10 +7,11 @@ from dataclasses import fields
 from importlib import resources
 from typing import Any, TypeVar
 
+from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.record import Record, examined
-from comparisons.scene.records import BeamSpec, Scene
+from comparisons.scene.records import Scene
 from comparisons.scene.rules import MISSING, FieldError, RecordError
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import (

@@ -43,7 +43,7 @@ def _pins(stage: StageSpec, names: Names, key: str) -> Iterator[FieldError]:
 
 
 def _supports(scene: Scene, stage: StageSpec, key: str) -> Iterator[FieldError]:
-    supports = {scene.place(support.node): support for support in scene.first_supports}
+    supports = {scene.place(support.node): support for support in scene.all_supports}
     beams = {beam.name for beam in scene.beams}
     seen: set[Point] = set()
     for j, move in enumerate(stage.support):

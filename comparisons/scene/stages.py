@@ -6,7 +6,7 @@ from typing import Annotated
 
 from comparisons.scene import rules
 from comparisons.scene.amounts import amount
-from comparisons.scene.conditions import LoadSpec
+from comparisons.scene.conditions import COMPONENTS, AtEnd, LoadSpec, SupportSpec
 from comparisons.scene.record import Record, exactly_one_of
 from comparisons.scene.rules import MISSING, Count, FieldError, Name, Number, Point, Vector
 
@@ -44,7 +44,7 @@ class PinMove(Record):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportMove(Record):
+class SupportMove(AtEnd):
     """A support's motion during a stage, in proportion to the load parameter.
 
     Parameters
@@ -64,8 +64,6 @@ class SupportMove(Record):
         A ``ValueError`` that names field, value and rule.
     """
 
-    beam: Name
-    end: Annotated[str, rules.choice("start", "end")]
     displacement: Vector = (0.0, 0.0)
     rotation: Number = 0.0
 
@@ -76,11 +74,6 @@ class SupportMove(Record):
     def _moves(self) -> Iterator[FieldError]:
         if not any(self.motion):
             yield FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
-
-    @property
-    def node(self) -> str:
-        """Name of the end, as ``upper.end``."""
-        return f"{self.beam}.{self.end}"
 
     @property
     def motion(self) -> tuple[float, float, float]:
@@ -132,6 +125,33 @@ class StageSpec(Record):
             yield FieldError(
                 "pin", MISSING, "give pin, support, load or gravity: nothing happens in the stage"
             )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrescribedMotion:
+    """The prescribed motion of a support through all stages.
+
+    Parameters
+    ----------
+    support : SupportSpec
+        The support.
+    increments : tuple of (float, float, float)
+        Change of displacement x, y and rotation in every stage, zero where free.
+    """
+
+    support: SupportSpec
+    increments: tuple[tuple[float, float, float], ...]
+
+    @property
+    def moves(self) -> bool:
+        """Whether a component changes in some stage."""
+        return any(map(any, self.increments))
+
+    def at(self, load_parameter: float) -> tuple[float | None, float | None, float | None]:
+        """Return displacement x, y and rotation at `load_parameter`, None where free."""
+        values = zip(COMPONENTS, amount(self.increments, load_parameter), strict=True)
+        x, y, rotation = (value if name in self.support.held else None for name, value in values)
+        return x, y, rotation
 
 
 @dataclass(frozen=True, kw_only=True)

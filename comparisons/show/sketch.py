@@ -176,8 +176,8 @@ class _Sketch:
             symbol = support_symbol(held_components(support), UP)
             self.legend.setdefault(support_name(support), legend_symbol(symbol))
             at = np.array(scene.place(support.node))
-            for stage, motion in enumerate((support.motion, *support.onward), 1):
-                dx, dy, turn = (value or 0.0 for value in motion)
+            changes = scene.prescribed_motions[support.node].increments
+            for stage, (dx, dy, turn) in enumerate(changes, 1):
                 after = _after(stage)
                 if dx or dy:
                     path = np.array([dx, dy])

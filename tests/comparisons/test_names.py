@@ -13,7 +13,7 @@ REGISTRIES = (
     *(f"comparisons/models/{name}.py" for name in ("registry", "tsm", "solid", "rod")),
 )
 OTHER_WORDS = {
-    "comparisons/scene/records.py": "a material law of the solid is called rod",
+    "comparisons/scene/beam.py": "a material law of the solid is called rod",
     "fem_reference/strip.py": "a material law of the solid is called rod",
     "comparisons/version.py": "the package tsm",
     "comparisons/cli/command.py": "the package tsm",

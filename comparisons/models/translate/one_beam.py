@@ -45,6 +45,6 @@ def _supports(scene: Scene, beam: BeamSpec, model: str) -> tuple[SupportSpec, ..
     clamp, *others = scene.supports_of(beam.name)
     if len(clamp.held) < 3:
         raise ModelError(f'{model} one end clamped, none of beam "{beam.name}" is')
-    if clamp.moves:
+    if scene.prescribed_motions[clamp.node].moves:
         raise ModelError(f'{model} the clamp at rest, "{clamp.node}" moves')
     return clamp, *others

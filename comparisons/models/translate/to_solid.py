@@ -98,7 +98,8 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
     loaded = any(load.node == spec.node for _, load in _staged(scene))
     arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
-    if not (spec.moves or joined or loaded or arc):
+    moves = scene.prescribed_motions[spec.node].moves
+    if not (moves or joined or loaded or arc):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
@@ -129,7 +130,12 @@ def _support(scene: Scene, spec: SupportSpec) -> "Support":
     motion = spec.motion
     if "rotation" in spec.held and not _turns_with_joint(scene, spec.node, "support"):
         motion = (*motion[:2], None)
-    return Support(strip=spec.beam, end=spec.end, motion=motion, onward=spec.onward)
+    return Support(
+        strip=spec.beam,
+        end=spec.end,
+        motion=motion,
+        onward=scene.prescribed_motions[spec.node].increments[1:],
+    )
 
 
 def _springs(scene: Scene) -> "Iterator[Spring]":

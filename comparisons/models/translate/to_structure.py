@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene, SpringSpec
 from comparisons.scene.keys import BEAMS, unstated
+from comparisons.scene.stages import PrescribedMotion
 
 if TYPE_CHECKING:
     from tsm import Beam, ContactPair, LineLoad, Load, Section, Spring, Structure, Support
@@ -47,7 +48,7 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     kind = MIXED if element is None else ELEMENTS[element]
     return Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
-        supports=tuple(_support(support) for support in scene.all_supports),
+        supports=tuple(_support(motion) for motion in scene.prescribed_motions.values()),
         loads=tuple(_loads(scene)),
         line_loads=(*_line_loads(scene), *_weights(scene)),
         hinges=tuple(
@@ -89,9 +90,10 @@ def _pair(scene: Scene, contact: ContactSpec) -> "ContactPair":
     )
 
 
-def _support(spec: SupportSpec) -> "Support":
+def _support(motion: PrescribedMotion) -> "Support":
     from tsm import Support
 
+    spec = motion.support
     ux, uy, rotation = spec.motion
     return Support(
         beam=spec.beam,
@@ -99,7 +101,7 @@ def _support(spec: SupportSpec) -> "Support":
         ux=ux,
         uy=uy,
         rotation=rotation,
-        onward=spec.onward,
+        onward=motion.increments[1:],
     )
 
 

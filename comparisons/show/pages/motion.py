@@ -190,8 +190,8 @@ def _supports(scene: Scene, times: Array) -> list[dict[str, Any]]:
     ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
     symbols = support_symbols(scene, SYMBOL * float(np.ptp(ends, axis=0).max()))
     return [
-        {"lines": lines, "at": [[value or 0.0 for value in one.motion_at(float(t))[:2]] for t in times]}
-        for one, lines in zip(scene.all_supports, symbols, strict=True)
+        {"lines": lines, "at": [[value or 0.0 for value in one.at(float(t))[:2]] for t in times]}
+        for one, lines in zip(scene.prescribed_motions.values(), symbols, strict=True)
     ]
 
 

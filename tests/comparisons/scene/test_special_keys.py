@@ -121,11 +121,9 @@ def test_stages_go_on_from_where_the_last_one_ended() -> None:
     ]
     assert np.array(places) == pytest.approx(np.array(expected))
     assert pin.points == ((0.7, -0.1), (0.7, pytest.approx(0.2)), (0.5, 0.2), (0.5, -0.2))
-    (support,) = scene.all_supports
-    assert support.moves
-    assert [support.motion_at(t)[2] for t in (0.5, 1.0, 1.5, 2.0, 2.5)] == pytest.approx(
-        [0.0, 0.0, 0.05, 0.1, 0.1]
-    )
+    (motion,) = scene.prescribed_motions.values()
+    assert motion.moves
+    assert [motion.at(t)[2] for t in (0.5, 1.0, 1.5, 2.0, 2.5)] == pytest.approx([0.0, 0.0, 0.05, 0.1, 0.1])
     (history,) = scene.load_histories
     assert [history.at(t)[:2] for t in (1.0, 1.5, 2.0, 2.5, 3.0)] == [
         pytest.approx(force) for force in ((0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (0.5, 0.5), (1.0, -1.0))

@@ -1,0 +1,229 @@
+"""The record of a beam: its axis, section, material and meshes."""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+from comparisons.scene import rules
+from comparisons.scene.record import Record, exactly_one_of
+from comparisons.scene.rules import Count, Dimension, FieldError, Name, Point, Positive, Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamSpec(Record):
+    """A beam, straight and uniform unless it turns or tapers.
+
+    The section is a rectangle `width` x `height` (effective shear area 5/6 of the area), or `area` and `second_moment`
+    (effective shear area equal to the area); `shear_area` overrides the effective shear area. The material is isotropic:
+    Young's modulus and either Poisson's ratio or the shear modulus, ``G = E/(2 (1 + nu))``.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``-`` and ``_``.
+    start, end : (float, float)
+        The ends of the undeformed axis [length].
+    turn : float
+        Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].
+    youngs_modulus : float
+        Young's modulus [force/length^2].
+    poissons_ratio : float
+        Poisson's ratio.
+    shear_modulus : float
+        Shear modulus, instead of `poissons_ratio` [force/length^2].
+    width : float or (float, float)
+        Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].
+    height : float or (float, float)
+        Height of the section, in plane; a number or two like `width` [length].
+    area : float
+        Area of the section, with `second_moment` instead of `width` and `height` [length^2].
+    second_moment : float
+        Second moment of area, with `area` [length^4].
+    shear_area : float
+        Effective shear area [length^2].
+    density : float
+        Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; a mass times a `gravity` is a force.
+    clamped : tuple of {"start", "end"}
+        Clamped ends, none by default: the short form of a `SupportSpec`.
+    elements : int
+        Number of TSM elements, all of one length.
+    nodes : tuple of float
+        Positions of the inner TSM nodes as parts of the length, instead of `elements`.
+    mesh : (int, int)
+        Elements of the solid along and across.
+    solid_clamp : {"rod", "full"}
+        Clamp of the solid: free to contract, or both displacements of the whole edge held.
+    solid_element : {"Q1", "Q2", "Q2-full"}
+        Elements of the solid.
+    solid_mesh_file : str, optional
+        File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see
+        `fem_reference.mesh_file.read_mesh`.
+    material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
+        Material law of the solid.
+
+    Raises
+    ------
+    FieldError
+        A ``ValueError`` that names field, value and rule.
+    """
+
+    name: Name
+    start: Vector
+    end: Vector
+    youngs_modulus: Positive
+    poissons_ratio: Annotated[float, rules.poissons_ratio] | None = None
+    shear_modulus: Positive | None = None
+    turn: Annotated[float, rules.turn] = 0.0
+    width: Dimension | None = None
+    height: Dimension | None = None
+    area: Positive | None = None
+    second_moment: Positive | None = None
+    shear_area: Positive | None = None
+    density: Positive | None = None
+    clamped: Annotated[tuple[str, ...], rules.ends] = ()
+    elements: Count = 20
+    nodes: Annotated[tuple[float, ...], rules.parts] = ()
+    mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
+    solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
+    solid_mesh_file: Annotated[str, rules.text] | None = None
+    solid_element: Annotated[str, rules.choice("Q1", "Q2", "Q2-full")] = "Q2"
+    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean")] = (
+        "st-venant-kirchhoff"
+    )
+
+    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+        """Return the rules: one way to state material and section, a length, stiffnesses within floating-point range."""
+        return (
+            exactly_one_of(self, ("poissons_ratio",), ("shear_modulus",)),
+            exactly_one_of(self, ("width", "height"), ("area", "second_moment")),
+            self._has_length(),
+            self._shears_as_it_tapers(),
+            self._has_stiffness(),
+        )
+
+    def _has_length(self) -> Iterator[FieldError]:
+        shortest = 1.0 / rules.LARGEST
+        if not shortest <= self.length <= rules.LARGEST:
+            rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
+            yield FieldError("end", self.end, rule)
+
+    def _shears_as_it_tapers(self) -> Iterator[FieldError]:
+        if self.tapers and self.shear_area is not None:
+            yield FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
+
+    def _has_stiffness(self) -> Iterator[FieldError]:
+        least, most = rules.RANGE
+        stiffnesses = zip(("EA", "GA", "EI") * 2, (*self.stiffness(0.0), *self.stiffness(1.0)), strict=True)
+        for name, stiffness in stiffnesses:
+            if not least <= stiffness <= most:
+                rule = f"{name} = {stiffness:g} must lie between {least:g} and {most:g}"
+                yield FieldError("youngs_modulus", self.youngs_modulus, rule)
+                return
+
+    @property
+    def length(self) -> float:
+        """Length of the undeformed axis; of an arc, ``(turn/2)/sin(turn/2)`` of the distance of its ends."""
+        chord, half = math.dist(self.start, self.end), self.turn / 2.0
+        return chord * (half / math.sin(half)) if half else chord
+
+    @property
+    def curvature(self) -> float:
+        """Natural curvature, positive to the left [1/length]."""
+        return self.turn / self.length
+
+    @property
+    def direction(self) -> Point:
+        """Unit vector from start to end."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        chord = math.dist(self.start, self.end)
+        return (x1 - x0) / chord, (y1 - y0) / chord
+
+    def tangent(self, fraction: float) -> Point:
+        """Return the unit tangent of the undeformed axis at a fraction of the length."""
+        return _turned(self.direction, self.turn * (fraction - 0.5)) if self.turn else self.direction
+
+    def place(self, fraction: float) -> Point:
+        """Return the point of the undeformed axis at a fraction of the length."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        if not self.turn or fraction in (0.0, 1.0):
+            return (1.0 - fraction) * x0 + fraction * x1, (1.0 - fraction) * y0 + fraction * y1
+        half = self.turn * fraction / 2.0
+        tx, ty = _turned(self.direction, half - self.turn / 2.0)
+        chord = fraction * self.length * (math.sin(half) / half if half else 1.0)
+        return x0 + chord * tx, y0 + chord * ty
+
+    @property
+    def tapers(self) -> bool:
+        """Whether the section changes along the beam."""
+        return isinstance(self.width, tuple) or isinstance(self.height, tuple)
+
+    @property
+    def EA(self) -> float:
+        """Stretching stiffness [force]; the middle section's where the beam tapers."""
+        return self.stiffness()[0]
+
+    @property
+    def GA(self) -> float:
+        """Shear stiffness G A_e [force]; the middle section's where the beam tapers."""
+        return self.stiffness()[1]
+
+    @property
+    def EI(self) -> float:
+        """Bending stiffness [force length^2]; the middle section's where the beam tapers."""
+        return self.stiffness()[2]
+
+    def stiffness(self, fraction: float = 0.5) -> tuple[float, float, float]:
+        """Return EA, GA and EI at a fraction of the length."""
+        G = self.shear_modulus or self.youngs_modulus / (2.0 * (1.0 + (self.poissons_ratio or 0.0)))
+        area, inertia, sheared = self.section(fraction)
+        return self.youngs_modulus * area, G * sheared, self.youngs_modulus * inertia
+
+    @property
+    def cross_section(self) -> tuple[float, float, float]:
+        """Area, second moment of area and effective shear area; the middle section's where the beam tapers."""
+        return self.section(0.5)
+
+    def section(self, fraction: float) -> tuple[float, float, float]:
+        """Return area, second moment of area and effective shear area at a fraction of the length."""
+        width, height = _between(self.width, fraction), _between(self.height, fraction)
+        if width and height:
+            A, inertia, kappa = width * height, width * _cube(height) / 12.0, 5.0 / 6.0
+        else:
+            A, inertia, kappa = self.area or 0.0, self.second_moment or 0.0, 1.0
+        return A, inertia, self.shear_area or kappa * A
+
+    def height_at(self, fraction: float) -> float:
+        """Return the height of the section at a fraction of the length, zero where the section has none."""
+        return _between(self.height, fraction) or 0.0
+
+    @property
+    def rectangle_height(self) -> float:
+        """Largest height of the section, or ``sqrt(12 I/A)`` of the rectangle with its area and second moment."""
+        area, inertia, _ = self.cross_section
+        return max(self.height_at(0.0), self.height_at(1.0)) or math.sqrt(12.0 * inertia / area)
+
+    def mass_per_length(self, fraction: float) -> float:
+        """Return the mass per undeformed length at a fraction of the length, zero without `density`."""
+        return (self.density or 0.0) * self.section(fraction)[0]
+
+
+def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
+    """Return a dimension at a fraction of the length."""
+    if not isinstance(dimension, tuple):
+        return dimension
+    a, b = dimension
+    return a + fraction * (b - a) if fraction < 0.5 else b - (1.0 - fraction) * (b - a)
+
+
+def _turned(vector: Point, angle: float) -> Point:
+    (x, y), c, s = vector, math.cos(angle), math.sin(angle)
+    return c * x - s * y, s * x + c * y
+
+
+def _cube(number: float) -> float:
+    """Third power; infinite where Python's power raises OverflowError."""
+    try:
+        return number**3
+    except OverflowError:
+        return math.inf
