@@ -66,13 +66,13 @@ def _bar(stream: TextIO) -> Progress:
 
 
 def _milestones(stream: TextIO) -> Progress:
-    told = -1
+    written = -1
 
     def show(tally: Tally) -> None:
-        nonlocal told
+        nonlocal written
         reached = MILESTONES * tally.done // max(tally.total, 1)
-        if reached != told:
-            told = reached
+        if reached != written:
+            written = reached
             stream.write(line(tally) + "\n")
             stream.flush()
 

@@ -155,12 +155,12 @@ class _Sweep:
         if limit == 0 or not self.open:
             return []
         claim = self.store.claim(self.open, limit=limit, again=self.again)
-        for key in (*claim.mine, *claim.done, *claim.taken):
+        for key in (*claim.claimed, *claim.done, *claim.taken):
             self.open.remove(key)
         self.open.extend(claim.taken)
         for key, status in claim.done.items():
             self.note(key, status)
-        return claim.mine
+        return claim.claimed
 
     def collect(self, lost: tuple[type[BaseException], ...]) -> None:
         """Record what has finished, and say that this run is alive."""

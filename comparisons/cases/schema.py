@@ -60,9 +60,9 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
     """
     path = writable_file(path)
     with database_errors(path):
-        connection, ours = _open(path, "mode=rwc")
+        connection, recognised = _open(path, "mode=rwc")
         try:
-            if not ours:
+            if not recognised:
                 _into_wal(connection)
                 _make(connection, path)
         except BaseException:
@@ -84,13 +84,13 @@ def open_for_reading(path: Path) -> sqlite3.Connection:
     with database_errors(path, "cannot be read"):
         try:
             # a reader that could not write would leave the files of the WAL behind
-            connection, ours = _open(path, "mode=rw")
+            connection, recognised = _open(path, "mode=rw")
         except sqlite3.OperationalError:
             if path.with_name(f"{path.name}-wal").exists():
                 raise
             # the folder cannot be written in, and nobody does
-            connection, ours = _open(path, "immutable=1")
-    if not ours:
+            connection, recognised = _open(path, "immutable=1")
+    if not recognised:
         connection.close()
         raise OutputError(f"{path}: cannot be read: holds no results of crossval")
     return connection

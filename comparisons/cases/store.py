@@ -35,7 +35,7 @@ class Claim:
 
     Attributes
     ----------
-    mine : list of str
+    claimed : list of str
         Cases that this run has claimed.
     done : dict of str
         Recorded cases with their statuses.
@@ -43,7 +43,7 @@ class Claim:
         Cases that another run works on.
     """
 
-    mine: list[str]
+    claimed: list[str]
     done: dict[str, str]
     taken: list[str]
 
@@ -113,11 +113,11 @@ class Store:
 
         Those `again` names are claimed even if they are recorded. A case whose run has died is free.
         """
-        found = Claim(mine=[], done={}, taken=[])
+        found = Claim(claimed=[], done={}, taken=[])
         with self._transaction():
             self._say_alive()
             for key in keys:
-                if len(found.mine) == limit:
+                if len(found.claimed) == limit:
                     break
                 recorded = self._one(
                     "SELECT status FROM result WHERE key = ? AND version = ?", key, version()
@@ -128,7 +128,7 @@ class Store:
                     found.taken.append(key)
                 else:
                     self._connection.execute("REPLACE INTO claim (key, run) VALUES (?, ?)", (key, self._run))
-                    found.mine.append(key)
+                    found.claimed.append(key)
         return found
 
     def say_alive(self) -> None:

@@ -85,11 +85,13 @@ def best_reference(scene: Scene, measured: Measured) -> Reference:
         if exact.response.completed
         else "TSM exact, which would confirm them, did not complete"
     )
-    told = f"the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
-    return _by_difference(scene, rod, exact if exact.response.completed else rod, "exact rod", told)
+    template = f"the exact Reissner rods, with the beams' stretch and shear, which the elastica leaves out; {confirmed}"
+    return _by_difference(scene, rod, exact if exact.response.completed else rod, "exact rod", template)
 
 
-def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: str, told: str) -> Reference:
+def _by_difference(
+    scene: Scene, best: Measurement, other: Measurement, name: str, template: str
+) -> Reference:
     """Return a reference that is as uncertain as its difference from another solution."""
     found = best.response
     scale, end = scales(found), end_state(found)
@@ -98,7 +100,7 @@ def _by_difference(scene: Scene, best: Measurement, other: Measurement, name: st
         scope: {quantity: max(error, ROUND_OFF) for quantity, error in table.items()}
         for scope, table in apart.items()
     }
-    sentence = told.format(apart["path"]["force"])
+    sentence = template.format(apart["path"]["force"])
     return Reference(
         response=found, scene=scene, scale=scale, end=end, uncertainty=known, name=name, sentence=sentence
     )

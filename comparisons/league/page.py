@@ -113,13 +113,13 @@ def summary(league: League) -> list[Row]:
     """Return a row for each program: on how many scenes it runs, and how its runs ended."""
     rows: list[Row] = []
     for program in league.programs:
-        mine = [entry for entry in league.entries if entry.program == program]
-        ends = Counter(entry.outcome for entry in mine)
+        entries = [entry for entry in league.entries if entry.program == program]
+        ends = Counter(entry.outcome for entry in entries)
         rows.append(
             {
                 "program": program,
-                "scenes": len({entry.case.scene.name for entry in mine}),
-                "runs": len(mine),
+                "scenes": len({entry.case.scene.name for entry in entries}),
+                "runs": len(entries),
                 "certified": ends["certified"],
                 "stopped by name": sum(n for end, n in ends.items() if end.isupper()),
                 "said success and was wrong": ends["wrong"],

@@ -53,7 +53,7 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
             )
         settings = replace(settings, integration_tolerance=options.integration_tolerance)
     try:
-        result = tsm.solve(structure, np.array(scene.times), settings, watch=_told(structure, watch))
+        result = tsm.solve(structure, np.array(scene.times), settings, watch=_reporter(structure, watch))
     except tsm.SolveError as error:
         result = error.result
 
@@ -81,14 +81,14 @@ def solve_tsm(scene: Scene, options: Options, kind: "ElementType", watch: Watch 
     )
 
 
-def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
+def _reporter(structure: Any, watch: Watch) -> Callable[[Any], None]:
     """Return a function that passes accepted steps on to `watch`; elements are counted from 1."""
     first, count = {}, 0
     for beam in structure.beams:
         first[beam.name], count = count, count + beam.elements
     elements = {beam.name: beam.elements for beam in structure.beams}
 
-    def told(step: Any) -> None:
+    def report(step: Any) -> None:
         state = step.equilibrium.state
         touching = tuple(
             f"{pair.name} on element {touch.element - first[pair.beam] + 1} of {elements[pair.beam]}"
@@ -97,7 +97,7 @@ def _told(structure: Any, watch: Watch) -> Callable[[Any], None]:
         )
         watch(Reached(state.load_parameter, step.iterations, touching))
 
-    return told
+    return report
 
 
 def _event(event: Any) -> ContactEvent:
@@ -153,14 +153,14 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
     problem = to_solid(scene, mesh=options.mesh)
     settings = fem_reference.Settings(branch=options.branch or "stop")
 
-    def told(step: Any) -> None:
+    def report(step: Any) -> None:
         touching = tuple(
             f"{touch.pair.name} at {float(touch.projection.zeta):.4g}" for touch in step.state.closed
         )
         watch(Reached(step.load_parameter, step.iterations, touching))
 
     try:
-        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=told)
+        result = fem_reference.solve(problem, np.array(scene.times), settings, watch=report)
     except fem_reference.SolveError as error:
         result = error.result
 

@@ -273,10 +273,10 @@ class _Page:
 
     def events(self) -> Block:
         events = self.response.events or ()
-        told = [(event, event_words(event, self.with_unit)) for event in events]
+        described = [(event, event_words(event, self.with_unit)) for event in events]
         rows = [
             (f"{event.load_parameter:.6g}", *([f"{event.stage}"] if self.staged else []), words)
-            for event, words in told
+            for event, words in described
             if words
         ]
         columns = ("load parameter", *(["stage"] if self.staged else []), "")

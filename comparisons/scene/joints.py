@@ -129,10 +129,10 @@ def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Iterator[FieldError]:
     """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
     for end in ("start", "end"):
         for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
-            mine = getattr(b, end)
-            if mine != place and math.dist(mine, place) < NEAR * min(a.length, b.length):
+            near = getattr(b, end)
+            if near != place and math.dist(near, place) < NEAR * min(a.length, b.length):
                 yield FieldError(
-                    f"beam[{number}].{end}", mine, f'must be "{node}" exactly, or stay clear of it'
+                    f"beam[{number}].{end}", near, f'must be "{node}" exactly, or stay clear of it'
                 )
 
 

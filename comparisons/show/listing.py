@@ -26,7 +26,7 @@ def with_digests(text: str, digests: Mapping[str, str]) -> str:
 
 
 def listed(path: Path) -> dict[str, str] | None:
-    """Return the digests that the list `path` gives, by file name: empty where there is no such file, None if it is not ours."""
+    """Return the digests that the list `path` gives, by file name: empty where there is no such file, None if this program did not write it."""
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -35,12 +35,12 @@ def listed(path: Path) -> dict[str, str] | None:
         return None
     head, mark, comment = text.partition(MARK)
     found = {name: value for value, name in _ENTRY.findall(comment)}
-    ours = mark and found.pop("itself", "") == hashlib.sha256(head.encode()).hexdigest()
-    return found if ours else None
+    unchanged_head = mark and found.pop("itself", "") == hashlib.sha256(head.encode()).hexdigest()
+    return found if unchanged_head else None
 
 
 def check_free(folder: Path, names: Iterable[str], lists: Iterable[Path]) -> None:
-    """Raise unless every one of `names` in `folder` is free, or a file as one of `lists` gives it; the lists are ours or absent.
+    """Raise unless every one of `names` in `folder` is free, or a file as one of `lists` gives it; a list is absent or written by this program.
 
     Raises
     ------

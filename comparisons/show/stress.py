@@ -76,5 +76,5 @@ def _section_forces(
 ) -> tuple[Array, ...]:
     """N, V, M at arc positions of one beam, linear inside its elements."""
     data = response.grid(k).point_data
-    mine = data["beam"] == scene.beams.index(beam)
-    return tuple(np.interp(arc, data["arc"][mine], data[name][mine]) for name in ("N", "V", "M"))
+    rows = data["beam"] == scene.beams.index(beam)
+    return tuple(np.interp(arc, data["arc"][rows], data[name][rows]) for name in ("N", "V", "M"))

@@ -196,14 +196,14 @@ def apart(batch: tsm.BatchResult, alone: list[tsm.Result]) -> float:
         (contact,), (held,), (tip,) = one.contacts.items(), one.supports.items(), one.tips.items()
         F, L = contact[1].force.max(), one.model.length
         assert batch.status[n] is one.status
-        for mine, theirs, scale in (
+        for batched, single, scale in (
             (batch.force[contact[0]], contact[1].force, F),
             (batch.arc_position[contact[0]], contact[1].arc_position, L),
             (batch.supports[held[0]].moment, held[1].moment, F * L),
             (batch.tips[tip[0]], tip[1], L),
         ):
-            reached = mine[n, : len(theirs)]
-            largest = max(largest, float(np.abs(reached - theirs).max()) / scale)
+            reached = batched[n, : len(single)]
+            largest = max(largest, float(np.abs(reached - single).max()) / scale)
     return largest
 
 

@@ -46,7 +46,7 @@ def start_up(gates: list[Gate], times: dict[str, float]) -> None:
         def start(code: str) -> Callable[[], Any]:
             return lambda: output(code)
 
-        numpy, ours, told, whole = seconds(
+        numpy, tsm_import, help_command, whole = seconds(
             start("import numpy"),
             start("import tsm"),
             start(CROSSVAL.format(["--help"])),
@@ -55,10 +55,15 @@ def start_up(gates: list[Gate], times: dict[str, float]) -> None:
             clock=children,
         )
         solution = float(output(IN_PLACE))
-    times |= {"import numpy": numpy, "import tsm": ours, "crossval --help": told, "crossval solve": whole}
+    times |= {
+        "import numpy": numpy,
+        "import tsm": tsm_import,
+        "crossval --help": help_command,
+        "crossval solve": whole,
+    }
     times["solution in crossval solve"] = solution
-    gates.append(Gate("import tsm over import numpy, processes", ours / numpy, 2.5, False))
-    gates.append(Gate("crossval --help over import numpy, processes", told / numpy, 1.5, False))
+    gates.append(Gate("import tsm over import numpy, processes", tsm_import / numpy, 2.5, False))
+    gates.append(Gate("crossval --help over import numpy, processes", help_command / numpy, 1.5, False))
     gates.append(
         Gate("crossval solve without its solution over import numpy", (whole - solution) / numpy, 3, False)
     )

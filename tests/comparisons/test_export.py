@@ -187,7 +187,7 @@ def test_the_displacement_of_the_touched_beam_keeps_a_contact_closed(response: R
 def test_series_lists_its_files_and_removes_older_ones(response: Response, tmp_path: Path) -> None:
     longer = replace(SCENE, load_parameters=4)
     write_series(tmp_path, solve(longer, response.model), longer)
-    (tmp_path / "other-0009.vtu").write_text("not ours")
+    (tmp_path / "other-0009.vtu").write_text("of another program")
     sets = write_series(tmp_path, response, SCENE)
     entries = listed(tmp_path / f"{response.model}.pvd")
     assert [t for t, _ in entries] == list(SCENE.times)
@@ -241,7 +241,7 @@ def test_a_file_beside_the_series_stays(name: str, tmp_path: Path) -> None:
 def test_a_file_in_the_way_ends_the_run_before_anything_is_written(
     name: str, before: bool, tmp_path: Path
 ) -> None:
-    """A file of somebody else's, or one of ours that was changed since."""
+    """A file of somebody else's, or one that crossval wrote and that was changed since."""
     beams = solve(SCENE, "tsm")
     if before:
         write_series(tmp_path, beams, SCENE)

@@ -51,17 +51,17 @@ def test_response_moves_with_the_scene(model: str, mirrored: bool, from_end: boo
     )
     assert here.completed, here.message
     assert there.completed, there.message
-    ours, theirs = here.contacts[PAIR], there.contacts[PAIR]
-    arc = 1.0 - theirs.arc_position if from_end else theirs.arc_position
+    contact, moved_contact = here.contacts[PAIR], there.contacts[PAIR]
+    arc = 1.0 - moved_contact.arc_position if from_end else moved_contact.arc_position
     sign = -1.0 if mirrored else 1.0
     turn = np.array([[0.6, -0.8], [0.8, 0.6]]) @ np.diag([1.0, sign])
-    scale = ours.force.max()
-    assert theirs.force == pytest.approx(ours.force, abs=1e-7 * scale)
-    assert arc == pytest.approx(ours.arc_position, abs=1e-7)
+    scale = contact.force.max()
+    assert moved_contact.force == pytest.approx(contact.force, abs=1e-7 * scale)
+    assert arc == pytest.approx(contact.arc_position, abs=1e-7)
     clamp = "cantilever.end" if from_end else "cantilever.start"
-    mine, other = here.supports["cantilever.start"], there.supports[clamp]
-    assert other.moment == pytest.approx(sign * mine.moment, abs=1e-7 * scale)
-    assert other.force == pytest.approx(mine.force @ turn.T, abs=1e-7 * scale)
+    support, moved_support = here.supports["cantilever.start"], there.supports[clamp]
+    assert moved_support.moment == pytest.approx(sign * support.moment, abs=1e-7 * scale)
+    assert moved_support.force == pytest.approx(support.force @ turn.T, abs=1e-7 * scale)
     tips = here.tips["cantilever"] @ turn.T + np.array([3.0, -2.0])
     assert there.tips["cantilever"] == pytest.approx(tips, abs=1e-7)
 

@@ -31,22 +31,22 @@ class Terminal(io.StringIO):
     ("model", "options"), [("tsm", Options(elements=10)), ("solid", Options(mesh=(16, 1)))]
 )
 def test_every_load_parameter_is_told_of(model: str, options: Options) -> None:
-    told: list[Reached] = []
-    response = solve(SCENE, model, options, told.append)
-    times = [reached.load_parameter for reached in told]
+    reported: list[Reached] = []
+    response = solve(SCENE, model, options, reported.append)
+    times = [reached.load_parameter for reached in reported]
     assert times == sorted(times)
     assert set(response.load_parameter) <= set(times)
-    assert sum(reached.iterations for reached in told) == response.newton_iterations.sum()
+    assert sum(reached.iterations for reached in reported) == response.newton_iterations.sum()
     place = r"pin->cantilever on element \d+ of 10" if model == "tsm" else r"pin->cantilever at 0\.\d+"
-    assert all(re.fullmatch(place, contact) for reached in told for contact in reached.contacts)
-    assert told[-1].contacts
+    assert all(re.fullmatch(place, contact) for reached in reported for contact in reached.contacts)
+    assert reported[-1].contacts
 
 
 def test_the_element_is_that_of_the_contact() -> None:
-    told: list[Reached] = []
-    response = solve(SCENE, "tsm", Options(elements=10), told.append)
+    reported: list[Reached] = []
+    response = solve(SCENE, "tsm", Options(elements=10), reported.append)
     arc = response.contacts["pin->cantilever"].arc_position[-1]
-    assert told[-1].contacts == (f"pin->cantilever on element {int(10 * arc) + 1} of 10",)
+    assert reported[-1].contacts == (f"pin->cantilever on element {int(10 * arc) + 1} of 10",)
 
 
 def test_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,12 +54,12 @@ def test_forces_and_jumps_are_those_of_the_beams(
     solid, beams = both
     forces, jumps = [], []
     for pair in (UPPER, TIP, LOWER):
-        ours, theirs = solid.contacts[pair].force, beams.contacts[pair].force
-        changes = np.flatnonzero(np.diff(theirs > 0)) + 1
-        beside = np.min(np.abs(np.arange(ours.size)[:, None] - changes), axis=1) <= 1
-        away = (theirs > 0) & ~beside
-        forces.append(np.abs(ours[away] / theirs[away] - 1).max())
-        np.testing.assert_array_equal(np.flatnonzero(np.diff(ours > 0)) + 1, changes, err_msg=pair)
+        solid_force, beam_force = solid.contacts[pair].force, beams.contacts[pair].force
+        changes = np.flatnonzero(np.diff(beam_force > 0)) + 1
+        beside = np.min(np.abs(np.arange(solid_force.size)[:, None] - changes), axis=1) <= 1
+        away = (beam_force > 0) & ~beside
+        forces.append(np.abs(solid_force[away] / beam_force[away] - 1).max())
+        np.testing.assert_array_equal(np.flatnonzero(np.diff(solid_force > 0)) + 1, changes, err_msg=pair)
         slips = solid.contacts[pair].slip_off, beams.contacts[pair].slip_off
         if np.isfinite(slips[1]):
             jumps.append(76 * abs(slips[0] - slips[1]))

@@ -108,7 +108,7 @@ def distance(case: Scene, mesh: tuple[int, int] | None = None) -> float:
     assert solid.index is not None
     assert np.all(solid.index == 0)
     pairs = zip(actions(solid), actions(exact), strict=True)
-    return max(float(np.abs(ours - theirs).max() / (np.abs(theirs).max() or 1.0)) for ours, theirs in pairs)
+    return max(float(np.abs(a - b).max() / (np.abs(b).max() or 1.0)) for a, b in pairs)
 
 
 @pytest.mark.slow_at("tip_load", "turned_pins")

@@ -214,9 +214,9 @@ def test_the_clamp_by_its_section_is_the_clamp_of_the_rod():
         for conditions, ends in (((), ("start",)), ((support(),), ()))
     )
     np.testing.assert_allclose(tied.tips[STRIP], clamped.tips[STRIP], atol=2e-5)
-    ours, its = tied.supports[START], clamped.supports[START]
-    np.testing.assert_allclose(ours.force, its.force, atol=1e-9 * EI)
-    np.testing.assert_allclose(ours.moment, its.moment, rtol=5e-5)
+    held_section, held_edge = tied.supports[START], clamped.supports[START]
+    np.testing.assert_allclose(held_section.force, held_edge.force, atol=1e-9 * EI)
+    np.testing.assert_allclose(held_section.moment, held_edge.moment, rtol=5e-5)
 
 
 @pytest.mark.parametrize("clamp", ["rod", "full"])

@@ -99,16 +99,18 @@ def assert_same(one: tsm.Result, other: tsm.Result, within: float) -> None:
     assert [(e.kind, e.pair, e.element) for e in other.events] == [
         (e.kind, e.pair, e.element) for e in one.events
     ]
-    for mine, theirs in zip(one.events, other.events, strict=True):
-        between = mine.kind is tsm.EventKind.PASS_THROUGH  # which is interpolated between the steps
-        assert theirs.load_parameter == pytest.approx(mine.load_parameter, abs=0.02 if between else 1e-11)
+    for event, other_event in zip(one.events, other.events, strict=True):
+        between = event.kind is tsm.EventKind.PASS_THROUGH  # which is interpolated between the steps
+        assert other_event.load_parameter == pytest.approx(
+            event.load_parameter, abs=0.02 if between else 1e-11
+        )
     L = one.model.length
     F = max(one.model.force_scale, *(np.abs(c.force).max(initial=0.0) for c in one.contacts.values()))
-    for name, mine in one.contacts.items():
-        theirs = other.contacts[name]
-        np.testing.assert_allclose(theirs.force, mine.force, rtol=0, atol=within * F)
-        np.testing.assert_allclose(theirs.arc_position, mine.arc_position, rtol=0, atol=within * L)
-        np.testing.assert_allclose(theirs.gap, mine.gap, rtol=0, atol=within * L)
+    for name, contact in one.contacts.items():
+        other_contact = other.contacts[name]
+        np.testing.assert_allclose(other_contact.force, contact.force, rtol=0, atol=within * F)
+        np.testing.assert_allclose(other_contact.arc_position, contact.arc_position, rtol=0, atol=within * L)
+        np.testing.assert_allclose(other_contact.gap, contact.gap, rtol=0, atol=within * L)
     for name, held in one.supports.items():
         np.testing.assert_allclose(other.supports[name].force, held.force, rtol=0, atol=within * F)
         np.testing.assert_allclose(other.supports[name].moment, held.moment, rtol=0, atol=within * F * L)

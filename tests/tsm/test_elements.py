@@ -250,8 +250,8 @@ def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi)
         polynomial = (c.constant + c.of_mm * m * m + c.of_hh * h * h)[:2, 0]
         bending = float(c.constant[2, 0] * m * m + c.constant[3, 0] * h * h) / 2
         quartic = float(c.r4[0] * m**4 / 8 + c.r2[0] * m * m * h * h / 4)
-        ours = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
-        errors.append(abs(ours - rod_energy(p, theta_i, theta_j, e)))
+        element_energy = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
+        errors.append(abs(element_energy - rod_energy(p, theta_i, theta_j, e)))
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     assert orders == pytest.approx(order, abs=0.2), (errors, orders)
 

@@ -87,10 +87,10 @@ def test_order_on_unequal_elements(rod):
 
 def test_shapes_and_section_forces_of_unequal_elements():
     nodes = (0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 0.9)
-    ours, exact = (tsm.solve(graded(*given), T) for given in ((nodes,), ((0.5,), "exact")))
-    arc, line = ours.axis_line("cantilever", -1)
+    mixed, exact = (tsm.solve(graded(*given), T) for given in ((nodes,), ((0.5,), "exact")))
+    arc, line = mixed.axis_line("cantilever", -1)
     arc_exact, line_exact = exact.axis_line("cantilever", -1, points_per_element=400)
     assert {0.0, *nodes, 1.0} <= set(arc.round(12).tolist())
     for own, other in zip(line.T, line_exact.T, strict=True):
         assert np.abs(own - np.interp(arc, arc_exact, other)).max() <= 1e-3
-    assert ours.stations("cantilever", -1).arc[:, 1].tolist() == pytest.approx([*nodes, 1.0])
+    assert mixed.stations("cantilever", -1).arc[:, 1].tolist() == pytest.approx([*nodes, 1.0])

@@ -250,16 +250,16 @@ def test_few_steps_do_not_jump_to_another_equilibrium(height, path, count):
 def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path, stated):
     """At the slip-off no dead load in place of the contact has an equilibrium nearby; exact elements jump to the same energy."""
     given = {"section": square(height)}
-    ours, exact = (
+    mixed, exact = (
         tsm.solve(structure, steps(50))
         for structure in (cantilever(path, elements=10, element="mixed", **given), cantilever(path, **given))
     )
-    slips = [next(e for e in r.events if e.kind is tsm.EventKind.SLIP_OFF) for r in (ours, exact)]
+    slips = [next(e for e in r.events if e.kind is tsm.EventKind.SLIP_OFF) for r in (mixed, exact)]
     assert slips[0].load_parameter == pytest.approx(slips[1].load_parameter, abs=1e-5)
     error = abs(slips[0].released / slips[1].released - 1)
     assert error <= 1e-5
     stated("sliding.released", error, bound=True)
-    assert ours.strain_energy[-1] <= 1e-12 * slips[0].released
+    assert mixed.strain_energy[-1] <= 1e-12 * slips[0].released
 
 
 def error_on_ks(elements, *, shear=1.0, stretch=1.0):

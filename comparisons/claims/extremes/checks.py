@@ -69,9 +69,9 @@ class Against:
                 allowed=allowed.error,
                 why=f"it went on where the {self.name} stopped: {other.status}: {other.message}",
             )
-        ours = in_units_of(beam, case.scene.beams[0], own)
-        theirs = in_units_of(beam, beam, other)
-        error = max(difference(ours, theirs, self.case.scene, quantity) for quantity in COMPARED)
+        answer = in_units_of(beam, case.scene.beams[0], own)
+        partner = in_units_of(beam, beam, other)
+        error = max(difference(answer, partner, self.case.scene, quantity) for quantity in COMPARED)
         return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
 
 

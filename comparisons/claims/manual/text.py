@@ -32,7 +32,7 @@ def markdown(cases: Sequence[Case]) -> str:
 
 
 def _overview(cases: Sequence[Case]) -> Iterator[str]:
-    yield "| case | model | quantity of the largest error | exact | ours | error | tolerance | verdict |"
+    yield "| case | model | quantity of the largest error | exact | computed | error | tolerance | verdict |"
     yield RULE
     for case in cases:
         for item in case.judgements:
@@ -77,8 +77,8 @@ def _section(case: Case) -> Iterator[str]:
     yield _row(["quantity", "exact", *(item.claim.name for item in items)])
     yield "|" + "---|" * (2 + len(items))
     for k, quantity in enumerate(problem.quantities):
-        ours = (f"{item.values[k]:.9g} ({item.findings[k].error:.1e})" for item in items)
-        yield _row([quantity.name, f"{quantity.exact:.12g}", *ours])
+        computed = (f"{item.values[k]:.9g} ({item.findings[k].error:.1e})" for item in items)
+        yield _row([quantity.name, f"{quantity.exact:.12g}", *computed])
     yield _row(["tolerance", "", *(f"{item.claim.allowance.error:.2g}" for item in items)])
     yield _row(["verdict", "", *(_verdict(item) for item in items)])
     yield _row(["seconds", "", *(f"{item.seconds:.2f}" for item in items)])

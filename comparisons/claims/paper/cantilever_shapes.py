@@ -107,15 +107,15 @@ def _lift(scene: Scene, start: float, tried: tuple[Formulation, ...]) -> tuple[L
         EA=local.beam.EA, GA=local.beam.GA, EI=local.beam.EI, length=local.beam.length,
     )  # fmt: skip
     steps = min(len(beams.load_parameter), len(rod.load_parameter))
-    ours, other = beams.contacts[pair], rod.contacts[pair]
-    closed = np.isfinite(ours.arc_position[:steps]) & np.isfinite(other.arc_position[:steps])
+    beam_contact, rod_contact = beams.contacts[pair], rod.contacts[pair]
+    closed = np.isfinite(beam_contact.arc_position[:steps]) & np.isfinite(rod_contact.arc_position[:steps])
     lift = Lift(
         start=start,
         displacement=travel * beams.load_parameter[:steps][closed],
-        force=ours.force[:steps][closed],
-        rod_force=other.force[:steps][closed],
-        arc=ours.arc_position[:steps][closed],
-        rod_arc=other.arc_position[:steps][closed],
+        force=beam_contact.force[:steps][closed],
+        rod_force=rod_contact.force[:steps][closed],
+        arc=beam_contact.arc_position[:steps][closed],
+        rod_arc=rod_contact.arc_position[:steps][closed],
         slip_off={elements: travel * run.contacts[pair].slip_off for elements, run in runs.items()},
         rod_slip_off=travel * exact.slip_off,
         reached={one.element: travel * _reached(scene, one.element) for one in tried},

@@ -96,12 +96,12 @@ def plot_histories(found: DoubleBeam, *paths: Path) -> None:
     for pair in PAIRS:
         color, dashes = STYLES[pair]
         history = found.histories[pair]
-        for axes, ours, exact in (
+        for axes, beams, exact in (
             (forces, history.force, history.exact_force),
             (places, history.arc, history.exact_arc),
         ):
             axes.plot(found.depth, exact, color="0.7", linewidth=5.0, label="exact rods")
-            axes.plot(found.depth, ours, color=color, linestyle=dashes, linewidth=1.6, label=NAMES[pair])
+            axes.plot(found.depth, beams, color=color, linestyle=dashes, linewidth=1.6, label=NAMES[pair])
     _mark_events(found, forces, places)
     beam = found.scene.beams[0]
     for node in np.linspace(0.0, beam.length, beam.elements + 1)[-4:]:

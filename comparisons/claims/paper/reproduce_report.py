@@ -99,12 +99,12 @@ def _double_beam(found: DoubleBeam) -> Section:
 
 def _pair_tracks(found: DoubleBeam, pair: str) -> Iterator[Track]:
     one = found.histories[pair]
-    for title, unit, ours, exact in (
+    for title, unit, beams, exact in (
         ("force", "N", one.force, one.exact_force),
         ("arc position", "m", one.arc, one.exact_arc),
     ):
-        if np.isfinite(ours).any():
-            yield Track(title=f"{title}, {NAMES[pair]}", unit=unit, values={BEAMS: ours, RODS: exact})
+        if np.isfinite(beams).any():
+            yield Track(title=f"{title}, {NAMES[pair]}", unit=unit, values={BEAMS: beams, RODS: exact})
 
 
 def _scenes(found: Findings) -> list[Scene]:

@@ -105,7 +105,7 @@ def _tip_row(strip: "Strip", load: float) -> Row:
     return _row(
         f"tip load {load:g} EI/L^2",
         strip,
-        ours=float(np.hypot(*u)),
+        fem_reference=float(np.hypot(*u)),
         calculix=float(np.hypot(*other)),
         difference=float(np.hypot(*(other - u)) / np.hypot(*u)),
     )
@@ -117,13 +117,13 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> list[Row]:
     ``largest`` is the largest difference up to where it came.
     """
     answer = press(problem, steps, penalty)
-    theirs = np.hypot(*answer.force.T)
-    ours = contact_forces(problem, steps, max(theirs.size, round(steps * SHOWN[-1])))
-    largest = float(np.abs(theirs / ours[: theirs.size] - 1.0).max())
+    calculix = np.hypot(*answer.force.T)
+    solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
+    largest = float(np.abs(calculix / solid[: calculix.size] - 1.0).max())
     rows = []
     for t in SHOWN:
         k = round(steps * t) - 1
-        there = k < theirs.size
+        there = k < calculix.size
         rows.append(
             _row(
                 "pin on the face",
@@ -132,9 +132,9 @@ def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> list[Row]:
                 step=1 / steps,
                 load_parameter=t,
                 reached=float(answer.load_parameter[-1]),
-                ours=float(ours[k]),
-                calculix=float(theirs[k]) if there else None,
-                difference=float(theirs[k] / ours[k] - 1.0) if there else None,
+                fem_reference=float(solid[k]),
+                calculix=float(calculix[k]) if there else None,
+                difference=float(calculix[k] / solid[k] - 1.0) if there else None,
                 largest=largest,
                 message="" if there and t != SHOWN[-1] else answer.stopped,
             )
@@ -148,7 +148,7 @@ def _row(case: str, strip: "Strip", **values: float | str | None) -> Row:
         "step": None,
         "load_parameter": 1.0,
         "reached": 1.0,
-        "ours": None,
+        "fem_reference": None,
         "calculix": None,
     }
     start: Row = {"case": case, "clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}

@@ -43,8 +43,8 @@ def write_many(path: str, keys: int) -> list[str]:
     with Store(Path(path)) as store:
         while True:
             claim = store.claim([f"{n:05}" for n in range(keys)], limit=3)
-            for key in claim.mine:
+            for key in claim.claimed:
                 store.record(key, case, nothing)
-            own += claim.mine
-            if not claim.mine and not claim.taken:
+            own += claim.claimed
+            if not claim.claimed and not claim.taken:
                 return own

@@ -56,15 +56,15 @@ def test_a_result_comes_back_as_it_was(tmp_path: Path, measured: Measurement) ->
 
 def test_two_runs_never_hold_the_same_case(tmp_path: Path, measured: Measurement) -> None:
     with Store(tmp_path / "a.sqlite") as one, Store(tmp_path / "a.sqlite") as other:
-        assert one.claim("abc", limit=2).mine == ["a", "b"]
+        assert one.claim("abc", limit=2).claimed == ["a", "b"]
         found = other.claim("abc", limit=3)
-        assert (found.mine, found.taken, found.done) == (["c"], ["a", "b"], {})
+        assert (found.claimed, found.taken, found.done) == (["c"], ["a", "b"], {})
         one.record("a", CASE, measured)
         found = other.claim("abc", limit=3)
-        assert (found.mine, found.taken, found.done) == (["c"], ["b"], {"a": "COMPLETED"})
-        assert other.claim("a", limit=1, again=frozenset("a")).mine == ["a"]
+        assert (found.claimed, found.taken, found.done) == (["c"], ["b"], {"a": "COMPLETED"})
+        assert other.claim("a", limit=1, again=frozenset("a")).claimed == ["a"]
         one.__exit__(None, None, None)
-        assert other.claim("b", limit=1).mine == ["b"]
+        assert other.claim("b", limit=1).claimed == ["b"]
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def test_claims_of_the_dead_are_free(
             (who.host, who.pid, who.born, time() + heard, one._run),
         )
         found = other.claim("a", limit=1)
-        assert (found.mine, found.taken) == (["a"], []) if free else ([], ["a"])
+        assert (found.claimed, found.taken) == (["a"], []) if free else ([], ["a"])
 
 
 def test_a_settled_result_stands_and_a_lost_one_does_not(tmp_path: Path, measured: Measurement) -> None:
@@ -244,7 +244,7 @@ def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, me
     with Store(path) as store:
         assert store.statuses() == {}
         assert store.older({CASE.key: CASE}) == {CASE.key: ("0.1.0", "COMPLETED")}
-        assert store.claim([CASE.key], limit=1).mine == [CASE.key]
+        assert store.claim([CASE.key], limit=1).claimed == [CASE.key]
         store.record(CASE.key, CASE, measured)
         assert store.statuses() == {CASE.key: "COMPLETED"}
     found = {result.version: result.measurement.response.cutbacks for result in read_results(path)}

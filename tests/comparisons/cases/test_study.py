@@ -217,12 +217,12 @@ def test_a_study_from_file_to_table(tmp_path: Path, capsys: pytest.CaptureFixtur
     path = tmp_path / "study.toml"
     runs = 'elements = [2, 3]\nscene.load_parameters = 2\n[[run]]\nmodel = "rod"\nscene.load_parameters = 2\n'
     path.write_text(HEAD + "repeats = 1\n" + RUN + runs)
-    for told in ("0 of 3 cases done", ""):
+    for reported in ("0 of 3 cases done", ""):
         assert main(["study", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 0
         out, err = capsys.readouterr()
         file = tmp_path / "out" / "mine.sqlite"
         assert out.splitlines()[:2] == ["mine: 3 cases: COMPLETED 3", f"file: {file}"]
-        assert err.startswith(told)
+        assert err.startswith(reported)
     assert [item.name for item in file.parent.iterdir()] == ["mine.sqlite"]
     assert main(["results", str(file)]) == 0
     *table, blank, of = capsys.readouterr().out.splitlines()

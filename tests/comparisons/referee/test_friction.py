@@ -220,11 +220,11 @@ def test_the_exact_rods_of_any_scene_state_their_friction() -> None:
     assert rods.completed, rods.message
     np.testing.assert_allclose(rods.work, elements.work, rtol=1e-9)
     for pair, history in rods.contacts.items():
-        mine, other = history.friction, elements.contacts[pair].friction
-        np.testing.assert_allclose(mine.tangential, other.tangential, rtol=1e-9)
-        np.testing.assert_allclose(mine.normal, other.normal, rtol=1e-9)
-        np.testing.assert_allclose(mine.dissipated, other.dissipated, rtol=1e-8)
-        np.testing.assert_array_equal(mine.slip, other.slip)
+        rods_friction, elements_friction = history.friction, elements.contacts[pair].friction
+        np.testing.assert_allclose(rods_friction.tangential, elements_friction.tangential, rtol=1e-9)
+        np.testing.assert_allclose(rods_friction.normal, elements_friction.normal, rtol=1e-9)
+        np.testing.assert_allclose(rods_friction.dissipated, elements_friction.dissipated, rtol=1e-8)
+        np.testing.assert_array_equal(rods_friction.slip, elements_friction.slip)
 
 
 @pytest.mark.slow

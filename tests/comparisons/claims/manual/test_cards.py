@@ -109,9 +109,9 @@ def test_the_command_writes_cards_and_solves_nothing(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["manual", "--cards", "cards", "--only", "locking", "roll-up"]) == 0
-    told = capsys.readouterr()
-    assert told.out == "2 cards and their schema in cards\n"
-    assert told.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
+    reported = capsys.readouterr()
+    assert reported.out == "2 cards and their schema in cards\n"
+    assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cards"]
     assert sorted(path.name for path in Path("cards").iterdir()) == [
         "card.schema.json",

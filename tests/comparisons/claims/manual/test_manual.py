@@ -181,12 +181,12 @@ def test_a_wrong_value_ends_the_command_with_status_1(tmp_path: Path, monkeypatc
     monkeypatch.setattr(manual_problems, "PROBLEMS", {"dead-load": spoilt(dead_load), "roll-up": roll_up})
     junit = tmp_path / "junit.xml"
     assert main(["manual", "--out", str(tmp_path / "m"), "--junit", str(junit), "--quiet"]) == 1
-    told = capsys.readouterr()
-    assert "2 cases, 6 answers, 3 beyond their tolerance" in told.out
-    assert str(junit) in told.out
-    for line in told.err.splitlines():
+    reported = capsys.readouterr()
+    assert "2 cases, 6 answers, 3 beyond their tolerance" in reported.out
+    assert str(junit) in reported.out
+    for line in reported.err.splitlines():
         assert re.fullmatch(r"crossval: dead-load, tsm .*: v/L .*, exact 0\.304\d*, error .* > .*", line)
-    assert len(told.err.splitlines()) == 3
+    assert len(reported.err.splitlines()) == 3
     root = ET.parse(junit).getroot()  # noqa: S314 our own file
     assert root.get("failures") == "3"
     assert len(root.findall("testcase")) == 6
@@ -196,9 +196,9 @@ def test_a_wrong_value_ends_the_command_with_status_1(tmp_path: Path, monkeypatc
 def test_what_passes_ends_with_status_0(tmp_path: Path, capsys):
     names = ["dead-load", "elastica-identity"]
     assert main(["manual", "--out", str(tmp_path), "--only", *names]) == 0
-    told = capsys.readouterr()
-    assert "2 cases, 5 answers, 0 beyond their tolerance" in told.out
-    assert [line.split(",")[0] for line in told.err.splitlines()] == [
+    reported = capsys.readouterr()
+    assert "2 cases, 5 answers, 0 beyond their tolerance" in reported.out
+    assert [line.split(",")[0] for line in reported.err.splitlines()] == [
         "dead-load: passed",
         "elastica-identity: passed",
     ]

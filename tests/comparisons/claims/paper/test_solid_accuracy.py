@@ -115,11 +115,11 @@ def test_solid_of_the_rods_law_is_the_rod_at_every_load_parameter(name: str, sta
         fem_reference.solve(_biot(scene, mesh), t).contacts["pin->cantilever"] for mesh in ((50, 2), (100, 4))
     )
     found = []
-    for ours, finer, exact, allowed in (
+    for coarser, finer, exact, allowed in (
         (coarse.force, fine.force, rod.force, 1e-3),
         (coarse.arc_position, fine.arc_position, rod.arc_position, 5e-4),
     ):
-        limit = finer + (finer - ours) / 3
+        limit = finer + (finer - coarser) / 3
         found.append(np.abs(limit / exact - 1)[t > 0.1].max())
         assert found[-1] <= allowed
     stated(f"solid.rods-law-{name}", *found)

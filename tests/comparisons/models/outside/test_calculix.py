@@ -175,8 +175,8 @@ def test_pin_on_the_face_up_to_a_tenth() -> None:
 @pytest.mark.slow
 @pytest.mark.long
 def test_study_is_within_its_bars(stated) -> None:
-    told: list[str] = []
-    rows = peers(told.append)
+    reported: list[str] = []
+    rows = peers(reported.append)
     tips = [row for row in rows if row["case"].startswith("tip load")]
     assert len(tips) == 8
     assert all(row["difference"] <= 1e-3 for row in tips)
@@ -188,13 +188,13 @@ def test_study_is_within_its_bars(stated) -> None:
     for row in pins:
         assert row["message"] or row["calculix"]
         assert row["largest"] <= 1e-3
-    assert len(told) == 12
+    assert len(reported) == 12
     for clamp in ("rod", "full"):
         for mesh in ("50x2", "100x4"):
             found = [row["difference"] for row in tips if (row["clamp"], row["mesh"]) == (clamp, mesh)]
             stated(f"calculix.{clamp}-{mesh}", *found)
     for step in reached:
-        mine = [row for row in pins if row["step"] == step]
-        there = [row["difference"] for row in mine if row["difference"] is not None]
-        stated(f"calculix.pin-{step:g}", mine[0]["reached"], *there)
-        stated(f"calculix.largest-{step:g}", mine[0]["largest"])
+        of_step = [row for row in pins if row["step"] == step]
+        there = [row["difference"] for row in of_step if row["difference"] is not None]
+        stated(f"calculix.pin-{step:g}", of_step[0]["reached"], *there)
+        stated(f"calculix.largest-{step:g}", of_step[0]["largest"])
