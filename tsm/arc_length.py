@@ -159,7 +159,7 @@ class _Path:
         start = self.newton.solve(initial_state(self.model))
         if not self.model.rubbed:
             return start
-        state = regripped(self.newton, start.state, self.newton.assembler.drive(0.0))
+        state = regripped(self.newton, start.state, self.newton.assembler.drive(0.0), start.state)
         if isinstance(state, Status):
             return replace(start, status=state)
         return replace(start, state=state, system=self.newton.assembler.linearise(state))

@@ -85,8 +85,10 @@ def slip_rates(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> dict[i
     return {} if by is None else {k: slip * slip_rate(newton, state, by, k) for k, slip in slipping}
 
 
-def regripped(newton: Newton, state: State, drive: Drive) -> State | Status:
+def regripped(newton: Newton, state: State, drive: Drive, last: State) -> State | Status:
     """State in equilibrium whose contacts with friction slip or stick as the load parameter grows.
+
+    Where a slip ends, its rate is zero, and the force of the stick that follows moves along the cone: its rate out of the cone is round-off.
 
     Parameters
     ----------
@@ -96,6 +98,8 @@ def regripped(newton: Newton, state: State, drive: Drive) -> State | Status:
         Configuration in equilibrium.
     drive : Drive
         What changes.
+    last : State
+        The same configuration before its contacts changed.
 
     Returns
     -------
@@ -106,14 +110,17 @@ def regripped(newton: Newton, state: State, drive: Drive) -> State | Status:
     here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
     choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
     stiff = max(beam.section.EA for beam in newton.model.structure.beams)
-    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where nothing else is admissible
+    # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing else is admissible
     flat = _FLAT * newton.model.force_scale
+    slipped = {k for k, grip in grips(last) if grip.slip}
+    ended = {k for k, grip in grips(state) if not grip.slip and k in slipped}
     for least in (flat, flat + _STILL * stiff):
+        leaving = {k: flat + _STILL * stiff if k in ended else least for k in here}
         for chosen in islice(product(*choices), _MOST):
-            if not _admissible(newton, _with(state, chosen), drive, here, least):
+            if not _admissible(newton, _with(state, chosen), drive, here, leaving):
                 continue
             for other in _reversed(newton.model, chosen, here):
-                if _admissible(newton, _with(state, other), drive, here, least):
+                if _admissible(newton, _with(state, other), drive, here, leaving):
                     return Status.TWO_SLIPS
             return _with(state, chosen)
     return Status.JAMMED
@@ -175,8 +182,10 @@ def _reversed(
             yield (*chosen[:n], (k, Grip(-grip.slip, None)), *chosen[n + 1 :])
 
 
-def _admissible(newton: Newton, state: State, drive: Drive, here: dict[int, Traction], flat: float) -> bool:
-    """Whether the structure can go on with its contacts as they are stated; a force may leave its cone at the rate `flat`."""
+def _admissible(
+    newton: Newton, state: State, drive: Drive, here: dict[int, Traction], leaving: dict[int, float]
+) -> bool:
+    """Whether the structure can go on with its contacts as they are stated; forces may leave their cones at the rates `leaving`."""
     model = newton.model
     by = rates(newton, state, newton.assembler.linearise(state), drive)
     if by is None:
@@ -189,7 +198,7 @@ def _admissible(newton: Newton, state: State, drive: Drive, here: dict[int, Trac
                 return False
         elif not _idle(model, here[k]) and cone(model, state, by.system, k) <= _EDGE * model.force_scale:
             slipping = _with(state, ((k, Grip(here[k].way, None)),))
-            if here[k].way * _row_rate(newton, slipping, by, k) > flat:
+            if here[k].way * _row_rate(newton, slipping, by, k) > leaving[k]:
                 return False
     return True
 

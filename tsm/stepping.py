@@ -172,7 +172,7 @@ class Stepper:
             state = self.newton.prescribed(here.state, math.nextafter(t, math.inf))
             here = replace(here, state=state, system=self.newton.assembler.linearise(state))
         self.turned = here.state.load_parameter
-        gripped = self._gripped(here) if self.model.rubbed else here
+        gripped = self._gripped(here, here.state) if self.model.rubbed else here
         if isinstance(gripped, Status):
             return gripped
         self.track.history = []
@@ -180,10 +180,10 @@ class Stepper:
         self.margins = self._measure(self.accepted)
         return Status.CONVERGED
 
-    def _gripped(self, equilibrium: Equilibrium) -> Equilibrium | Status:
-        """Equilibrium whose contacts with friction slip or stick from here; a change is an event."""
-        before = dict(grips(equilibrium.state))
-        state = regripped(self.newton, equilibrium.state, self._drive(equilibrium.state.load_parameter))
+    def _gripped(self, equilibrium: Equilibrium, last: State) -> Equilibrium | Status:
+        """Equilibrium whose contacts with friction slip or stick from here, after a state `last`; a change is an event."""
+        before, drive = dict(grips(equilibrium.state)), self._drive(equilibrium.state.load_parameter)
+        state = regripped(self.newton, equilibrium.state, drive, last)
         if isinstance(state, Status):
             return state
         if state.touches == equilibrium.state.touches:
@@ -417,7 +417,7 @@ class Stepper:
             self.log.note_release(began - energy)
         if jump and grips(state):
             return Status.REST_UNKNOWN
-        gripped = self._gripped(equilibrium)
+        gripped = self._gripped(equilibrium, event.state)
         if isinstance(gripped, Status):
             return gripped
         self.track.history = []

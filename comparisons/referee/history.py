@@ -24,6 +24,8 @@ _ITERATIONS = 60
 """Largest number of steps of a root."""
 _FIRST = 1e-4
 """First step of a secant, in load parameters."""
+_BEFORE = 0.01
+"""Part of a slip's interval of load parameters before its end at which its sign is compared with the slip rate."""
 _FEET = 40
 """Number of corrections of a place on a face whose height tapers."""
 _CLOSE = 1e-13
@@ -169,13 +171,26 @@ class History:
             return self._root(spec, number, self.grip(spec, number - 1))
         found, reasons = [], []
         for sign in (1, -1):
+            own = Grip(friction=spec.friction, slip=sign)
             try:
-                found.append(self._root(spec, number, Grip(friction=spec.friction, slip=sign)))
+                begin = self._root(spec, number, own)
+                found.append((not self._slipped(spec, number, own, begin), begin))
             except UnknownFrictionError as error:
                 reasons.append(error)
         if not found:
             raise reasons[0]
-        return min(found, key=lambda item: abs(item.load_parameter - phase.begin))
+        # at a corner of a pin's path a slip of either sign can end: the sign is the one of the slip rate before it
+        return min(found, key=lambda item: (item[0], abs(item[1].load_parameter - phase.begin)))[1]
+
+    def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Begin) -> bool:
+        """Whether the slip rate before the beginning of a phase has the sign of the slip `own`."""
+        before = self.phases[spec.pair][number - 1].begin
+        t = begin.load_parameter - _BEFORE * (begin.load_parameter - before)
+        state = {**self._around(spec, t), spec.pair: own}
+        now = reach(self.scene, begin.solution, t, state)
+        if now.status is not SearchStatus.FOUND:
+            return False
+        return own.slip * slip_rate(now, now.layout.touch(spec.pair), rates(self.scene, now)) > 0.0
 
     def _root(self, spec: ContactSpec, number: int, own: Grip) -> Begin:
         """Find the load parameter at which the state `own` of a contact ends."""

@@ -163,9 +163,14 @@ def _unpaid(history: History, k: int, exact: Equilibrium, tolerance: float) -> I
         return
     spent = sum(float(item.dissipated[k]) for item in rubbing)
     missing = float(response.work[k]) - spent - exact.strain_energy
-    largest = max(abs(float(response.work[k])), exact.strain_energy, spent, _least_energy(history.scene))
+    largest = max(_most_work(response, k), exact.strain_energy, spent, _least_energy(history.scene))
     if abs(missing) > tolerance * largest + _crept(history, k, exact):
         yield f"the work is not strain energy and dissipation at load parameter {t:.6g}, off by {missing / largest:.2g}"
+
+
+def _most_work(response: Response, k: int) -> float:
+    """Largest work up to load parameter number k, to which the error of a sum over the path is relative; 0 if no work is stated."""
+    return 0.0 if response.work is None else float(np.abs(response.work[: k + 1]).max())
 
 
 def _crept(history: History, k: int, exact: Equilibrium) -> float:
@@ -198,10 +203,9 @@ def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) ->
     """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
     response = history.response
     stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
-    work = 0.0 if response.work is None else abs(float(response.work[k]))
     # where the work is not stated, it is at least the dissipation
     whole = sum(float(item.dissipated[k]) for item in stated.values())
-    largest = max(work, whole, exact.strain_energy, _least_energy(history.scene))
+    largest = max(_most_work(response, k), whole, exact.strain_energy, _least_energy(history.scene))
     for pair, own in dissipated(history, k, exact).items():
         if pair in stated:
             spent = stated[pair].dissipated

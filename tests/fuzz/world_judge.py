@@ -28,6 +28,8 @@ ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": math.inf}
 """Largest distance from the exact equilibrium in forces and places, where it is less than the certificate's own."""
 NOTHING = 1e-3
 """Force below which nothing happens, over EI/L^2: Newton's methods end at 1e-10."""
+NEWTON = 1e-10
+"""Force that Newton's method leaves, over the largest EI/L^2."""
 BETWEEN = 2e-2
 """Largest difference between `exact` and `mixed` at the last load parameter: twice what each may be off."""
 INSIDE = {"exact": 1e-9, "mixed": 1e-4, "solid": math.inf}
@@ -229,7 +231,8 @@ def apart(scene: Scene, one: Row, other: Row) -> float:
     ]
     forces = [np.hypot(*item.force[-1]) for answer in (a, b) for item in answer.supports.values()]
     forces += [item.force[-1] for answer in (a, b) for item in answer.contacts.values()]
-    size = max(NOTHING * least_force(scene), *map(float, forces))
+    left = 2.0 * NEWTON * max(beam.EI / beam.length**2 for beam in scene.beams)
+    size = max(NOTHING * least_force(scene), left / SAME, *map(float, forces))
     found += [
         abs(float(a.contacts[pair].force[-1] - b.contacts[pair].force[-1])) / size for pair in a.contacts
     ]

@@ -18,7 +18,7 @@ from comparisons.referee.equations import assemble
 from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out
-from comparisons.referee.phases import OPEN
+from comparisons.referee.phases import OPEN, UNKNOWN
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import stated
@@ -108,6 +108,21 @@ def test_the_places_of_stick_are_the_tabulated_ones() -> None:
     assert [phase.slip for phase in history.phases[PAIR]] == [-1, 0, 1]
     assert history.begin(PAIR, 1).load_parameter == pytest.approx(0.6204977, abs=5e-8)
     assert history.begin(PAIR, 2).load_parameter == pytest.approx(0.6832873, abs=5e-8)
+
+
+def test_the_sign_of_a_slip_that_ends_at_a_corner() -> None:
+    """A touch, a slip with the pin to the clamp, and one back from the corner of its path, all before the only load parameter."""
+    scene = load_scene("hysteresis")
+    pin = PinSpec(name="pin", path=((80.0, -2.0), (60.0, 18.0), (80.0, 20.0)))
+    scene = replace(scene, load_parameters=1, pins=(pin,))
+    response = answer(scene)
+    history = History(response, scene)
+    assert [phase.slip for phase in history.phases[PAIR]] == [OPEN, UNKNOWN, 0, 1]
+    begin = history.begin(PAIR, 2)
+    assert begin.load_parameter == pytest.approx(scene.pins[0].corners[0], abs=1e-12)
+    assert begin.solution.layout.grips[PAIR].slip == -1
+    found = certify(response, scene)
+    assert found.certified, found.line()
 
 
 @pytest.mark.parametrize(
