@@ -151,9 +151,14 @@ def compare(
 
     Raises
     ------
+    ModelError
+        If the exact rods cannot state the scene; nothing is computed.
     OutputError
         If `folder` cannot be written; nothing is computed.
     """
+    refused = find(ROD.model).refusal(scene)
+    if refused is not None:
+        raise ModelError(f"compare: errors are measured against the {ROD.label}; {refused}")
     folder = writable_folder(folder)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)

@@ -33,7 +33,7 @@ class Pin:
     name
         Name of the pin, which contacts refer to.
     path
-        At least two positions of the centre [m]. The load parameter t in [0, 1] is the fraction of the path's length.
+        Positions of the centre [m], one where the pin rests. The load parameter t in [0, 1] is the fraction of the path's length.
     radius
         Radius [m]; zero for a sharp pin.
     onward
@@ -42,7 +42,7 @@ class Pin:
     Raises
     ------
     ValueError
-        If a point is not finite, the path has no length or the radius is negative.
+        If there is no point, a point is not finite, several points have no distance or the radius is negative.
     """
 
     name: str
@@ -57,9 +57,10 @@ class Pin:
         for point in (point for points in self.onward for point in points):
             require_point(owner, "onward", point)
         whole = (*self.path, *(point for points in self.onward for point in points))
-        least = 1 if any(self.onward) else 2
-        require(len(self.path) >= least, owner, "path", self.path, "must have at least two points")
-        require(len(set(whole)) > 1, owner, "path", self.path, "must have a positive length")
+        require(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
+        require(
+            len(whole) == 1 or len(set(whole)) > 1, owner, "path", self.path, "must have a positive length"
+        )
         finite = isfinite(self.radius) and self.radius >= 0
         require(finite, owner, "radius", self.radius, "must be finite and not negative")
 

@@ -117,10 +117,10 @@ class Pin:
     name : str
         Unique name.
     path : sequence of tuple of float
-        Corners of a polyline [length], traversed at constant speed while the load parameter goes from 0 to 1.
+        Corners of a polyline [length], traversed at constant speed while the load parameter goes from 0 to 1; one point where the
+        pin rests.
     onward : sequence of sequence of tuple of float
-        Points that the pin moves to in each of the stages after the first one; none where it rests. A pin that rests in the first
-        stage has a path of one point.
+        Points that the pin moves to in each of the stages after the first one; none where it rests.
     """
 
     name: str
@@ -128,8 +128,8 @@ class Pin:
     onward: tuple[tuple[Point, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        owner, least = f"Pin({self.name})", 1 if any(self.onward) else 2
-        _check(len(self.path) >= least, owner, "path", self.path, "must have at least two points")
+        owner = f"Pin({self.name})"
+        _check(len(self.path) > 0, owner, "path", self.path, "must have at least one point")
         for field, points in (("path", self.path), *(("onward", points) for points in self.onward)):
             _check(
                 all(len(point) == 2 and _finite(*point) for point in points),

@@ -30,8 +30,10 @@ class Rod(Model):
         return Options()
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return why the rods cannot state `scene`; None if they can."""
-        return self.unstated(scene)
+        """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
+        from comparisons.models.translate import beams_refusal
+
+        return self.unstated(scene) or beams_refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""

@@ -65,7 +65,9 @@ class Tsm(Model):
 
     def refusal(self, scene: Scene) -> str | None:
         """Return why beams cannot state `scene`; None if they can."""
-        return self.unstated(scene)
+        from comparisons.models.translate import beams_refusal
+
+        return beams_refusal(scene)
 
     def solve(self, scene: Scene, options: Options, watch: Watch) -> Response:
         """Return the response to `scene`, not yet checked."""

@@ -211,7 +211,14 @@ class History:
         if self._jumps(spec, phase.begin):
             margin(phase.begin)
             return Begin(load_parameter=phase.begin, solution=now)
-        begin = _secant(margin, phase) if math.isfinite(phase.stated) else _bisected(margin, phase, spec.pair)
+        if math.isfinite(phase.stated):
+            begin = _secant(margin, phase)
+        elif own.friction and own.slip and self._jumps(spec, phase.low) and margin(phase.low) < 0.0:
+            begin = (
+                phase.low
+            )  # the slip rate changes its sign by a jump, and the margin has the rate behind it
+        else:
+            begin = _bisected(margin, phase, spec.pair)
         return Begin(load_parameter=begin, solution=now)
 
     def _jumps(self, spec: ContactSpec, t: float) -> bool:

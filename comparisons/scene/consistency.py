@@ -37,7 +37,6 @@ def scene_rules(scene: Scene) -> Iterable[Iterator[FieldError]]:
         joint_rules(scene, names),
         _weight(scene),
         _idle_pins(scene, names),
-        _resting_pins(scene),
         _cause(scene),
     )
 
@@ -71,19 +70,11 @@ def _idle_pins(scene: Scene, names: Names) -> Iterator[FieldError]:
                 yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
 
 
-def _resting_pins(scene: Scene) -> Iterator[FieldError]:
-    for i, pin in enumerate(scene.pins):
-        with suppress(Unjudged):
-            if len(set(pin.points)) == 1:
-                yield FieldError(
-                    f"pin[{i}].displacement", pin.displacement, "must not be zero: the pin never moves"
-                )
-
-
 def _cause(scene: Scene) -> Iterator[FieldError]:
-    acting = (scene.pins, scene.loads, scene.gravity, scene.stages)
-    if scene.beams and not (any(acting) or any(support.moves for support in scene.supports)):
-        yield FieldError("pin", MISSING, "give a pin, a load or a support that moves: nothing happens")
+    moving = any(pin.moving for pin in scene.pins) or any(support.moves for support in scene.supports)
+    if scene.beams and not (moving or scene.loads or scene.gravity or scene.stages):
+        key, value = ("pin[0].displacement", scene.pins[0].displacement) if scene.pins else ("pin", MISSING)
+        yield FieldError(key, value, "give a load, or a pin or a support that moves: nothing happens")
 
 
 def _weight(scene: Scene) -> Iterator[FieldError]:

@@ -61,7 +61,7 @@ class PinSpec(Record):
     name : str
         Letters, digits, ``-`` and ``_``.
     start, displacement : (float, float)
-        A straight path [length].
+        A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle.
     path : tuple of (float, float)
         A polyline [length], instead of `start` and `displacement`.
     radius : float, optional
@@ -110,6 +110,11 @@ class PinSpec(Record):
         """The points of the path through all stages."""
         ways = (pair for path in self._paths for pair in pairwise(path.points))
         return (self._paths[0].points[0], *(b for a, b in ways if a != b))
+
+    @property
+    def moving(self) -> bool:
+        """Whether the pin moves in any stage; otherwise it is an obstacle at rest."""
+        return len(self.points) > 1
 
     @cached_property
     def corners(self) -> tuple[float, ...]:

@@ -34,8 +34,8 @@ def by_name(records: Iterable[Named]) -> ByName[Named]:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names as they stand in a file, separated by commas."""
-    return ", ".join(shown(name) for name in names)
+    """Return names as they stand in a file, separated by commas; "there is none" if there are none."""
+    return ", ".join(shown(name) for name in names) or "there is none"
 
 
 class Names:

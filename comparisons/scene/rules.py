@@ -154,7 +154,7 @@ def turn(value: object) -> float:
     """Accept the angle by which an arc turns, less than a whole turn."""
     result = number(value)
     if not abs(result) < 2.0 * math.pi:
-        raise RuleError("must be less than 2 pi in size, which closes the strip on itself")
+        raise RuleError("must be less than 2 pi in size, an angle in rad")
     return result
 
 

@@ -40,7 +40,7 @@ class PinMove(Record):
 
     def _moves(self) -> Iterator[FieldError]:
         if self.displacement is not None and not any(self.displacement):
-            yield FieldError("displacement", self.displacement, "must not be zero: the pin never moves")
+            yield FieldError("displacement", self.displacement, "must not be zero: the pin does not move")
 
 
 @dataclass(frozen=True, kw_only=True)

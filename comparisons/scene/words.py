@@ -120,7 +120,7 @@ NOT_MODELLED: Final = (
     ),
     Topic(
         title="Other obstacles",
-        answer="other obstacles are not modelled: a beam touches points and round pins, and its ends touch beams; a wall is a stiff beam",
+        answer="other obstacles are not modelled: a beam touches points and round pins, also pins at rest, and its ends touch beams; a wall is a stiff beam",
         words="""
             obstacle obstacles wall walls ground floor plane rigid rigid_body cylinder block die punch
             indenter polygon body bodies
@@ -172,6 +172,7 @@ OTHER_NAMES: Final = {
     "gravity": "g weight self_weight selfweight",
     "clamped": "clamp fixed encastre built_in supports support bc boundary",
     "elements": "number_of_elements n_elements nel element divisions",
+    "part": "between range extent from to start begin x0 x1 s0 s1",
     "start": "from begin node1 p0 p1 x0 origin center centre position coordinates",
     "end": "to node2 p2 stop",
     "material": "law material_law constitutive",
@@ -183,7 +184,6 @@ OTHER_NAMES: Final = {
     "force": "f p fx fy load magnitude value point_load",
     "moment": "m torque couple mz",
     "force_per_length": "q distributed line_load udl distributed_load uniform_load per_length w",
-    "part": "between range extent",
     "stiffness": "k kx ky spring_constant rate_constant",
     "radius": "r diameter d size",
     "path": "points trajectory polyline way",

@@ -110,9 +110,9 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
     apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
     for pin in scene.pins:
         only = "_" if pin is not scene.pins[0] else ""
-        axes.plot(
-            *np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label=f"{only}path of a pin"
-        )
+        path = {"color": "0.5", "linewidth": 0.8, "linestyle": ":"}
+        named = next((one for one in scene.pins if one.moving), None)
+        axes.plot(*np.array(pin.points).T, **path, label="path of a pin" if pin is named else "_")
         places = np.array([pin.position(t) for t in times]).reshape(-1, 2)
         axes.plot(
             *places.T, linestyle="none", marker="*", markersize=9, color="0.2", label=f"{only}pin", zorder=5

@@ -266,7 +266,6 @@ class _Sketch:
         points = np.array(pin.points)
         behind = points[0] - points[1] if len(points) > 1 else -UP
         behind = behind / np.hypot(*behind)
-        (path,) = self.axes.plot(*points.T, ":", color=PIN, linewidth=1.5)
         for stage in map(np.array, pin.stage_points):
             if len(stage) > 1:
                 last = (stage[-1] - stage[-2]) / np.hypot(*(stage[-1] - stage[-2]))
@@ -275,12 +274,15 @@ class _Sketch:
         self._label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
         if pin.radius:
             self.axes.add_patch(Circle(points[0], pin.radius, facecolor=PIN, edgecolor=PIN, alpha=0.35))
-            self.axes.add_patch(Circle(points[-1], pin.radius, fill=False, edgecolor=PIN, linestyle=":"))
+            if pin.moving:
+                self.axes.add_patch(Circle(points[-1], pin.radius, fill=False, edgecolor=PIN, linestyle=":"))
             disc = _line(PIN, marker="o", markersize=9, linestyle="none", alpha=0.5)
             self.legend.setdefault(f"pin of radius {pin.radius:.6g} {self.units[1]}, to scale", disc)
         else:
             self.legend.setdefault("pin, a point", mark)
-        self.legend.setdefault("path of a pin", path)
+        if pin.moving:
+            (path,) = self.axes.plot(*points.T, ":", color=PIN, linewidth=1.5)
+            self.legend.setdefault("path of a pin", path)
 
     def _segments(self, segments: Array, colour: str, width: float) -> None:
         from matplotlib.collections import LineCollection

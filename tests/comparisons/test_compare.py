@@ -189,3 +189,19 @@ def test_discretisation_alone_is_no_other_branch(name: str) -> None:
     coarse = models.solve(scene, "tsm", Options(element="timoshenko", elements=10))
     found = errors(coarse, models.solve(scene, "rod"), scene)["path"]
     assert max(found[name] for name in compared.BRANCH) < compared.APART / 20
+
+
+def test_a_scene_without_exact_rods_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The errors of all models are measured against the exact rods, which follow the path of beams."""
+    leaf = load_scene("tapered-spring")
+    rubbed = replace(
+        leaf, contacts=tuple(replace(one, surface="face", friction=0.2) for one in leaf.contacts)
+    )
+    scene, out = tmp_path / "rubbed.toml", tmp_path / "out"
+    scene.write_text(to_toml(rubbed))
+    assert main(["compare", str(scene), "--out", str(out)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "errors are measured against the exact rod; contact " in line
+    assert not out.exists()

@@ -74,8 +74,8 @@ def test_one_stage_in_two_has_the_same_end():
 def test_mistakes_cost_one_line():
     with pytest.raises(ValueError, match=r"must be a one-dimensional increasing array in \(0, 3\]"):
         fr.solve(staged(), np.array([3.1]))
-    with pytest.raises(ValueError, match=r"path = .*must have at least two points"):
-        fr.Pin(name="p", path=((0.0, 0.0),), onward=((),))
+    with pytest.raises(ValueError, match=r"path = .*must have at least one point"):
+        fr.Pin(name="p", path=())
     with pytest.raises(ValueError, match="stage = -1: must not be negative"):
         fr.EndLoad(strip=STRIP, moment=1.0, stage=-1)
     with pytest.raises(ValueError, match=r"onward = .*must be three finite values"):

@@ -2,9 +2,9 @@
 
 from comparisons.models.translate.to_rod import RodScene, to_rod
 from comparisons.models.translate.to_solid import to_solid
-from comparisons.models.translate.to_structure import to_structure
+from comparisons.models.translate.to_structure import beams_refusal, to_structure
 
-__all__ = ["RodScene", "to_rod", "to_solid", "to_structure"]
+__all__ = ["RodScene", "beams_refusal", "to_rod", "to_solid", "to_structure"]
 
 
 def __dir__() -> list[str]:

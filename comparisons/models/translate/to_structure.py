@@ -35,16 +35,11 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
     from tsm import Hinge, Pin, Structure
     from tsm.elements import ELEMENTS, MIXED
 
-    unknown = unstated(scene, "the tangent stiffness method", BEAMS)
-    if unknown is not None:
-        raise ModelError(unknown)
+    refused = beams_refusal(scene)
+    if refused is not None:
+        raise ModelError(refused)
     if element is not None and element not in ELEMENTS:
         raise ModelError(f"element = {element}: must be one of {', '.join(ELEMENTS)}")
-    for contact in scene.contacts:
-        if contact.friction and _face_slope(scene, contact):
-            raise ModelError(
-                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers"
-            )
     kind = MIXED if element is None else ELEMENTS[element]
     return Structure(
         beams=tuple(_beam(scene, beam, elements, kind) for beam in scene.beams),
@@ -61,6 +56,14 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
         ),
         contacts=tuple(_pair(scene, contact) for contact in scene.contacts),
     )
+
+
+def beams_refusal(scene: Scene) -> str | None:
+    """Return why no element of the tangent stiffness method states `scene`; None if one does."""
+    for contact in scene.contacts:
+        if contact.friction and _face_slope(scene, contact):
+            return f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+    return unstated(scene, "the tangent stiffness method", BEAMS)
 
 
 def _face_slope(scene: Scene, contact: ContactSpec) -> float:

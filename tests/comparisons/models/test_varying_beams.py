@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.models import certified, solve
+from comparisons.models import MODELS, certified, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.translate import to_structure
 from comparisons.models.verify import failures
@@ -86,8 +86,11 @@ def test_what_elements_and_contacts_do_not_state_is_refused_in_one_line():
     with pytest.raises(ModelError, match=r"such elements are straight and uniform.*; use "):
         solve(scene(), "tsm", Options(element="timoshenko"))
     rubbed = replace(scene(), contacts=(replace(scene().contacts[0], surface="face", friction=0.2),))
-    with pytest.raises(ModelError, match="does not state friction on the face of a beam whose height tapers"):
-        solve(rubbed, "tsm", EXACT)
+    why = "does not state friction on the face of a beam whose height tapers"
+    for model in ("tsm", "rod"):
+        assert why in MODELS[model].refusal(rubbed)
+        with pytest.raises(ModelError, match=why):
+            solve(rubbed, model, EXACT if model == "tsm" else Options())
 
 
 @pytest.mark.parametrize("element", ["exact", "mixed"])

@@ -132,7 +132,7 @@ BAD = {
     "a second beam free": (PUSH, PUSH + beam("lost", "[9, 9]", "[10, 9]"), 'beam[2].clamped = []: beam "lost" is free'),
     "nearly joined": ("start = [0, 2]", "start = [0, 2.0000001]", 'beam[1].start = [0.0, 2.0000001]: must be "column.end" exactly, or stay clear of it'),
     "beam on beam": (PUSH, PUSH + beam("twin", "[0, 2]", "[0, 0]"), 'beam[2].end = [0.0, 0.0]: must not lie on beam[0], "column", end to end'),
-    "nothing happens": (PUSH, "", "pin = (missing): give a pin, a load or a support that moves: nothing happens"),
+    "nothing happens": (PUSH, "", "pin = (missing): give a load, or a pin or a support that moves: nothing happens"),
     "idle pin": (PUSH, PUSH + '[[pin]]\nname = "p"\npath = [[9, 9], [9, 8]]\n', 'pin[0].name = "p": must be the node of a contact'),
     "touching what it is joined to": (PUSH, PUSH + '[[contact]]\nnode = "column.end"\nbeam = "girder"\nside = "left"\n', 'contact[0].node = "column.end": must not be joined to beam "girder"'),
     "keep as text": (PUSH, PUSH + '[[contact]]\nnode = "column.start"\nbeam = "girder"\nside = "right"\nkeep = "yes"\n', 'contact[0].keep = "yes": must be true or false'),

@@ -21,7 +21,7 @@ side = "below"                # 2: no such side
 [[pin]]
 name = "pin"
 start = [0.4, -0.1]
-displacement = [0.0, 0.0]     # 3: no motion
+displacement = [0.0, 0.1, 0.0]   # 3: three numbers
 radius = -0.05                # 4: negative
 
 [[beam]]
@@ -45,7 +45,7 @@ kind = "roller"               # 11: no direction
 LINES = [
     'contact[0].beam = "strp": must name a beam: "strip"',
     'contact[0].side = "below": must be one of "right", "left"',
-    "pin[0].displacement = [0.0, 0.0]: must not be zero: the pin never moves",
+    "pin[0].displacement = [0.0, 0.1, 0.0]: must be two numbers [x, y], a third dimension is not modelled",
     "pin[0].radius = -0.05: must be positive",
     "beam[0].end = [0.5, 0.0, 0.0]: must be two numbers [x, y], a third dimension is not modelled",
     'beam[0].clamped = "start": must be a list',

@@ -40,6 +40,7 @@ def test_other_names_lead_to_keys() -> None:
         ]
         assert any(f"did you mean {key}" in line for line in found), key
     assert set(CONVERTED) <= OTHERS
+    assert hint("to", TABLES["load"]) == hint("from", TABLES["load"]) == "did you mean part?"
 
 
 def test_what_belongs_elsewhere_is_known_there() -> None:

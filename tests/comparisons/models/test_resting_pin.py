@@ -1,0 +1,77 @@
+"""Pins at rest: stops and supports that a beam can leave, in all models."""
+
+import numpy as np
+import pytest
+
+from comparisons.models import MODELS, certified, solve
+from comparisons.models.options import Options
+from comparisons.scene import Scene, SceneError, read_scene
+
+STRIP = """
+beam = [{ name = "strip", start = [0, 0], end = [1, 0], clamped = ["start"], width = 0.02, height = 0.01, youngs_modulus = 7e10, poissons_ratio = 0.3 }]
+pin = [{ name = "stop", start = [0.7, 0], displacement = [0, 0] }]
+contact = [{ node = "stop", beam = "strip", side = "right", friction = FRICTION }]
+"""
+HEAD = 'scene = { name = "prop", units = "N, m", load_parameters = 2 }\n'
+LOAD = 'load = [{ beam = "strip", end = "end", force = [0, -1] }]\n'
+MODELS_OF_STOPS = ("tsm", "rod", "solid")
+
+
+def scene(*more: str, friction: float = 0.0) -> Scene:
+    return read_scene(HEAD + STRIP.replace("FRICTION", str(friction)) + "".join(more), "prop")
+
+
+def options(model: str) -> Options:
+    return Options(element="exact") if model == "tsm" else Options()
+
+
+@pytest.mark.parametrize("model", MODELS_OF_STOPS)
+def test_a_propped_cantilever_has_the_reaction_of_statics_and_leaves_its_prop(model: str) -> None:
+    """By linear theory the prop at a carries P (3 L - a)/(2 a) of the load at L; the strip is slender and the load small."""
+    given = scene(
+        LOAD, '[[stage]]\nload_parameters = 2\nload = [{ beam = "strip", end = "end", force = [0, 2] }]\n'
+    )
+    answer = certified(solve(given, model, options(model)), given)
+    assert (answer.certificate.verdict.name, answer.completed) == ("CERTIFIED", True)
+    force = answer.contacts["stop->strip"].force
+    assert force[1] == pytest.approx((3.0 - 0.7) / (2.0 * 0.7), rel=2e-3)
+    assert force[3] == 0.0
+
+
+def test_a_clamp_that_sinks_on_a_pin_at_rest_is_a_pin_that_rises() -> None:
+    move = 'support = [{ beam = "strip", end = "start", kind = "clamped", displacement = [0, -0.1] }]\n'
+    sinking = read_scene(
+        HEAD + move + STRIP.replace("FRICTION", "0.3").replace('clamped = ["start"], ', ""), "prop"
+    )
+    rising = read_scene(
+        HEAD + STRIP.replace("FRICTION", "0.3").replace("displacement = [0, 0]", "displacement = [0, 0.1]"),
+        "prop",
+    )
+    for model in ("tsm", "rod"):
+        one, other = (solve(given, model, options(model)) for given in (sinking, rising))
+        assert one.completed
+        assert other.completed
+        np.testing.assert_allclose(
+            one.contacts["stop->strip"].force, other.contacts["stop->strip"].force, rtol=1e-13
+        )
+    assert MODELS["elastica"].refusal(sinking) is not None
+
+
+def test_a_stick_that_begins_as_a_stage_ends_is_certified_without_an_event() -> None:
+    """The exact rods and the solid state no event at the corner, where the slip rate jumps through zero."""
+    pressed = LOAD.replace("-1", "-100")
+    back = '[[stage]]\nload_parameters = 2\nload = [{ beam = "strip", end = "end", force = [0, 1] }]\n'
+    given = scene(pressed, back, friction=0.3)
+    for model in ("rod", "solid"):
+        answer = certified(solve(given, model, options(model)), given, "all")
+        assert (answer.certificate.verdict.name, answer.completed) == ("CERTIFIED", True)
+        slip = answer.contacts["stop->strip"].friction.slip
+        assert slip[1] != 0
+        assert slip[2] == 0
+
+
+def test_a_pin_at_rest_alone_does_nothing() -> None:
+    with pytest.raises(
+        SceneError, match=r"pin\[0\]\.displacement = \[0\.0, 0\.0\]: give a load, or a pin or a support"
+    ):
+        scene()
