@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from tsm.along import Along, gauss_nodes, kind_of
+from tsm.conditions import dead_loads, held_components, motions, springs_of
 from tsm.elements import EXACT, ClosedForm, Integrated
 from tsm.elements.beam import Coefficients
 from tsm.elements.properties import Array, Properties
@@ -20,7 +21,6 @@ from tsm.ordering import block_order
 from tsm.pairs import BeamModel, PairModel
 from tsm.rods.assembly import Rods
 from tsm.sizes import Sizes, joined_extents, sizes_of
-from tsm.springs import Springs
 from tsm.stages import Increments
 from tsm.structure import Beam, Structure
 
@@ -64,6 +64,12 @@ class Model:
         What varies along the elements.
     loads : Increments
         Dead loads on all degrees of freedom.
+    supports : dict
+        By supported end, the node and the components (3,) that the support holds.
+    prescribed : dict
+        Values prescribed at load parameter 1, by degree of freedom.
+    fixed : ndarray of int
+        The prescribed degrees of freedom.
     motions : Increments
         Prescribed values of the degrees of freedom `fixed`.
     moves : bool
@@ -84,8 +90,12 @@ class Model:
         self._place_beams(structure.beams)
         self._sort_elements()
         self.gauss_nodes = gauss_nodes([(beam.beam, beam.kind) for beam in self.beams.values()])
-        self._prescribe(structure)
-        self.springs = self._place_springs(structure)
+        self.supports, self.prescribed = held_components(self, structure.supports)
+        self.fixed = np.array(sorted(self.prescribed), dtype=int)
+        changes = motions(self, structure.supports)
+        self.motions, self.moves = Increments(changes[:, self.fixed]), bool(changes.any())
+        self.loads = dead_loads(self)
+        self.springs = springs_of(self)
         self._place_pairs(structure)
         self._number_equations()
         sections = np.array(
@@ -159,33 +169,6 @@ class Model:
         pairs = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
         self.slaves, self.masters = (3 * pairs[:, :, None] + np.arange(2)).transpose(1, 0, 2).reshape(2, -1)
 
-    def _place_springs(self, structure: Structure) -> Springs | None:
-        """Springs in the numbering of the model, None without.
-
-        Raises
-        ------
-        ValueError
-            If all beams of a joint are hinged to it and nothing else holds its rotation.
-        """
-        ground = [
-            (3 * self.end_node(f"{spring.beam}.{spring.end}") + k, stiffness)
-            for spring in structure.springs
-            for k, stiffness in enumerate((spring.x, spring.y, spring.rotation))
-            if stiffness
-        ]
-        between = [
-            (3 * self.joints[node] + 2, 3 * node + 2, hinge.stiffness)
-            for hinge in structure.hinges
-            if hinge.stiffness
-            for node in [self._own_end(f"{hinge.beam}.{hinge.end}")]
-        ]
-        held = {*self.prescribed, *(dof for dof, _ in ground), *(dof for dof, _, _ in between)}
-        for hinge in structure.hinges:
-            turn = 3 * self.end_node(f"{hinge.beam}.{hinge.end}") + 2
-            if turn not in held and not (self.dofs == turn).any():
-                raise ValueError(f"Hinge({hinge.beam}.{hinge.end}): the joint turns freely")
-        return Springs(ground, between) if ground or between else None
-
     def _sort_elements(self) -> None:
         counts = [beam.beam.elements for beam in self.beams.values()]
         self.groups: list[ElementGroup] = []
@@ -216,40 +199,6 @@ class Model:
         links = np.array(list(self.joints.items()), dtype=int).reshape(-1, 2)
         nodes = np.concatenate([self.element_nodes, links])
         return sizes_of(lengths, joined_extents(nodes, starts, coordinates, lengths), EI)
-
-    def _prescribe(self, structure: Structure) -> None:
-        self.supports: dict[str, tuple[int, Array]] = {}
-        self.prescribed: dict[int, float] = {}
-        for support in structure.supports:
-            node = self.end_node(f"{support.beam}.{support.end}")
-            motion = (support.ux, support.uy, support.rotation)
-            held = np.array([value is not None for value in motion])
-            held &= [3 * node + k not in self.prescribed for k in range(3)]
-            self.supports[f"{support.beam}.{support.end}"] = node, held
-            for k, value in enumerate(motion):
-                if value is not None:
-                    if self.prescribed.get(3 * node + k, value) != value:
-                        raise ValueError(
-                            f"Support({support.beam}.{support.end}): contradicts another at the joint"
-                        )
-                    self.prescribed[3 * node + k] = value
-        self.fixed = np.array(sorted(self.prescribed), dtype=int)
-        motions = np.zeros((self.stages, self.dof_count))
-        motions[0, self.fixed] = [self.prescribed[dof] for dof in self.fixed]
-        for support in structure.supports:
-            node = 3 * self.end_node(f"{support.beam}.{support.end}")
-            held = self.supports[f"{support.beam}.{support.end}"][1]
-            for stage, motion in enumerate(support.onward, 1):
-                motions[stage, node : node + 3] += np.where(held, motion, 0.0)
-        self.motions, self.moves = Increments(motions[:, self.fixed]), bool(motions.any())
-        loads = np.zeros((self.stages, self.dof_count))
-        for load in structure.loads:
-            place = self.beams[load.beam]
-            node = self.end_node(f"{load.beam}.{load.end}")
-            if load.arc is not None:
-                node = int(place.nodes[place.beam.node(load.arc) or 0])
-            loads[load.stage, 3 * node : 3 * node + 3] += (*load.force, load.moment)
-        self.loads = Increments(loads)
 
     @cached_property
     def kind(self) -> Array:
@@ -319,12 +268,12 @@ class Model:
         return next((group.rods for group in self.groups if isinstance(group, ExactGroup)), None)
 
     def end_node(self, name: str) -> int:
-        """Global number of the node at ``"beam.start"`` or ``"beam.end"``, of the joint where a hinge is between."""
-        node = self._own_end(name)
+        """Global number of the node at ``"beam.start"`` or ``"beam.end"``; behind a hinge, of the joint."""
+        node = self.own_end_node(name)
         return self.joints.get(node, node)
 
-    def _own_end(self, name: str) -> int:
-        """Global number of the node of a beam's end, behind its hinge."""
+    def own_end_node(self, name: str) -> int:
+        """Global number of the node of a beam's end, behind the hinge where there is one."""
         beam, _, end = name.rpartition(".")
         return int(self.beams[beam].nodes[0 if end == "start" else -1])
 

@@ -32,8 +32,9 @@ from tsm.events import (
     passed_within,
     passes,
 )
-from tsm.fall import Fall, descends, met
+from tsm.fall import Fall
 from tsm.friction import grips, regripped, same, slip_rates, turned
+from tsm.jump import Jump
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
@@ -45,7 +46,7 @@ from tsm.status import Status
 from tsm.step import Step, StepLog
 from tsm.step_control import NEAR, StepControl, allowed, ends
 from tsm.system import Drive
-from tsm.track import FAR, Track
+from tsm.track import Track
 
 _STRAIGHT = 0.02
 """Largest unexplained fraction of a step that passes a bifurcation. A step that changes the index with a larger one may have left the path."""
@@ -280,7 +281,7 @@ class Stepper:
     def _turn(self, critical: Equilibrium) -> Status:
         """Let the structure fall from a critical point, pushed along its mode in both directions; accept the equilibrium of less energy."""
         t = critical.state.load_parameter
-        fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
+        fall = self._fall()
         found = fall.beside(critical, t + min(_AHEAD, (self.target - t) / 2))
         self.log.iterations += fall.iterations
         if isinstance(found, Status):
@@ -389,35 +390,11 @@ class Stepper:
         return changed(self.model, state, k, touch, armed=True)
 
     def _resume(self, event: Equilibrium, state: State, *, jump: bool) -> Status:
-        """Find equilibrium with the changed contacts; contacts whose force would become tensile in a jump are released."""
-        energy = began = self.newton.potential(event.state)
-        while True:
-            equilibrium = self._settled(state, energy if jump else None)
-            if equilibrium is None:
-                return Status.FALLING if jump else self.control.failure
-            state = equilibrium.state
-            energy = self.newton.potential(state)
-            pulling = [
-                (normal_force(self.model, equilibrium, k), k)
-                for k, touch in enumerate(state.touches)
-                if touch is not None and jump
-            ]
-            least, k = min(pulling, default=(0.0, -1))
-            if least >= -ROUND_OFF * self.model.force_scale:
-                break
-            touch = state.touches[k]
-            assert touch is not None, "a pulling contact is closed"
-            pair = self.model.pairs[k]
-            before = normal_force(self.model, event, k) if event.state.touches[k] is not None else 0.0
-            self.log.note(EventKind.RELEASE, state.load_parameter, pair, touch, before)
-            if pair.pair.keep:
-                return Status.LOST_CONTACT
-            state = changed(self.model, state, k, None, armed=True)
-        if jump:
-            self.log.note_release(began - energy)
-        if jump and grips(state):
-            return Status.REST_UNKNOWN
-        gripped = self._gripped(equilibrium, event.state)
+        """Find equilibrium with the changed contacts and accept it."""
+        found = self._jump(event, state) if jump else self._settled(state)
+        if isinstance(found, Status):
+            return found
+        gripped = self._gripped(found, event.state)
         if isinstance(gripped, Status):
             return gripped
         self.track.history = []
@@ -427,20 +404,19 @@ class Stepper:
             return self._meet_limit_point()
         return Status.CONVERGED
 
-    def _settled(self, state: State, energy: float | None) -> Equilibrium | None:
-        """Equilibrium with changed contacts, near the state, or at the end of a fall from the potential `energy`."""
+    def _jump(self, event: Equilibrium, state: State) -> Equilibrium | Status:
+        """Equilibrium after a slip-off."""
+        return Jump(fall=self._fall(), control=self.control, log=self.log).rest(event, state)
+
+    def _settled(self, state: State) -> Equilibrium | Status:
+        """Equilibrium with changed contacts, without a jump."""
         equilibrium = self.newton.solve(state)
         self.log.iterations += equilibrium.iterations
-        converged = equilibrium.status is Status.CONVERGED
-        near = converged and self.newton.apart(state, equilibrium.state) <= FAR
-        down = near and (energy is None or descends(self.newton, energy, equilibrium.state))
-        if energy is not None and not (down and not met(self._measure(equilibrium))):
-            fall = Fall(newton=self.newton, measure=self._measure, close=self._close)
-            rest = fall.rest(state, energy)
-            self.log.iterations += fall.iterations
-            return rest
         self.control.fail(equilibrium.status)
-        return equilibrium if converged else None
+        return equilibrium if equilibrium.status is Status.CONVERGED else self.control.failure
+
+    def _fall(self) -> Fall:
+        return Fall(newton=self.newton, measure=self._measure, close=self._close)
 
     def _accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""

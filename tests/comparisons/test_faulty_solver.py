@@ -19,7 +19,6 @@ from tests.comparisons.referee.test_certify import BEAM, PORTAL
 from tsm import path, stepping, track
 from tsm.events import EventKind
 from tsm.groups import ClosedFormGroup
-from tsm.model import Model
 
 FINDINGS = Path(__file__).parent / "findings"
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -85,14 +84,16 @@ def a_missing_moment(patch: pytest.MonkeyPatch) -> None:
 
 
 def a_load_not_applied(patch: pytest.MonkeyPatch) -> None:
-    true = Model._prescribe
+    module = import_module("tsm.model")
+    true = module.dead_loads
 
-    def forgetful(self: Any, structure: Any) -> None:
-        true(self, structure)
-        (first,) = self.loads.rows
+    def forgetful(model: Any) -> Any:
+        loads = true(model)
+        (first,) = loads.rows
         first[np.flatnonzero(first)[0]] = 0.0
+        return loads
 
-    patch.setattr(Model, "_prescribe", forgetful)
+    patch.setattr(module, "dead_loads", forgetful)
 
 
 def a_stale_result(patch: pytest.MonkeyPatch) -> None:
