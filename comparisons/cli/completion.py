@@ -23,8 +23,6 @@ FILES = {
     "DIR": (),
 }
 """Suffixes of the files that a value may name, all files where a suffix is empty, by the value's name in the help; folders come besides."""
-FREE = {"ADDRESS", "FACTOR", "N", "NAME", "NXxNY", "QUANTITY=X", "X"}
-"""Names of values that no shell can know."""
 
 
 def add_to(commands: "Commands") -> None:

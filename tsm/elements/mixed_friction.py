@@ -39,8 +39,6 @@ from tsm.elements.dual import Dual
 from tsm.elements.mixed_contact import LEVER, REDUCE, compliance, cross_compliance
 from tsm.elements.properties import Array, Properties, chord_rotation, unwind
 
-ARC = 10
-"""Row and column of the arc position."""
 _ITERATIONS = 50
 _LAST = 1e-15
 """Relative change at which an iteration ends."""

@@ -7,8 +7,6 @@ from comparisons.scene.rules import Point
 
 SLENDERNESS = 50.0
 """Default slenderness L/h, taken from Konyukhov and Schweizerhof's cantilever."""
-SHEAR = 1 / 2.6
-"""G/E of Poisson's ratio .3."""
 
 
 def cantilever(
