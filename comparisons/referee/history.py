@@ -12,7 +12,7 @@ import numpy as np
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.friction import LOOSE, Grip, Hold
-from comparisons.referee.march import corners, place, rates, reach, slip_rate, speed
+from comparisons.referee.march import closed_pairs, corners, place, rates, reach, slip_rate, speed
 from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
@@ -197,7 +197,7 @@ class History:
         phase = self.phases[spec.pair][number]
         around = self._around(spec, phase.begin)
         state = {**around, spec.pair: own}
-        now = self.near(phase.begin, self.closed(phase.begin) | {spec.pair}, state)
+        now = self._start(spec, number, state)
 
         def margin(t: float) -> float:
             nonlocal now
@@ -220,6 +220,25 @@ class History:
         else:
             begin = _bisected(margin, phase, spec.pair)
         return Begin(load_parameter=begin, solution=now)
+
+    def _start(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
+        """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
+        phase = self.phases[spec.pair][number]
+        t, found = phase.begin, None
+        closed = self.closed(t) | {spec.pair}
+        try:
+            found = reach(self.scene, self.near(t, closed, state), t, state)
+        except UnknownFrictionError:
+            if number < 2:
+                raise
+        if number > 1 and (found is None or found.status is not SearchStatus.FOUND):
+            began = self.begin(spec.pair, number - 1).solution
+            found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
+        if found is None or found.status is not SearchStatus.FOUND:
+            raise UnknownFrictionError(
+                f"no equilibrium was found where {spec.pair} {_does(phase)} at {t:.6g}"
+            )
+        return found
 
     def _jumps(self, spec: ContactSpec, t: float) -> bool:
         """Whether rates jump at load parameter t: at a corner of a pin's path, at the end of a stage, and where another contact changes."""

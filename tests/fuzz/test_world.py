@@ -106,6 +106,7 @@ def test_more_drawn_scenes_with_special_keys_are_certified(first: int) -> None:
 
 
 MENDED_SPECIAL = {
+    152: "a stick between two load parameters ends where no equilibrium was found from either",
     155: "the sign of a slip that ends at a corner of the pin's path, between two load parameters",
     560: "a stiff beam slips on for a moment where its slip ends",
     583: "a stage takes all loads away, and the energy left is round-off",
