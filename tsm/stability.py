@@ -25,7 +25,7 @@ from tsm.rods.variation import Bordered, modes_at_least, variation
 from tsm.state import State
 from tsm.system import Assembler, Linearisation
 
-_IDLE = 1e-9
+IDLE = 1e-9
 """Largest force of a closed contact, over ``EI/L^2``, that counts as zero."""
 _LOOSE = 100.0
 """Largest singular value of the tangent of a mechanism, in round-offs of its largest entry."""
@@ -103,7 +103,7 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     idle = [
         slot
         for pair, touch in zip(model.pairs, state.touches, strict=True)
-        if touch is not None and math.hypot(*touch.force) <= _IDLE * model.force_scale
+        if touch is not None and math.hypot(*touch.force) <= IDLE * model.force_scale
         for slot in range(model.border_dofs + pair.slot, model.border_dofs + pair.slot + 3)
     ]
     if not idle:

@@ -35,11 +35,11 @@ from tsm.events import (
 from tsm.fall import Fall
 from tsm.friction import grips, regripped, same, slip_rates, turned
 from tsm.jump import Jump
+from tsm.mechanism import mechanism
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
 from tsm.settings import Settings
-from tsm.stability import loose
 from tsm.stages import stage_of
 from tsm.state import State
 from tsm.status import Status
@@ -84,7 +84,7 @@ class Stepper:
         self.settings = settings
         self.newton = Newton(model, settings)
         start = self.newton.solve(initial_state(model))
-        if model.joints and loose(self.newton.assembler, start.state, start.system):
+        if model.joints and mechanism(self.newton, start, self.newton.assembler.drive(0.0)):
             start = replace(start, status=Status.MECHANISM)
         self.track, self.log = Track(self.newton, start), StepLog()
         if model.rubbed:
@@ -139,8 +139,7 @@ class Stepper:
                 left = target - t
                 step = min(self.control.step, self.track.room())
                 goal = target if left <= step * (1 + 1e-6) else t + step
-                here = step < self.settings.smallest_step
-                status = self.control.refuse() if here else self._attempt(goal)
+                status = self._attempt(goal) if step >= self.settings.smallest_step else self.control.refuse()
                 if status is Status.CONVERGED:
                     reached = self.accepted.state.load_parameter
                     yield self._record(reached == target and target in asked, status)
@@ -164,14 +163,15 @@ class Stepper:
         that all rates are its own. The path has a kink there, and no state before it serves for an extrapolation.
         """
         t = self.accepted.state.load_parameter
-        if t == self.turned or not (self.model.rubbed or self.model.stages > 1):
-            return Status.CONVERGED
-        if t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns):
+        goes_on = t == self.turned or not (self.model.rubbed or self.model.stages > 1)
+        if goes_on or (t > 0 and all(abs(t - turn) > NEAR for turn in self.model.turns)):
             return Status.CONVERGED
         here = self.accepted
         if 0 < t < self.model.stages and t == round(t):
             state = self.newton.prescribed(here.state, math.nextafter(t, math.inf))
             here = replace(here, state=state, system=self.newton.assembler.linearise(state))
+            if self.model.joints and mechanism(self.newton, here, self._drive(state.load_parameter)):
+                return Status.MECHANISM
         self.turned = here.state.load_parameter
         gripped = self._gripped(here, here.state) if self.model.rubbed else here
         if isinstance(gripped, Status):

@@ -109,6 +109,7 @@ MENDED_SPECIAL = {
     152: "a stick between two load parameters ends where no equilibrium was found from either",
     155: "the sign of a slip that ends at a corner of the pin's path, between two load parameters",
     560: "a stiff beam slips on for a moment where its slip ends",
+    505: "a hinged beam that a contact without force would have to hold",
     583: "a stage takes all loads away, and the energy left is round-off",
 }
 """Scenes with special keys that were answered wrongly, refused wrongly or given up, and why."""
@@ -119,7 +120,7 @@ MENDED_SPECIAL = {
 def test_drawn_scenes_with_special_keys_that_once_failed(seed: int) -> None:
     found = judged(drawn_special(seed), BEAMS, (3,))
     assert not found.findings, found.report()
-    assert all(row.completed for row in found.rows)
+    assert {row.ended for row in found.rows} == {"MECHANISM" if seed == 505 else "COMPLETED"}
 
 
 def test_drawn_scenes_have_every_special_key() -> None:

@@ -156,6 +156,30 @@ def test_a_mechanism_has_a_name() -> None:
     assert tsm.solve(held, T).springs["b.start"].force[-1, 0] == pytest.approx(-0.1, rel=0.02)
 
 
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_a_contact_without_force_holds_no_mechanism(element: str) -> None:
+    """A hinged beam on a pin: it may lie there or lift off unless a load presses it down, at the start and where a stage begins."""
+    load, back = (tsm.Load(beam="b", end="end", force=(0, f), stage=k) for k, f in enumerate((-1e-3, 1e-3)))
+    structure = tsm.Structure(
+        beams=(beam("b", (0, 0), (1, 0), element),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        hinges=(tsm.Hinge(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=((0.5, 0.0), (0.5, 0.1)), onward=((), ((0.5, 0.2),))),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side="right"),),
+        loads=(load, back),
+    )
+    pressed = tsm.solve(structure, [*T, 1.5, 2.0, 2.5, 3.0], throw=False)
+    assert pressed.status is tsm.Status.MECHANISM
+    assert pressed.load_parameter[-1] == 2.0
+    by_hand = 2e-3 * T / (1.0 + (0.2 * T) ** 2)
+    assert pressed.contacts["p->b"].force[:10] == pytest.approx(by_hand, rel=1e-3)
+    for force in ((0.0, 0.0), (0.0, 1e-3)):
+        lifted = replace(structure, loads=(replace(load, force=force),))
+        result = tsm.solve(lifted, T, throw=False)
+        assert result.status is tsm.Status.MECHANISM
+        assert not len(result.load_parameter)
+
+
 def test_a_hinge_or_spring_that_cannot_be_is_refused() -> None:
     with pytest.raises(ValueError, match=r"Hinge\(b.end\): the joint turns freely"):
         tsm.solve(replace(truss("mixed", 0.4, 1.0), beams=(beam("b", (0, 0), (1, 0), "mixed"),), loads=(),
