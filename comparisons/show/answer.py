@@ -9,20 +9,11 @@ from comparisons.errors import forces, size
 from comparisons.response import Array, Response
 from comparisons.response.round_off import round_off
 from comparisons.response.table import unit_names
-from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene import Scene
 from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
 from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.sketch import legend_symbol
-from comparisons.show.symbols import (
-    held_components,
-    hinge_symbol,
-    inward,
-    placed,
-    spring_symbol,
-    support_name,
-    support_symbol,
-)
+from comparisons.show.symbols import draw_symbols
 from comparisons.version import release
 
 if TYPE_CHECKING:
@@ -124,7 +115,7 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
             *_outline(arc, line, beam.height_at, beam.length).T, color=colour, alpha=0.35, linewidth=0.0
         )
         axes.plot(*line.T, color=colour, linewidth=1.6, label=beam.name)
-    symbols = _supports(axes, scene, lines, extent)
+    symbols = draw_symbols(axes, scene, {name: line for name, (_, line) in lines.items()}, SYMBOL * extent)
     for pin in scene.pins:
         _pin(axes, np.array(pin.position(t)), pin.radius, pin.name)
     _arrows(axes, response, scene, lines, k)
@@ -155,30 +146,6 @@ def _outline(arc: Array, line: Array, height_at: Any, length: float) -> Array:
     )
     half = 0.5 * np.array([height_at(min(s / length, 1.0)) for s in arc])[:, None]
     return np.concatenate([line + half * normal, (line - half * normal)[::-1]])
-
-
-def _supports(
-    axes: "Axes", scene: Scene, lines: dict[str, tuple[Array, Array]], extent: float
-) -> dict[str, Any]:
-    """Draw the symbols of supports, springs and hinges where their ends are, and return their entries in a legend."""
-    from matplotlib.collections import LineCollection
-
-    symbols: list[tuple[SupportSpec | SpringSpec | HingeSpec, str, Array]] = [
-        (one, support_name(one), support_symbol(held_components(one), inward(scene, one)))
-        for one in scene.all_supports
-    ]
-    symbols += [
-        (one, "spring", spring_symbol(component, inward(scene, one)))
-        for one in scene.springs
-        for component in one.held
-    ]
-    symbols += [(one, "hinge", hinge_symbol()) for one in scene.hinges]
-    for one, _, symbol in symbols:
-        at = lines[one.beam][1][0 if one.end == "start" else -1]
-        drawn = placed(symbol, at, SYMBOL * extent)
-        axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
-        axes.update_datalim(drawn.reshape(-1, 2))
-    return {words: legend_symbol(symbol) for _, words, symbol in symbols}
 
 
 def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:

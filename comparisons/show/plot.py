@@ -12,6 +12,7 @@ from comparisons.response import Array, Response
 from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.panel import COLOURS, Panel, Scale
+from comparisons.show.symbols import draw_symbols
 
 SOLID = {"linewidth": 6.0, "alpha": 0.55, "solid_capstyle": "butt"}
 EXACT = {"linewidth": 1.0}
@@ -29,6 +30,8 @@ SHOWN = (0.2, 0.4, 0.6, 0.8, 1.0)
 """Load parameters of the overlay over the scene's last; the nearest ones of the scene are drawn."""
 LABELS = 0.06
 """Least distance of two labels of pins, over the size of the picture."""
+SYMBOL = 0.03
+"""Size of the symbol of a support, a spring or a hinge, over the size of the picture."""
 WIDTH = 6.3
 """Width of a picture [inch]: 160 mm, so that letters have their size in points on paper, and are legible on a telephone."""
 PIXELS = 1400
@@ -78,6 +81,7 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
         _draw_shapes(axes, scene, responses)
         axes.set_aspect("equal", adjustable="box")
         axes.grid(visible=True, linewidth=0.3)
+    symbols = _draw_symbols(whole, scene, responses)
     length = scene.units.split(",")[1].strip()
     whole.set(xlabel=f"x [{length}]", ylabel=f"y [{length}]", title=f"{scene.name}: deflected axes")
     whole.margins(0.06)
@@ -87,7 +91,8 @@ def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> N
     _zoom_on_tip(whole, detail, scene, responses)
     places["legend"].set_axis_off()
     handles, words = whole.get_legend_handles_labels()
-    places["legend"].legend(handles, words, loc="center", fontsize="small", frameon=False)
+    entries = ([*handles, *symbols.values()], [*words, *symbols])
+    places["legend"].legend(*entries, loc="center", fontsize="small", frameon=False)
     save(fig, *paths)
 
 
@@ -120,9 +125,19 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
         last = None
         for t, place in zip(times, places, strict=True):
             if last is None or np.hypot(*(place - last)) > apart:
-                words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True}
-                axes.annotate(f"t = {t:.3g}", place, (6, -11), **words)
+                words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True, "zorder": 6}
+                ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
+                axes.annotate(f"t = {t:.3g}", place, (6, -11), bbox=ground, **words)
                 last = place
+
+
+def _draw_symbols(axes: Any, scene: Scene, responses: dict[str, Response]) -> dict[str, Any]:
+    """Draw supports, springs and hinges at the last state of the last response, and return their entries in a legend."""
+    reached = [response for response in responses.values() if len(response.load_parameter)]
+    if not reached:
+        return {}
+    lines = {beam.name: reached[-1].axis_line(beam.name, -1)[1] for beam in scene.beams}
+    return draw_symbols(axes, scene, lines, SYMBOL * max(axes.dataLim.width, axes.dataLim.height))
 
 
 def _style(response: Response, scene: Scene, beam_styles: Iterator[dict[str, Any]]) -> dict[str, Any]:

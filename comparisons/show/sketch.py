@@ -22,11 +22,11 @@ from comparisons.show.symbols import (
     held_components,
     hinge_symbol,
     inward,
+    legend_symbol,
     placed,
     spring_symbol,
     support_name,
     support_symbol,
-    support_symbols,
 )
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
@@ -170,9 +170,9 @@ class _Sketch:
     def supports(self) -> None:
         """Draw the supports, their prescribed motions, springs and hinges."""
         scene = self.scene
-        symbols = support_symbols(scene, SYMBOL * self.size)
-        for support, segments in zip(scene.all_supports, symbols, strict=True):
-            self._segments(segments, HELD, 1.1)
+        for support in scene.all_supports:
+            symbol = support_symbol(held_components(support), inward(scene, support))
+            self._segments(placed(symbol, np.array(scene.place(support.node)), SYMBOL * self.size), HELD, 1.1)
             symbol = support_symbol(held_components(support), UP)
             self.legend.setdefault(support_name(support), legend_symbol(symbol))
             at = np.array(scene.place(support.node))
@@ -360,14 +360,3 @@ def _line(colour: str, **style: Any) -> Any:
     from matplotlib.lines import Line2D
 
     return Line2D([], [], color=colour, **style)
-
-
-def legend_symbol(segments: Array, colour: str = HELD) -> Any:
-    """Return a symbol as an entry of a legend."""
-    from matplotlib.path import Path as Outline
-
-    vertices = segments.reshape(-1, 2)
-    vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    marker = Outline(vertices, [Outline.MOVETO, Outline.LINETO] * len(segments))
-    size = 13 * float(np.abs(vertices).max())  # matplotlib enlarges all markers to one size
-    return _line(colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none")

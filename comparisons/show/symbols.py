@@ -4,14 +4,17 @@ Every symbol has its node at the origin. A picture turns, enlarges and moves its
 matplotlib and by pyvista, and stand in a legend.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.response import Array
-from comparisons.scene import Scene, SupportSpec
-from comparisons.scene.conditions import COMPONENTS, SpringSpec
+from comparisons.scene import HingeSpec, Scene, SpringSpec, SupportSpec
+from comparisons.scene.conditions import COMPONENTS
+from comparisons.show import palette
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
@@ -71,14 +74,69 @@ def placed(segments: Segments, at: Array, size: float) -> Segments:
     return np.asarray(at + size * segments)
 
 
-def support_symbols(scene: Scene, size: float) -> list[Segments]:
-    """Return the symbols of all supports of a scene at their undeformed nodes, in the order of `Scene.all_supports`."""
-    return [
-        placed(
-            support_symbol(held_components(one), inward(scene, one)), np.array(scene.place(one.node)), size
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Symbol:
+    """The symbol of what holds or releases a beam's end.
+
+    Attributes
+    ----------
+    item : SupportSpec, SpringSpec or HingeSpec
+        What it shows.
+    words : str
+        Its name in a legend.
+    segments : ndarray, shape (n, 2, 2)
+        Line segments of unit size about the node.
+    """
+
+    item: SupportSpec | SpringSpec | HingeSpec
+    words: str
+    segments: Segments
+
+    def at(self, line: Array) -> Array:
+        """Return the place of the node on its beam's deformed axis, a line of shape (m, 2)."""
+        return np.asarray(line[0 if self.item.end == "start" else -1])
+
+
+def end_symbols(scene: Scene) -> list[Symbol]:
+    """Return the symbols of the supports, springs and hinges of a scene."""
+    found = [
+        Symbol(
+            item=one,
+            words=support_name(one),
+            segments=support_symbol(held_components(one), inward(scene, one)),
         )
         for one in scene.all_supports
     ]
+    found += [
+        Symbol(item=one, words="spring", segments=spring_symbol(component, inward(scene, one)))
+        for one in scene.springs
+        for component in one.held
+    ]
+    return found + [Symbol(item=one, words="hinge", segments=hinge_symbol()) for one in scene.hinges]
+
+
+def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
+    """Draw the symbols of supports, springs and hinges where their ends are, and return their entries in a legend.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where they are drawn; it reaches around them.
+    scene : Scene
+        Its supports, springs and hinges.
+    lines : mapping of ndarray, shape (m, 2)
+        The deformed axes, by beam.
+    size : float
+        Size of a symbol [length].
+    """
+    from matplotlib.collections import LineCollection
+
+    symbols = end_symbols(scene)
+    for one in symbols:
+        drawn = placed(one.segments, one.at(lines[one.item.beam]), size)
+        axes.add_collection(LineCollection(list(drawn), colors=palette.BLACK, linewidths=1.0, zorder=4))
+        axes.update_datalim(drawn.reshape(-1, 2))
+    return {one.words: legend_symbol(one.segments) for one in symbols}
 
 
 def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
@@ -111,6 +169,20 @@ def hinge_symbol() -> Segments:
     """Return a small circle."""
     angle = np.linspace(0.0, 2.0 * np.pi, 17)
     return chain(0.35 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+
+
+def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
+    """Return a symbol as an entry of a legend."""
+    from matplotlib.lines import Line2D
+    from matplotlib.path import Path
+
+    vertices = segments.reshape(-1, 2)
+    vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    marker = Path(vertices, [Path.MOVETO, Path.LINETO] * len(segments))
+    size = 13 * float(np.abs(vertices).max())  # matplotlib enlarges all markers to one size
+    return Line2D(
+        [], [], color=colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none"
+    )
 
 
 def chain(points: Array) -> Segments:

@@ -13,14 +13,14 @@ from comparisons.scene import Scene
 from comparisons.show import palette
 from comparisons.show.pages.markup import scrolling, text
 from comparisons.show.pages.page import Section
-from comparisons.show.symbols import support_symbols
+from comparisons.show.symbols import end_symbols
 
 POINTS = 61
 """Points of a deformed axis."""
 ARC = 25
 """Points of an undeformed axis that is an arc."""
 SYMBOL = 0.03
-"""Size of a support's symbol over the size of the scene."""
+"""Size of the symbol of a support, a spring or a hinge over the size of the scene."""
 DIGITS = 5
 """Decimals of the coordinates, over the size of the scene."""
 DASHES = ("7 3", "2 3", "9 3 2 3", "12 3", "5 2 1 2 1 2", "3 2", "9 2 2 2 2 2", "4 4", "14 2 2 2")
@@ -168,7 +168,7 @@ def motion_section(
             }
             for pin in scene.pins
         ],
-        "supports": _supports(scene, times),
+        "symbols": _symbols(scene, responses[focus], len(times)),
         "tip": responses[focus].tips[first.name],
         "focus": focus,
         "runs": [
@@ -185,14 +185,37 @@ def motion_section(
     return Section(title=title, html=_markup(data, len(times)), data=data)
 
 
-def _supports(scene: Scene, times: Array) -> list[dict[str, Any]]:
-    """Return the symbols of the supports as lines, and their displacements at every load parameter."""
-    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
-    symbols = support_symbols(scene, SYMBOL * float(np.ptp(ends, axis=0).max()))
+def _symbols(scene: Scene, response: Response, steps: int) -> list[dict[str, Any]]:
+    """Return the symbols of supports, springs and hinges as lines about their nodes, and the places of the nodes at every load parameter.
+
+    Where the response has stopped, its last places stay.
+    """
+    size, decimals = _size(scene)
+    last = len(response.load_parameter) - 1
     return [
-        {"lines": lines, "at": [[value or 0.0 for value in one.at(float(t))[:2]] for t in times]}
-        for one, lines in zip(scene.prescribed_motions.values(), symbols, strict=True)
+        {
+            "lines": np.round(SYMBOL * size * one.segments, decimals),
+            "at": [
+                np.round(one.at(_deformed(scene, response, one.item.beam, min(k, last))), decimals)
+                for k in range(steps)
+            ],
+        }
+        for one in end_symbols(scene)
     ]
+
+
+def _deformed(scene: Scene, response: Response, beam: str, k: int) -> Array:
+    """Return the axis of a beam at load parameter number k; before the first one, its undeformed ends."""
+    if k >= 0:
+        return response.axis_line(beam, k)[1]
+    return np.array([scene.beam(beam).start, scene.beam(beam).end])
+
+
+def _size(scene: Scene) -> tuple[float, int]:
+    """Return the size of a scene, and the decimals of coordinates that a screen can show."""
+    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
+    size = float(np.ptp(ends, axis=0).max())
+    return size, DIGITS - int(np.floor(np.log10(size)))
 
 
 def _ordered(labels: Sequence[str]) -> list[str]:
@@ -212,8 +235,7 @@ def _line_style(label: str, number: int) -> dict[str, Any]:
 
 def _lines(scene: Scene, response: Response) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
-    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
-    decimals = DIGITS - int(np.floor(np.log10(np.ptp(ends, axis=0).max())))
+    _, decimals = _size(scene)
     return [
         [np.round(_thinned(*response.axis_line(beam.name, k)), decimals) for beam in scene.beams]
         for k in range(len(response.load_parameter))
@@ -250,7 +272,7 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
 </fieldset>
 <div class="drawings">
 <figure><svg class="shapes" role="img" aria-label="deformed axes at the load parameter of the slider"></svg>
-<figcaption>Deformed axes; stars are pins, circles their true radii, dotted lines their paths; thin grey: other load parameters.</figcaption></figure>
+<figcaption>Deformed axes, with the symbols of supports, springs and hinges; stars are pins, circles their true radii, dotted lines their paths; thin grey: other load parameters.</figcaption></figure>
 <figure><svg class="zoom" role="img" aria-label="the surroundings of the tip, enlarged"></svg>
 <figcaption>The tip, enlarged.</figcaption></figure>
 </div>

@@ -60,12 +60,15 @@ function stroke(run) {
   return `stroke:${run.colour};stroke-width:${run.width};stroke-dasharray:${run.dash};opacity:${run.width > 4 ? 0.55 : 1}`;
 }
 
-// What all shapes, beams and pins need, with the shape of the drawing: height over width.
+// What all shapes, beams, pins and symbols need, with the shape of the drawing: height over width.
 function bounds(data) {
   const all = data.runs.flatMap((run) => run.lines.flat(2));
   for (const beam of data.beams) all.push(...beam);
   for (const { path, radius } of data.pins) {
     for (const [a, b] of path) all.push([a - radius, b - radius], [a + radius, b + radius]);
+  }
+  for (const { lines, at: nodes } of data.symbols) {
+    for (const [x, y] of nodes) all.push(...lines.flat().map(([a, b]) => [a + x, b + y]));
   }
   const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
   for (const [a, b] of all) {
@@ -104,9 +107,9 @@ function drawShapes(svg, data, wanted, k) {
       element(at.plot, "polyline", { class: "run", "data-run": number, style: stroke(run), points: points(line, at) });
     }
   });
-  for (const { lines, at: moved } of data.supports) {
-    const [dx, dy] = moved[k];
-    for (const line of lines) element(at.plot, "polyline", { class: "support", points: points(line.map(([a, b]) => [a + dx, b + dy]), at) });
+  for (const { lines, at: nodes } of data.symbols) {
+    const [x, y] = nodes[k];
+    for (const line of lines) element(at.plot, "polyline", { class: "symbol", points: points(line.map(([a, b]) => [a + x, b + y]), at) });
   }
   for (const pin of data.pins) {
     const [a, b] = pin.at[k], star = [], round = [];
@@ -126,7 +129,8 @@ function drawZoom(svg, data, k) {
   const tip = data.tip[k], half = ZOOM * data.length.beam;
   if (!tip) return svg.replaceChildren();
   const [a, b] = tip;
-  drawShapes(svg, data, { left: a - half, right: a + half, bottom: b - half, top: b + half }, k);
+  const box = { left: a - half, right: a + half, bottom: b - half, top: b + half };
+  drawShapes(svg, { ...data, symbols: [] }, box, k); // a symbol has no true size
 }
 
 // A chart of one quantity, or of its errors in decades; returns what moves its marker to a load parameter.

@@ -202,7 +202,7 @@ def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path)
     const box = (selector) => { const b = [...document.querySelectorAll(selector)].at(-1).getBBox(); return [b.x, b.y, b.width, b.height]; };
     const look = () => ({
       disc: box(".shapes .disc"), path: box(".shapes .path"),
-      support: box(".shapes .support"), arc: one(".shapes .rest").getAttribute("points").split(" ").length,
+      symbol: box(".shapes .symbol"), arc: one(".shapes .rest").getAttribute("points").split(" ").length,
     });
     told.end = look(); slide(1); told.second = look();
     """
@@ -211,7 +211,7 @@ def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path)
     assert disc[2] == pytest.approx(disc[3], rel=0.01)
     assert disc[2] / path[2] == pytest.approx(2 * 12 / 20, rel=0.01)  # the pin goes 20 mm to the right
     assert found["end"]["arc"] == 25
-    assert found["end"]["support"] != found["second"]["support"]
+    assert found["end"]["symbol"] != found["second"]["symbol"]
     assert found["end"]["disc"] != found["second"]["disc"]
 
 

@@ -21,6 +21,30 @@ from tests.comparisons.show.pages.markup import block, check_alone
 KS = replace(load_scene("ks-cantilever"), load_parameters=4)
 
 
+def test_supports_springs_and_hinges_are_drawn_where_their_ends_are() -> None:
+    """A run that stopped keeps its last places; a run that reached nothing has the undeformed ones."""
+    springs = replace(load_scene("beam-on-springs"), load_parameters=2)
+    whole = solve(springs, "tsm")
+    half = replace(whole, load_parameter=whole.load_parameter[:1])
+    nothing = replace(whole, load_parameter=whole.load_parameter[:0])
+    places = {}
+    for name, focus in {"whole": whole, "half": half, "nothing": nothing}.items():
+        section = motion_section(
+            "Drawn", springs, {"TSM mixed": focus, "exact rod": whole}, [], focus="TSM mixed"
+        )
+        roller, left, right = section.data["symbols"]
+        assert len(left["lines"]) == len(right["lines"]) != len(roller["lines"])
+        np.testing.assert_array_equal(roller["at"], left["at"])
+        places[name] = np.array([left["at"], right["at"]])
+    ends = np.array([[whole.axis_line("beam", k)[1][n] for k in range(2)] for n in (0, -1)])
+    np.testing.assert_allclose(places["whole"], ends, atol=1e-3)
+    np.testing.assert_array_equal(places["half"], places["whole"][:, [0, 0]])
+    np.testing.assert_array_equal(places["nothing"], [[[0.0, 0.0]] * 2, [[200.0, 0.0]] * 2])
+    truss = replace(load_scene("hinged-truss"), load_parameters=1)
+    section = motion_section("Drawn", truss, {"TSM mixed": solve(truss, "tsm")}, [], focus="TSM mixed")
+    assert len(section.data["symbols"]) == len(truss.all_supports) + len(truss.hinges)
+
+
 def test_the_page_of_a_comparison_holds_the_numbers_of_the_summary(compared: Path) -> None:
     html = (compared / "report.html").read_text()
     summary = json.loads((compared / "summary.json").read_text())
