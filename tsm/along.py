@@ -39,11 +39,13 @@ class Along:
     start, end : ndarray, shape (e,)
         Angle of the undeformed axis at both ends.
     gauge, gyration : ndarray, shape (2, e)
-        ``EA/sqrt(EI/EA)`` and ``sqrt(EI/EA)`` at both ends; both are linear between them.
+        Radius of gyration ``sqrt(EI/EA)``, in proportion to the height, and `gauge`, EA over this radius, in proportion to the width; at
+        both ends. Both are linear between them.
     ratio : ndarray, shape (e,)
         GA/EA.
-    shed : Increments of arrays, shape (stages, 2, d, e)
-        Integrals of the loads from the start of an element: coefficients of the powers 1 to d of the part of its length.
+    resultants : Increments of arrays, shape (stages, 2, d, e)
+        Resultants of the loads, ``P(s) = int_0^s q ds`` from the start of an element: coefficients of the powers 1 to d of the part of
+        its length.
     """
 
     def __init__(self, beams: Sequence[Beam], loads: Sequence[LineLoad], stages: int = 1) -> None:
@@ -58,7 +60,7 @@ class Along:
         self.gauge, self.gyration = np.array([_sections(*span) for span in spans]).transpose(2, 1, 0)
         self.ratio = np.array([beam.section.GA / beam.section.EA for beam, _, _ in spans])
         degree = max((len(load.force) for load in loads), default=0)
-        shed = np.zeros((stages, 2, degree, len(spans)))
+        resultant = np.zeros((stages, 2, degree, len(spans)))
         first: dict[str, int] = {}
         for number, (beam, _, _) in enumerate(spans):
             first.setdefault(beam.name, number)
@@ -66,23 +68,23 @@ class Along:
             beam = next(beam for beam in beams if beam.name == load.beam)
             for element in load.elements(beam):
                 place = first[beam.name] + element
-                shed[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
-        self.shed = Increments(shed)
+                resultant[load.stage, :, : len(load.force), place] += _integral(load, *spans[place])
+        self.resultants = Increments(resultant)
 
-    def shed_at(self, load_parameter: float) -> Array:
-        """Integrals (2, d, e) of all loads together at a load parameter."""
-        return self.shed.at(load_parameter)
+    def resultants_at(self, load_parameter: float) -> Array:
+        """Coefficients (2, d, e) of the resultants of all loads together at a load parameter."""
+        return self.resultants.at(load_parameter)
 
-    def shed_rate(self, load_parameter: float) -> Array:
-        """Derivative of `shed_at` in the load parameter; where a stage ends, during that stage."""
-        return self.shed.rate(load_parameter)
+    def resultant_rates(self, load_parameter: float) -> Array:
+        """Derivative of `resultants_at` in the load parameter; where a stage ends, during that stage."""
+        return self.resultants.rate(load_parameter)
 
     def total(self, load_parameter: float) -> Array:
         """Sum (2,) of all loads along the beams at a load parameter."""
-        total: Array = self.shed_at(load_parameter).sum(axis=(1, 2))
+        total: Array = self.resultants_at(load_parameter).sum(axis=(1, 2))
         return total
 
-    def course(self, elements: Array, part: Array, shed: Array, shed_rate: Array) -> Course:
+    def course(self, elements: Array, part: Array, resultant: Array, resultant_rate: Array) -> Course:
         """What varies, at parts (s, p) of the lengths of elements (s,).
 
         Parameters
@@ -91,8 +93,8 @@ class Along:
             Global numbers of the elements.
         part : ndarray, shape (s, p)
             Where.
-        shed, shed_rate : ndarray, shape (2, d, s)
-            Integrals of all loads together along these elements, and their derivatives in the load parameter.
+        resultant, resultant_rate : ndarray, shape (2, d, s)
+            Coefficients of the resultants of all loads together along these elements, and their derivatives in the load parameter.
         """
         length = self.length[elements, None]
         gauge, gyration = self.gauge[:, elements, None], self.gyration[:, elements, None]
@@ -104,13 +106,13 @@ class Along:
         stretch_slope = -stretch * EA_slope / EA
         bend_slope = -bend * (EA_slope / EA + 2 * high_slope / high)
         ratio = self.ratio[elements, None]
-        powers = part ** np.arange(shed.shape[1] + 1)[:, None, None]
-        risen = np.arange(1, shed.shape[1] + 1)[:, None, None] * powers[:-1] / length
+        powers = part ** np.arange(resultant.shape[1] + 1)[:, None, None]
+        risen = np.arange(1, resultant.shape[1] + 1)[:, None, None] * powers[:-1] / length
         return Course(
             Flexibility(stretch, stretch / ratio, bend),
             Flexibility(stretch_slope, stretch_slope / ratio, bend_slope),
             *(np.einsum("cds,dsp->csp", coefficients, on) for coefficients, on in (
-                (shed, powers[1:]), (shed, risen), (shed_rate, powers[1:]))),
+                (resultant, powers[1:]), (resultant, risen), (resultant_rate, powers[1:]))),
         )  # fmt: skip
 
 

@@ -320,7 +320,7 @@ def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
 
 
 def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
-    """Arc position of the undeformed axis next to a point."""
+    """Arc position of the point of the undeformed axis that is nearest to `point`."""
     x, y = beam.direction
     if not beam.turn:
         return float(np.clip((np.array(point) - np.array(beam.start)) @ np.array([x, y]), 0.0, beam.length))

@@ -127,15 +127,13 @@ def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
 def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
     """Whether a beam has one fixed clamp and no load, joint or closed contact, so that it is undeformed."""
     ends, held = (f"{beam}.start", f"{beam}.end"), scene.supports_of(beam)
-    events = scene.beam(beam)
-    joined = any(
-        {events.start, events.end} & {item.start, item.end} for item in scene.beams if item is not events
-    )
+    spec = scene.beam(beam)
+    joined = any({spec.start, spec.end} & {item.start, item.end} for item in scene.beams if item is not spec)
     still = len(held) == 1 and None not in held[0].motion and not scene.prescribed_motions[held[0].node].moves
-    loaded = any(item.load.beam == beam for item in scene.load_histories) or events.density is not None
+    loaded = any(item.load.beam == beam for item in scene.load_histories) or spec.density is not None
     if joined or not still or loaded:
         return False
-    pairs = [spec.pair for spec in scene.contacts if spec.beam == beam or spec.node in ends]
+    pairs = [contact.pair for contact in scene.contacts if contact.beam == beam or contact.node in ends]
     return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)
 
 

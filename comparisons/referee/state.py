@@ -126,8 +126,9 @@ class Equilibrium:
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     """Return the exact equilibrium of `scene` near an answer.
 
-    Rods between ends, joints and contacts carry a constant force. Their rotation is a polynomial of degree 16 on elements that
-    are halved until its last terms are round-off. Newton's method with the exact Hessian starts from the answer.
+    The force in a rod between ends, joints and contacts is constant but for the load along the rod. The rotation is a polynomial of
+    degree 16 on elements that are halved until its last terms are round-off. Newton's method with the exact Hessian starts from the
+    answer.
 
     Examples
     --------

@@ -170,7 +170,7 @@ class Scene(Record):
 
     @property
     def times(self) -> tuple[float, ...]:
-        """The load parameters of all stages: k/n, k = 1..n, of the first one, and from the number of stages before on of every other."""
+        """The load parameters: ``j + k/n``, k = 1..n, of the stage j = 0, 1, ... with n load parameters."""
         counts = (self.load_parameters, *(stage.load_parameters for stage in self.stages))
         return tuple(
             before + k / n if before else k / n for before, n in enumerate(counts) for k in range(1, n + 1)

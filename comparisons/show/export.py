@@ -193,9 +193,9 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
     """Write the VTU files of the `blocks` and a VTM that names them, per load parameter, and ``MODEL.pvd`` that lists them with their digests.
 
-    Files that the same model wrote here before, as its list gives them, are replaced, and removed where the series is shorter now; a
-    file of anybody else's ends it before anything is written. All are written aside first. Of runs that write at the same time one
-    waits for the other.
+    Files that the same model wrote here before, as its list gives them, are replaced, and removed where the series is shorter now.
+    Nothing is written if another file has a name of the series. All files are written to a folder aside first. A run waits while
+    another run writes into `folder`.
 
     Returns
     -------

@@ -25,7 +25,9 @@ def _styles() -> dict[str, Style]:
 
 
 def style(label: str) -> Style:
-    """Return how a run is drawn, by its label: what its model states for the longest words that the label begins with.
+    """Return how a run is drawn, by its label.
+
+    A model states a style for the first words of a label. Where the words of several styles fit, the longest ones count.
 
     Raises
     ------

@@ -71,7 +71,7 @@ class Panel:
 
 
 def joined(title: str, bodies: Sequence[Body], drawn: Sequence[Mapping[str, NDArray[Any]]]) -> Panel:
-    """Return a panel of several bodies, and of what `marks` gives, once or several times."""
+    """Return a panel of bodies with their contacts and supports, `drawn`, as `marks` gives them: once, or for every one of several states."""
     starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
     return Panel(
         title=title,

@@ -109,7 +109,7 @@ def _run(
     seconds: float | None,
     meanwhile: Callable[[], None] = lambda: None,
 ) -> bool:
-    """Whether a child process of our own interpreter came to its end; `meanwhile` is called while it runs."""
+    """Run this interpreter in a child process, and `meanwhile` while it runs; return whether the process succeeded."""
     last = inf if seconds is None else monotonic() + seconds
     with subprocess.Popen(  # noqa: S603 our own interpreter and module
         [sys.executable, *arguments],

@@ -32,25 +32,27 @@ class Course(NamedTuple):
         1/EA, 1/GA, 1/EI.
     slope : Flexibility
         Their derivatives in the arc position.
-    shed : ndarray, shape (2, s, p)
-        P, the force that the load has taken from the internal force since the start of the element.
+    resultant : ndarray, shape (2, s, p)
+        P, the resultant of the load from the start of the element, by which the internal force has fallen.
     load : ndarray, shape (2, s, p)
         q, the load per length.
-    shed_rate : ndarray, shape (2, s, p)
+    resultant_rate : ndarray, shape (2, s, p)
         Derivative of P in the load parameter.
     """
 
     flexibility: Flexibility
     slope: Flexibility
-    shed: Array
+    resultant: Array
     load: Array
-    shed_rate: Array
+    resultant_rate: Array
 
     def single(self, s: int) -> Course:
         """What varies along one segment."""
-        of = slice(s, s + 1)
-        flexibility, slope = (Flexibility(*(v[of] for v in part)) for part in (self.flexibility, self.slope))
-        return Course(flexibility, slope, self.shed[:, of], self.load[:, of], self.shed_rate[:, of])
+        own = slice(s, s + 1)
+        flexibility, slope = (Flexibility(*(v[own] for v in part)) for part in (self.flexibility, self.slope))
+        return Course(
+            flexibility, slope, self.resultant[:, own], self.load[:, own], self.resultant_rate[:, own]
+        )
 
 
 class VaryingSegments(NamedTuple):
@@ -99,17 +101,19 @@ class _Bent(NamedTuple):
     turn: Array
 
 
-def _bent(at: VaryingSegments, of: Field, moment: Array) -> _Bent:
-    along = moment + at.length * (of.values[0] @ collocation(at.angle.shape[1]).once.T)
-    return _Bent(along, at.flexibility.bend * along + at.curvature)
+def _bent(segments: VaryingSegments, field: Field, moment: Array) -> _Bent:
+    along = moment + segments.length * (field.values[0] @ collocation(segments.angle.shape[1]).once.T)
+    return _Bent(along, segments.flexibility.bend * along + segments.curvature)
 
 
-def arrival(at: VaryingSegments, of: Field, start: Array, moment: Array, end: Array) -> Arrival:
+def arrival(segments: VaryingSegments, field: Field, start: Array, moment: Array, end: Array) -> Arrival:
     """Residuals with given angle and moment at the start and angle at the end, each of shape (s, 1); `bent` is the derivative of the angle."""
-    table = collocation(at.angle.shape[1])
-    turn = _bent(at, of, moment).turn
-    inside = at.angle - start - table.c * ((end - start) / 2) - at.length * (turn @ _half_way(table).T)
-    end_residual = start + at.length * (turn @ table.w)[:, None] - end
+    table = collocation(segments.angle.shape[1])
+    turn = _bent(segments, field, moment).turn
+    inside = (
+        segments.angle - start - table.c * ((end - start) / 2) - segments.length * (turn @ _half_way(table).T)
+    )
+    end_residual = start + segments.length * (turn @ table.w)[:, None] - end
     return Arrival(end_residual[:, 0], inside, turn)
 
 
@@ -119,20 +123,20 @@ def _half_way(table: Any) -> Array:
     return half
 
 
-def condense(at: VaryingSegments, of: Field, arrived: Arrival, moment: Array) -> Condensed:
+def condense(segments: VaryingSegments, field: Field, arrived: Arrival, moment: Array) -> Condensed:
     """Eliminate the angles inside; the derivatives are by the nine inputs."""
-    table, h = collocation(at.angle.shape[1]), at.length
-    slope, turned = _by_angle(of)
-    f_by, r_by = _by_inputs(at, of, turned)
-    bend, bent = at.flexibility.bend, _bent(at, of, moment)
+    table, h = collocation(segments.angle.shape[1]), segments.length
+    slope, turned = _by_angle(field)
+    f_by, r_by = _by_inputs(segments, field, turned)
+    bend, bent = segments.flexibility.bend, _bent(segments, field, moment)
     # derivative of the angle's derivative by the inputs, without what passes through the angles
     turn_by = h[:, :, None] * bend[:, :, None] * (table.once @ f_by)
     turn_by[:, :, 1] += bend
-    along = at.course.slope.bend * bent.moment
+    along = segments.course.slope.bend * bent.moment
     turn_by[:, :, 7] += along
-    turn_by[:, :, 5] += along * table.c + bend * (of.values[0] @ table.once.T)
+    turn_by[:, :, 5] += along * table.c + bend * (field.values[0] @ table.once.T)
 
-    half, (count, p) = _half_way(table), at.angle.shape
+    half, (count, p) = _half_way(table), segments.angle.shape
     matrix = np.eye(p) - (h * h)[:, :, None] * (half @ (bend[:, :, None] * table.once)) * slope[:, None, :]
     right = h[:, :, None] * (half @ turn_by)
     right[:, :, 0] += 1 - table.c / 2
@@ -152,32 +156,34 @@ def condense(at: VaryingSegments, of: Field, arrived: Arrival, moment: Array) ->
     direct[:, 1] = h * (table.w @ f_by)
     direct[:, 1, 1] += 1
     direct[:, 2:] = h[:, :, None] * (table.w @ r_by).transpose(1, 0, 2)
-    direct[:, 1:, 5] += (of.values @ table.w).T
+    direct[:, 1:, 5] += (field.values @ table.w).T
     return Condensed(weights @ inner + direct, inner)
 
 
-def _by_angle(of: Field) -> tuple[Array, Array]:
+def _by_angle(field: Field) -> tuple[Array, Array]:
     """Derivatives of f (s, p) and r' (2, s, p) by the angle at the node."""
-    turned = np.stack([-of.gq * of.c - of.turn * of.s, of.turn * of.c - of.gq * of.s])
-    slope: Array = of.N * of.turn - of.gq * of.q
+    turned = np.stack([-field.gq * field.c - field.turn * field.s, field.turn * field.c - field.gq * field.s])
+    slope: Array = field.N * field.turn - field.gq * field.q
     return slope, turned
 
 
-def _by_inputs(at: VaryingSegments, of: Field, turned: Array) -> tuple[Array, Array]:
+def _by_inputs(segments: VaryingSegments, field: Field, turned: Array) -> tuple[Array, Array]:
     """Derivatives of f (s, p, 9) and r' (2, s, p, 9) at the nodes by the inputs, the angle held; f falls with n as r' does with the angle."""
-    table, (stretch, shear, _) = collocation(at.angle.shape[1]), at.flexibility
-    gc = (stretch - shear) * of.c
-    xx, xy, yy = shear + gc * of.c, gc * of.s, stretch - gc * of.c
-    (e, u, _), (px, py), (tx, ty) = at.course.slope, at.course.load, at.course.shed_rate
+    table, (stretch, shear, _) = collocation(segments.angle.shape[1]), segments.flexibility
+    gc = (stretch - shear) * field.c
+    xx, xy, yy = shear + gc * field.c, gc * field.s, stretch - gc * field.c
+    course = segments.course
+    (e, u, _), (px, py), (tx, ty) = course.slope, course.load, course.resultant_rate
     # Q = -q
     along = np.stack(
         [
-            e * of.N * of.c + u * of.q * of.s - xx * px - xy * py,
-            e * of.N * of.s - u * of.q * of.c - xy * px - yy * py,
+            e * field.N * field.c + u * field.q * field.s - xx * px - xy * py,
+            e * field.N * field.s - u * field.q * field.c - xy * px - yy * py,
         ]
     )
-    f_along = of.q * (e - u) * of.N + turned[0] * px + turned[1] * py
-    f_by, r_by = np.zeros((*of.N.shape, INPUTS), of.N.dtype), np.zeros((2, *of.N.shape, INPUTS), of.N.dtype)
+    f_along = field.q * (e - u) * field.N + turned[0] * px + turned[1] * py
+    shape = (*field.N.shape, INPUTS)
+    f_by, r_by = np.zeros(shape, field.N.dtype), np.zeros((2, *shape), field.N.dtype)
     f_by[:, :, 3], f_by[:, :, 4] = -turned
     f_by[:, :, 5], f_by[:, :, 7] = f_along * table.c, f_along
     f_by[:, :, 8] = turned[0] * tx + turned[1] * ty
@@ -188,10 +194,10 @@ def _by_inputs(at: VaryingSegments, of: Field, turned: Array) -> tuple[Array, Ar
     return f_by, r_by
 
 
-def tangent_rate(at: VaryingSegments, of: Field, inside: Array, inputs: Array) -> Array:
+def tangent_rate(segments: VaryingSegments, field: Field, inside: Array, inputs: Array) -> Array:
     """Change (2, s, p) of r' at the Gauss nodes with the angles inside (s, p) and the inputs (s, 9)."""
-    _, turned = _by_angle(of)
-    rate: Array = turned * inside + (_by_inputs(at, of, turned)[1] @ inputs[:, :, None])[..., 0]
+    _, turned = _by_angle(field)
+    rate: Array = turned * inside + (_by_inputs(segments, field, turned)[1] @ inputs[:, :, None])[..., 0]
     return rate
 
 
@@ -215,4 +221,4 @@ def tangent_slope(course: Course, force: tuple[Any, Any], angle: Any) -> tuple[A
     N, Q, g = nx * c + ny * s, ny * c - nx * s, stretch - shear
     compliance = np.array([[shear + g * c * c, g * c * s], [g * c * s, stretch - g * c * c]])
     own = np.array([e * N * c - u * Q * s, e * N * s + u * Q * c])
-    return own - compliance @ course.load[:, 0, 0], -(compliance @ course.shed_rate[:, 0, 0])
+    return own - compliance @ course.load[:, 0, 0], -(compliance @ course.resultant_rate[:, 0, 0])

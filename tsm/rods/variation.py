@@ -33,8 +33,9 @@ from tsm.state import State
 _LONGEST = 7.0
 """Largest ``- f_phi h^2/EI`` of a segment that is not divided; its first mode lies at ``pi^2``."""
 _PIECE = math.pi / 2
+"""Largest ``sqrt(- f_phi h^2/EI)`` of the pieces of a divided segment."""
 _MOST = 300
-"""Root of the same in the pieces of a divided segment."""
+"""Largest number of pieces of all segments; beyond it the modes are counted by a bound."""
 _SHORT = 1e-4
 """Length over the element's below which a segment keeps its moment as an unknown, to avoid a division by a length near zero or negative."""
 _PULL = np.zeros((OWN, OWN))
@@ -325,9 +326,10 @@ def _surface(
     selectors: Array,
     by_arc: Array | None,
 ) -> Array:
-    """Second derivatives of ``- reach F . nu``, nu across the sum of the tangent vectors, where F is parallel to nu.
+    """Second derivatives of ``- reach F . nu``, where F is parallel to nu, the normal to the right of the sum of the tangent vectors.
 
-    Where the offset changes, nu leans, and F is parallel to it too. With beta the angle of that sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``.
+    With beta the angle of the sum and tau its direction, ``d nu = tau d beta`` and ``d^2 nu = tau d^2 beta - nu d beta^2``. Where the
+    offset changes along the beam, nu is the normal of the face and leans from the normal of the axis.
     """
     reach, steep = face
     if steep:

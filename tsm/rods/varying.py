@@ -60,9 +60,9 @@ class VaryingRods(Rods):
     def course(self, owner: Array, arc: Array, load_parameter: float) -> Course:
         """What varies at arc positions (s, p) within elements (s,), counted over the exact ones."""
         along, elements = self.model.along, self.elements[owner]
-        shed = along.shed_at(load_parameter)[:, :, elements]
-        rate = along.shed_rate(load_parameter)[:, :, elements]
-        return along.course(elements, arc / self.length[owner, None], shed, rate)
+        resultant = along.resultants_at(load_parameter)[:, :, elements]
+        rate = along.resultant_rates(load_parameter)[:, :, elements]
+        return along.course(elements, arc / self.length[owner, None], resultant, rate)
 
     def segments(self, state: State, place: Layout, uniform: Segments) -> VaryingSegments:
         """Segments with what varies along them, from those with the constant part of their forces."""
@@ -78,7 +78,7 @@ class VaryingRods(Rods):
         course = self.course(owner, begin + uniform.length * nodes, load_parameter)
         return VaryingSegments(
             flexibility=course.flexibility,
-            force=uniform.force - course.shed,
+            force=uniform.force - course.resultant,
             length=uniform.length,
             angle=uniform.angle,
             course=course,
@@ -102,8 +102,8 @@ class VaryingRods(Rods):
     def along(self, entry: Entry) -> tuple[Array, Array | None]:
         """Internal force at the starts of the segments, and its derivative at the Gauss nodes."""
         segments = entry.segments
-        shed = self.course(entry.place.owner, segments.begin, entry.load_parameter).shed
-        force: Array = (segments.constant - shed)[:, :, 0]
+        resultant = self.course(entry.place.owner, segments.begin, entry.load_parameter).resultant
+        force: Array = (segments.constant - resultant)[:, :, 0]
         return force, -segments.course.load
 
     def section(self, element: int, arc: float) -> Section:
@@ -115,14 +115,16 @@ class VaryingRods(Rods):
     def end_force(self, entry: Entry) -> Array:
         """Internal force (2, r) at the end of every element."""
         segments, last = entry.segments, entry.place.last
-        force: Array = segments.constant[:, last, 0] - segments.at_end.shed[:, last, 0]
+        force: Array = segments.constant[:, last, 0] - segments.at_end.resultant[:, last, 0]
         return force
 
     def curvature(self, entry: Entry, s: int, touch: Touch) -> float:
         """Curvature of the axis at the contact at the end of segment s, from moment, natural curvature and stretch."""
         element = int(entry.place.owner[s])
         section = self.section(element, touch.xi * self.length[element])
-        fx, fy = entry.segments.constant[:, s : s + 2, 0].mean(axis=1) - entry.segments.at_end.shed[:, s, 0]
+        fx, fy = (
+            entry.segments.constant[:, s : s + 2, 0].mean(axis=1) - entry.segments.at_end.resultant[:, s, 0]
+        )
         axial = fx * np.cos(touch.angle) + fy * np.sin(touch.angle)
         turn = float(entry.moment[s + 1, 0]) * section.bend + section.curvature
         return float(turn / (1 + axial * section.stretch))
@@ -139,7 +141,7 @@ class VaryingRods(Rods):
         """Tangent vectors before and after the contact at the end of segment s."""
         touch, here = touch_of(state, k), segments.at_end
         stretch, shear = here.flexibility.stretch[s, 0], here.flexibility.shear[s, 0]
-        before, after = (segments.constant[:, n, 0] - here.shed[:, s, 0] for n in (s, s + 1))
+        before, after = (segments.constant[:, n, 0] - here.resultant[:, s, 0] for n in (s, s + 1))
         one, other = (rod.tangent(stretch, shear, (x, y), touch.angle) for x, y in (before, after))
         return one, other
 
@@ -169,7 +171,7 @@ class VaryingRods(Rods):
         here = segments.at_end.single(s)
         by_arc, by_load = np.zeros((2, 2))
         for n in (s, s + 1):
-            force = segments.constant[:, n, 0] - here.shed[:, 0, 0]
+            force = segments.constant[:, n, 0] - here.resultant[:, 0, 0]
             arc, load = varying.tangent_slope(here, force, touch.angle)
             by_arc, by_load = by_arc + arc, by_load + load
         moment = balance.entry.moment[s + 1, 0]
@@ -187,24 +189,26 @@ class VaryingRods(Rods):
         for part in tangent.cut:
             rate[:, part.element] = part.tangent[:OWN, -2]
             contacts[self.slots(part.pairs)] += part.tangent[OWN:, -2]
-        rate[6:8] = -self.course(own, self.length[:, None], state.load_parameter).shed_rate[:, :, 0]
+        rate[6:8] = -self.course(own, self.length[:, None], state.load_parameter).resultant_rate[:, :, 0]
         return rate
 
     def load_work(self, state: State) -> float:
         """Work of the loads along the elements: with ``P' = q`` it is ``[P . u] - int P . (r' - r_0') ds``."""
         entry, q, own = self.enter(state), state.q[self.dofs], np.arange(len(self.length))
         table = collocation(_UNDEFORMED_ORDER)
-        shed = self.course(own, self.length[:, None], state.load_parameter).shed[:, :, 0]
-        work = float((shed * q[6:8]).sum()) - self._along(entry, entry.field.values[1:])
+        resultant = self.course(own, self.length[:, None], state.load_parameter).resultant[:, :, 0]
+        work = float((resultant * q[6:8]).sum()) - self._along(entry, entry.field.values[1:])
         arc = self.length[:, None] * table.c
         angle = self.undeformed_angle(own[:, None], arc)
-        straight = self.course(own, arc, state.load_parameter).shed * np.stack([np.cos(angle), np.sin(angle)])
+        straight = self.course(own, arc, state.load_parameter).resultant * np.stack(
+            [np.cos(angle), np.sin(angle)]
+        )
         return work + float((straight.sum(axis=0) @ table.w) @ self.length)
 
     def _along(self, entry: Entry, values: Array) -> float:
         """Integral of ``P . v`` with values (2, s, p) of v at the Gauss nodes."""
         segments = entry.segments
-        density = (segments.course.shed * values).sum(axis=0) @ collocation(segments.angle.shape[1]).w
+        density = (segments.course.resultant * values).sum(axis=0) @ collocation(segments.angle.shape[1]).w
         return float(density @ segments.length[:, 0])
 
     def load_power(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> float:
@@ -213,13 +217,13 @@ class VaryingRods(Rods):
         segments, field, table = entry.segments, entry.field, collocation(entry.segments.angle.shape[1])
         inputs = self.inputs(tangent, state, dofs, contacts, (1.0, 0.0))
         inside = (tangent.inner @ inputs[:, :, None])[:, :, 0]
-        shed = self.course(own, self.length[:, None], state.load_parameter).shed[:, :, 0]
-        power = float((shed * dofs[self.dofs[6:8]]).sum())
+        resultant = self.course(own, self.length[:, None], state.load_parameter).resultant[:, :, 0]
+        power = float((resultant * dofs[self.dofs[6:8]]).sum())
         power -= self._along(entry, varying.tangent_rate(segments, field, inside, inputs))
         # the ends of the segments move along the rod
         longer, moved = inputs[:, 5], inputs[:, _ARC, None] + inputs[:, 5, None] * table.c
         tangents = field.values[1:]
-        power -= float(((segments.course.shed * tangents).sum(axis=0) @ table.w) @ longer)
+        power -= float(((segments.course.resultant * tangents).sum(axis=0) @ table.w) @ longer)
         return power - self._along_load(segments, tangents * moved)
 
     @staticmethod

@@ -42,7 +42,7 @@ def hessians(
     """
     arcs = np.concatenate([segments.begin, segments.begin + segments.length], axis=1)
     course = rods.course(segments.owner, arcs, load_parameter)
-    (nx, ny), angles, moments = segments.constant - course.shed, ends[0].T, ends[1].T
+    (nx, ny), angles, moments = segments.constant - course.resultant, ends[0].T, ends[1].T
     c, s = np.cos(angles), np.sin(angles)
     N, Q, (stretch, shear, bend) = nx * c + ny * s, ny * c - nx * s, course.flexibility
     f = -Q * (1 + (stretch - shear) * N)
