@@ -108,6 +108,8 @@ def regripped(newton: Newton, state: State, drive: Drive, last: State) -> State 
     """
     system = newton.assembler.linearise(state)
     here = {k: traction(newton.model, state, system, k) for k, _ in grips(state)}
+    # a contact that has just closed has a force of round-off, which may be considerable near a support
+    here |= {k: here[k]._replace(tangential=0.0, normal=0.0) for k, grip in grips(state) if grip == UNDECIDED}
     choices = [[(k, grip) for grip in _choices(newton.model, k, grip, here[k])] for k, grip in grips(state)]
     stiff = max(beam.section.EA for beam in newton.model.structure.beams)
     # the round-off of a slip rate is a force in a stiff beam, so more is allowed where a slip ends, and where nothing else is admissible
