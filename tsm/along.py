@@ -92,7 +92,7 @@ class Along:
         elements : ndarray of int, shape (s,)
             Global numbers of the elements.
         part : ndarray, shape (s, p)
-            Where.
+            Parts of the lengths, from 0 at the start of an element to 1.
         resultant, resultant_rate : ndarray, shape (2, d, s)
             Coefficients of the resultants of all loads together along these elements, and their derivatives in the load parameter.
         """

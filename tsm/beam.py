@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Literal
 
 from tsm.elements import ELEMENTS, MIXED
 
 Point = tuple[float, float]
+End = Literal["start", "end"]
 
 LARGEST = 1e50
 """Largest coordinate, length, force and moment: squares, products and quotients of such numbers stay in floating-point range."""
@@ -24,6 +26,11 @@ def check(ok: bool, owner: str, field: str, value: object, rule: str) -> None:
     """Raise ValueError with the field, its value and the rule unless `ok`."""
     if not ok:
         raise ValueError(f"{owner}.{field} = {value!r}: {rule}")
+
+
+def check_end(owner: str, end: str | None) -> None:
+    """Raise ValueError unless `end` is an end of a beam."""
+    check(end in {"start", "end"}, owner, "end", end, 'must be "start" or "end"')
 
 
 def finite(*values: float) -> bool:

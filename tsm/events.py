@@ -190,7 +190,7 @@ def margins(
     Parameters
     ----------
     model, equilibrium
-        Where.
+        The structure and its equilibrium.
     tolerance : float
         Tolerance of the solution, by which forces are measured.
     slip_rates : mapping

@@ -21,7 +21,7 @@ def mechanism(newton: Newton, equilibrium: Equilibrium, drive: Drive) -> bool:
     newton : Newton
         Solver of the structure.
     equilibrium : Equilibrium
-        Where.
+        The equilibrium in which the drive begins.
     drive : Drive
         What changes.
     """

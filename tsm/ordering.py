@@ -39,7 +39,7 @@ def _pairs(model: Model) -> Array:
 
 
 def _pairs_with_hinges(model: Model) -> Array:
-    """The same where an element couples a joint and the rotation of a node behind a hinge with its other degrees of freedom."""
+    """Pairs as of `_pairs`, where an element behind a hinge moves with the joint's node and turns with its own."""
     nodes = model.dofs[[0, 2, 3, 5]] // 3
     blocks = [*nodes, np.where(model.block < 0, nodes[0], model.block)]
     links = np.array(list(model.joints.items()), dtype=int).T

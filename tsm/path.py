@@ -38,7 +38,7 @@ class PathTangent:
     newton : Newton
         Its assembler gives the tangent.
     equilibrium : Equilibrium
-        Where.
+        The point of the path.
     """
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:

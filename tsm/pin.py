@@ -58,7 +58,7 @@ class Polyline:
         return min(max(at, 1), len(self.points) - 1) - 1
 
     def velocity(self, begin: float, end: float) -> Point:
-        """Mean derivative of the position between two parameters; at one of them the derivative, at a corner of the leg before.
+        """Mean derivative of the position between two parameters; the derivative if these are equal, at a corner on the leg before it.
 
         >>> Polyline(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
         (1.0, 1.0)
@@ -164,7 +164,7 @@ class Pin:
         return (*self.path, *(point for points in self.onward for point in points))
 
     def velocity(self, begin: float, end: float) -> Point:
-        """Mean derivative of the position between two load parameters; at one of them the derivative, at a corner of the leg before.
+        """Mean derivative of the position between two load parameters; the derivative if these are equal, at a corner on the leg before it.
 
         >>> Pin(name="pin", path=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))).velocity(0.0, 1.0)
         (1.0, 1.0)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
-from tsm.beam import LARGEST, check, finite
+from tsm.beam import LARGEST, End, check, check_end, finite
 from tsm.elements.properties import Array
 
 _EPS = float(np.finfo(float).eps)
@@ -35,12 +34,12 @@ class Hinge:
     """
 
     beam: str
-    end: Literal["start", "end"]
+    end: End
     stiffness: float = 0.0
 
     def __post_init__(self) -> None:
         owner = f"Hinge({self.beam}.{self.end})"
-        check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        check_end(owner, self.end)
         _check_stiffness(owner, stiffness=self.stiffness)
 
 
@@ -61,14 +60,14 @@ class Spring:
     """
 
     beam: str
-    end: Literal["start", "end"]
+    end: End
     x: float = 0.0
     y: float = 0.0
     rotation: float = 0.0
 
     def __post_init__(self) -> None:
         owner = f"Spring({self.beam}.{self.end})"
-        check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+        check_end(owner, self.end)
         _check_stiffness(owner, x=self.x, y=self.y, rotation=self.rotation)
 
 
@@ -102,7 +101,7 @@ class Springs:
         self.values = np.concatenate([self.ground_stiffness, np.outer(signs, self.stiffness).ravel()])
 
     def forces(self, q: Array) -> Array:
-        """Residual of all degrees of freedom at displacements or at their rates."""
+        """Return the residual over all degrees of freedom from their displacements `q`, or its rate from the rates of these."""
         nodal = np.zeros_like(q)
         np.add.at(nodal, self.ground, self.ground_stiffness * q[self.ground])
         moment = self.stiffness * (q[self.second] - q[self.first])

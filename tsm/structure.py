@@ -9,13 +9,22 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from tsm.beam import LARGEST, MOST, MOST_STAGES, Beam, LineLoad, Point, Section
-from tsm.beam import check as _check
-from tsm.beam import finite as _finite
+from tsm.beam import (
+    LARGEST,
+    MOST,
+    MOST_STAGES,
+    Beam,
+    End,
+    LineLoad,
+    Point,
+    Section,
+    check,
+    check_end,
+    finite,
+)
 from tsm.pin import Pin
 from tsm.springs import Hinge, Spring
 
-End = Literal["start", "end"]
 Side = Literal["left", "right"]
 
 
@@ -69,14 +78,14 @@ class Support:
         owner = f"Support({self.beam}.{self.end})"
         free = [value is None for value in (self.ux, self.uy, self.rotation)]
         for motion in self.onward:
-            _check(_finite(*motion), owner, "onward", motion, f"must be finite, of at most {LARGEST:g}")
+            check(finite(*motion), owner, "onward", motion, f"must be finite, of at most {LARGEST:g}")
             still = not any(value for value, loose in zip(motion, free, strict=True) if loose)
-            _check(still, owner, "onward", motion, "must be zero where the component is free")
-        _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+            check(still, owner, "onward", motion, "must be zero where the component is free")
+        check_end(owner, self.end)
         for field in ("ux", "uy", "rotation"):
             value = getattr(self, field)
-            _check(
-                value is None or _finite(value),
+            check(
+                value is None or finite(value),
                 owner,
                 field,
                 value,
@@ -114,18 +123,18 @@ class Load:
     def __post_init__(self) -> None:
         owner = f"Load({self.beam}.{self.arc if self.end is None else self.end})"
         if self.arc is None:
-            _check(self.end in {"start", "end"}, owner, "end", self.end, 'must be "start" or "end"')
+            check_end(owner, self.end)
         else:
-            _check(self.end is None, owner, "arc", self.arc, "is given instead of end, not besides")
-        _check(
-            len(self.force) == 2 and _finite(*self.force),
+            check(self.end is None, owner, "arc", self.arc, "is given instead of end, not besides")
+        check(
+            len(self.force) == 2 and finite(*self.force),
             owner,
             "force",
             self.force,
             f"must be two finite numbers, of at most {LARGEST:g}",
         )
-        _check(_finite(self.moment), owner, "moment", self.moment, f"must be finite, of at most {LARGEST:g}")
-        _check(
+        check(finite(self.moment), owner, "moment", self.moment, f"must be finite, of at most {LARGEST:g}")
+        check(
             0 <= self.stage <= MOST_STAGES,
             owner,
             "stage",
@@ -169,26 +178,26 @@ class ContactPair:
     end_offset: float | None = None
 
     def __post_init__(self) -> None:
-        _check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
-        _check(
-            _finite(self.offset) and self.offset >= 0,
+        check(self.side in {"left", "right"}, self.name, "side", self.side, 'must be "left" or "right"')
+        check(
+            finite(self.offset) and self.offset >= 0,
             self.name,
             "offset",
             self.offset,
             "must not be negative",
         )
-        _check(
+        check(
             0 <= self.friction <= MOST_FRICTION,
             self.name, "friction", self.friction, f"must lie between 0 and {MOST_FRICTION:g}",
         )  # fmt: skip
-        _check(
+        check(
             0 <= self.radius <= self.offset,
             self.name, "radius", self.radius, "must lie between 0 and the offset",
         )  # fmt: skip
         if self.end_offset is not None:
-            positive = min(self.offset, self.end_offset) > 0 and _finite(self.end_offset)
-            _check(positive, self.name, "end_offset", self.end_offset, "must be positive, and offset too")
-            _check(
+            positive = min(self.offset, self.end_offset) > 0 and finite(self.end_offset)
+            check(positive, self.name, "end_offset", self.end_offset, "must be positive, and offset too")
+            check(
                 not self.friction,
                 self.name,
                 "friction",
@@ -225,9 +234,9 @@ class Structure:
     springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
-        _check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
+        check(len(self.beams) > 0, "Structure", "beams", self.beams, "must not be empty")
         elements = sum(beam.elements for beam in self.beams)
-        _check(elements <= MOST, "Structure", "elements", elements, f"must be at most {MOST} in all")
+        check(elements <= MOST, "Structure", "elements", elements, f"must be at most {MOST} in all")
         names = [beam.name for beam in self.beams] + [pin.name for pin in self.pins]
         _unique(names, "a beam or pin")
         _unique([pair.name for pair in self.contacts], "a contact")
@@ -238,27 +247,27 @@ class Structure:
         ends = {f"{beam}.{end}" for beam in beams for end in ("start", "end")}
         nodes = {pin.name for pin in self.pins} | ends
         for support in self.supports:
-            _check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
+            check(support.beam in beams, "Support", "beam", support.beam, "names no beam")
         owners = [("Hinge", hinge.beam) for hinge in self.hinges]
         owners += [("Spring", spring.beam) for spring in self.springs]
         for owner, beam in owners:
-            _check(beam in beams, owner, "beam", beam, "names no beam")
+            check(beam in beams, owner, "beam", beam, "names no beam")
         for load in self.loads:
-            _check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
+            check(load.beam in beams, "Load", "beam", load.beam, "names no beam")
             if load.arc is not None:
                 at_node = self.beam(load.beam).node(load.arc) is not None
-                _check(at_node, f"Load({load.beam})", "arc", load.arc, "must be a node, see Beam.divided")
+                check(at_node, f"Load({load.beam})", "arc", load.arc, "must be a node, see Beam.divided")
         for line_load in self.line_loads:
-            _check(line_load.beam in beams, "LineLoad", "beam", line_load.beam, "names no beam")
+            check(line_load.beam in beams, "LineLoad", "beam", line_load.beam, "names no beam")
             line_load.check(self.beam(line_load.beam))
         for pair in self.contacts:
-            _check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
-            _check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
+            check(pair.beam in beams, pair.name, "beam", pair.beam, "names no beam")
+            check(pair.node in nodes, pair.name, "node", pair.node, "names no pin and no beam end")
             own = pair.node.rpartition(".")[0] == pair.beam
-            _check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
+            check(not own, pair.name, "node", pair.node, "a beam does not touch itself")
             if pair.end_offset is not None:
                 flat = abs(pair.end_offset - pair.offset) < self.beam(pair.beam).length
-                _check(
+                check(
                     flat,
                     pair.name,
                     "end_offset",
@@ -281,5 +290,5 @@ class Structure:
 def _unique(names: Iterable[str], what: str) -> None:
     seen: set[str] = set()
     for name in names:
-        _check(name not in seen, "Structure", "names", name, f"names more than one of {what}")
+        check(name not in seen, "Structure", "names", name, f"names more than one of {what}")
         seen.add(name)

@@ -117,7 +117,7 @@ class ElementGroup(ABC):
 
     @abstractmethod
     def load_work(self, state: State) -> float:
-        """Work of the loads along the elements at the state, as they are there, on the displacements."""
+        """Work of the loads along the elements, as large as they are at the state, on the displacements to the state."""
 
     @abstractmethod
     def load_power(self, state: State, tangent: Any, dofs: Array, contacts: Array) -> float:

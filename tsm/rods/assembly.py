@@ -287,7 +287,7 @@ class Rods:
         tangent : RodTangent
             At the state.
         state : State
-            Where.
+            Configuration before the change.
         dq : ndarray, shape (dofs,)
             Change of the displacements and element forces.
         contacts : ndarray, shape (contact unknowns,)

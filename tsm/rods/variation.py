@@ -242,7 +242,7 @@ def _hessian(transfer: Array, bent: Array) -> Array:
 
 
 def _hessian_with_moment(transfer: Array, bent: Array) -> Array:
-    """The same of ``G* (m, phi_j, n, h) - m phi_i``, whose extremum in m is G; regular at ``h = 0``."""
+    """Hessians of ``G*(m, phi_j, n, h) - m phi_i``, whose extremum in m is G, with the moment as an input; regular at ``h = 0``."""
     angle = transfer[:, 0, :6] / -transfer[:, 0, 0, None]
     angle[:, 0] = 0.0
     arriving = transfer[:, 1:, :6] + transfer[:, 1:, 0, None] * angle[:, None, :]
