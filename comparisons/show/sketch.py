@@ -30,8 +30,12 @@ from comparisons.show.symbols import (
 )
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
-SYMBOL, STROKE, ARROW, TURN, LABEL = 0.025, 0.012, 0.14, 0.05, 0.12
-"""Sizes of a support, a stroke on the side of a contact, the arrow of a force, the arc of a moment and a label, over the size of the scene."""
+SYMBOL, STROKE, ARROW, TURN = 0.025, 0.012, 0.14, 0.05
+"""Sizes of a support, a stroke on the side of a contact, the arrow of a force and the arc of a moment, over the size of the scene."""
+PULL = 0.7
+"""Cosine of the angle between a force and its beam above which the force is drawn as one that pulls."""
+ROUNDS = 3
+"""Times that the labels are separated and the axes fitted around them, which change each other."""
 STROKES = 40
 """Strokes along the side of a contact, and pieces of an axis."""
 ROW = 11
@@ -94,6 +98,9 @@ def draw(scene: Scene, path: Path) -> None:
     fig.legend(
         entries.values(), entries.keys(), loc="outside lower center", ncols=2, fontsize="small", frameon=False
     )
+    for _ in range(ROUNDS):
+        fig.draw_without_rendering()
+        sketch.separate()
     save(fig, path)
 
 
@@ -121,12 +128,15 @@ class _Sketch:
         Size of the scene [length].
     legend : dict
         What is drawn so far, by its words in the legend.
+    labels : list of (Annotation, float)
+        What is written so far, with 1 where it may move up and -1 where it may move down.
     """
 
     axes: Any
     scene: Scene
     size: float
     legend: dict[str, Any] = field(default_factory=dict)
+    labels: list[tuple[Any, float]] = field(default_factory=list)
 
     @property
     def units(self) -> tuple[str, str]:
@@ -144,12 +154,20 @@ class _Sketch:
         middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
         self._arrow(middle, middle + 0.03 * self.size * tangent, BEAM)
         sides = {contact.side for contact in self.scene.contacts if contact.beam == beam.name}
-        clear = (-1.0 if sides == {"left"} else 1.0) * _across(beam.tangent(NAME))
+        taken = {1.0 if side == "left" else -1.0 for side in sides} | set(self._loaded_sides(beam))
+        clear = (-1.0 if taken == {1.0} else 1.0) * _across(beam.tangent(NAME))
         self._label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * clear, clear, BEAM)
         if beam.height is None:
             self.legend.setdefault("beam: axis, without a height", line)
         else:
             self.legend.setdefault("beam, height to scale", drawn)
+
+    def _loaded_sides(self, beam: BeamSpec) -> Iterator[float]:
+        """Yield 1 for a load along a beam whose arrows stand on its left where its name is, and -1 for one on the right."""
+        for history in self.scene.load_histories:
+            load = history.load
+            if load.beam == beam.name and load.force_per_length is not None:
+                yield -float(np.sign(np.array(load.force_per_length) @ _across(beam.tangent(NAME))))
 
     def side(self, contact: ContactSpec) -> None:
         """Draw the surface that a node touches, with strokes on the side from which the node comes."""
@@ -224,9 +242,8 @@ class _Sketch:
                     else self.scene.beam(load.beam).place(load.at)
                 )
                 if any(load.force):
-                    self._force(
-                        np.array(at), np.array(load.force), f"{hypot(*load.force):.6g} {force}{_after(stage)}"
-                    )
+                    words = f"{hypot(*load.force):.6g} {force}{_after(stage)}"
+                    self._force(np.array(at), np.array(load.force), words, pulls=self._pulls(load))
                 if load.moment:
                     words = f"{abs(load.moment):.6g} {force} {length}{_after(stage)}"
                     self._turn(at, load.moment, words, LOAD)
@@ -236,14 +253,29 @@ class _Sketch:
                 if beam.density:
                     weight = np.array(gravity) * _mass(beam)
                     words = f"weight {hypot(*weight):.4g} {force}{_after(stage)}"
-                    self._force(np.array(beam.place(WEIGHT)), weight, words)
+                    self._force(np.array(beam.place(WEIGHT)), weight, words, beside=True)
 
-    def _force(self, at: Array, force: Array, words: str) -> None:
+    def _force(
+        self, at: Array, force: Array, words: str, *, beside: bool = False, pulls: bool = False
+    ) -> None:
+        """Draw a force as an arrow to the point where it acts, or away from it if it pulls; its value stands at the other end, or beside."""
         along = force / np.hypot(*force)
-        tail = at - ARROW * self.size * along
-        self._arrow(tail, at, LOAD, 2.0)
-        self._label(words, tail, -along, LOAD)
+        tip = at + ARROW * self.size * along if pulls else at
+        tail = tip - ARROW * self.size * along
+        self._arrow(tail, tip, LOAD, 2.0)
+        if beside:
+            self._label(words, (tail + tip) / 2, np.array([1.0, 0.0]), LOAD)
+        else:
+            self._label(words, tip if pulls else tail, along if pulls else -along, LOAD)
         self.legend.setdefault("force, arrow not to scale", _line(LOAD, marker=">", linewidth=2.0))
+
+    def _pulls(self, load: LoadSpec) -> bool:
+        """Whether a force on a beam's end points away from the beam, along which its arrow would lie."""
+        if load.end is None:
+            return False
+        beam = self.scene.beam(load.beam)
+        outward = np.array(beam.tangent(1.0)) if load.end == "end" else -np.array(beam.tangent(0.0))
+        return float(np.array(load.force) @ outward) > PULL * float(np.hypot(*load.force))
 
     def _line_load(self, load: LoadSpec, words: str) -> None:
         """Draw a force per length as a row of arrows along a part of a beam."""
@@ -308,10 +340,9 @@ class _Sketch:
         self._label(words, at + TURN * self.size * side, side, colour)
 
     def _label(self, words: str, at: Array, direction: Array, colour: str) -> None:
-        """Write beside a place, in the direction given; the axes reach around the words."""
+        """Write beside a place, in the direction given."""
         x, y = direction / np.hypot(*direction)
-        self.axes.update_datalim([at + LABEL * self.size * np.array([x, 0.5 * y])])
-        self.axes.annotate(
+        label = self.axes.annotate(
             words,
             at,
             (7 * x, 7 * y),
@@ -321,6 +352,20 @@ class _Sketch:
             ha="left" if x > 0.5 else "right" if x < -0.5 else "center",
             va="bottom" if y > 0.5 else "top" if y < -0.5 else "center",
         )
+        self.labels.append((label, -1.0 if y < -0.5 else 1.0))
+
+    def separate(self) -> None:
+        """Move labels up or down that lie on others, and let the axes reach around all labels; the figure has been laid out."""
+        free: list[Any] = []
+        for label, way in self.labels:
+            box = label.get_window_extent()
+            while any(box.overlaps(other) for other in free):
+                x, y = label.xyann
+                label.xyann = (x, y + 4.0 * way)
+                box = label.get_window_extent()
+            free.append(box)
+            self.axes.update_datalim(box.transformed(self.axes.transData.inverted()).corners())
+        self.axes.autoscale_view()
 
 
 def _after(stage: int) -> str:

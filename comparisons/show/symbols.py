@@ -18,6 +18,8 @@ from comparisons.show import palette
 
 Segments = NDArray[np.float64]
 """Line segments, shape (n, 2, 2)."""
+LARGEST = 13.0
+"""Largest size of a symbol in a legend, so that it stays in its row [point]."""
 HATCHES = 5
 """Strokes below a ground."""
 NAMES = {
@@ -179,7 +181,7 @@ def legend_symbol(segments: Segments, colour: str = palette.BLACK) -> Any:
     vertices = segments.reshape(-1, 2)
     vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     marker = Path(vertices, [Path.MOVETO, Path.LINETO] * len(segments))
-    size = 13 * float(np.abs(vertices).max())  # matplotlib enlarges all markers to one size
+    size = min(13 * float(np.abs(vertices).max()), LARGEST)  # matplotlib enlarges all markers to one size
     return Line2D(
         [], [], color=colour, marker=marker, markersize=size, markerfacecolor="none", linestyle="none"
     )

@@ -103,6 +103,38 @@ def test_nothing_is_cut_off(name: str, drawn: Any) -> None:
         assert box.y1 <= fig.bbox.height, text
 
 
+FRAME = """
+scene = { name = "frame", units = "N, m", load_parameters = 1, gravity = [0, -9.81] }
+beam = [
+  { name = "left-column", start = [0, 0], end = [0, 3], clamped = ["start"], width = 0.1, height = 0.15, youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850 },
+  { name = "girder", start = [0, 3], end = [5, 3], width = 0.1, height = 0.2, youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850 },
+  { name = "right-column", start = [5, 0], end = [5, 3], clamped = ["start"], width = 0.1, height = 0.15, youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850 },
+]
+load = [
+  { beam = "girder", force_per_length = [0, -20000], part = [0.2, 0.6] },
+  { beam = "left-column", end = "end", force = [5000, 0] },
+  { beam = "right-column", end = "end", force = [0, 3000] },
+]
+"""
+
+
+@pytest.mark.parametrize("name", ["frame", "sleeve", "heavy-strip", "double-beam-friction"])
+def test_labels_lie_apart_within_the_axes(name: str, drawn: Any) -> None:
+    fig = drawn(read_scene(FRAME, name) if name == "frame" else load_scene(name))
+    (axes,) = fig.axes
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+    assert len(boxes) > 1
+    for k, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
+        assert axes.bbox.fully_containsx(box.x0), axes.texts[k]
+        assert axes.bbox.fully_containsx(box.x1), axes.texts[k]
+        assert axes.bbox.fully_containsy(box.y0), axes.texts[k]
+        assert axes.bbox.fully_containsy(box.y1), axes.texts[k]
+    if name == "frame":
+        (pulling,) = [text for text in axes.texts if text.get_text() == "3000 N"]
+        assert pulling.xy[1] > 3.0  # beyond the end, and not inside the column
+
+
 def test_every_support_has_a_name_and_a_symbol_of_its_own() -> None:
     up = np.array([0.0, 1.0])
     seen = set()
