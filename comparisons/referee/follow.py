@@ -8,7 +8,7 @@ from comparisons.referee.elements import mesh_for, mesh_of
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.march import closed_pairs, tangent
-from comparisons.referee.stability import index_and_margin
+from comparisons.referee.stability import index_of
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     """
     closed, grips = closed_pairs(first), first.layout.grips
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    now, step, index = first, (end - start) / 4.0, index_and_margin(first)[0]
+    now, step, index = first, (end - start) / 4.0, index_of(first)
     ahead = _tangent(scene, now, end)
     while now.layout.load_parameter < end:
         here = now.layout.load_parameter
@@ -50,7 +50,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
         z, bubbles = now.z + (t - here) * ahead[0], now.bubbles + (t - here) * ahead[1]
         layout = lay_out(scene, t, closed, grips)
         corrected = correct(layout, mesh_for(layout, now.mesh), z, bubbles, _ITERATIONS)
-        if corrected.status is SearchStatus.FOUND and index_and_margin(corrected)[0] == index:
+        if corrected.status is SearchStatus.FOUND and index_of(corrected) == index:
             off = _apart(corrected, z, bubbles) / (_apart(corrected, now.z, now.bubbles) + _ROUND_OFF)
             if off < _NEAR:
                 step *= 2.0 if off < _NEAR / 3.0 else 1.0

@@ -1,7 +1,5 @@
 """The index of an equilibrium: number of negative eigenvalues of the Hessian on the admissible variations."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,16 +11,16 @@ from comparisons.referee.stations import NONE
 Array = NDArray[np.float64]
 
 
-def index_and_margin(solution: Solution) -> tuple[int, float]:
-    """Return the index, and the smallest absolute eigenvalue of the scaled condensed Hessian.
+def index_of(solution: Solution) -> int:
+    """Return the index of an equilibrium.
 
     The energy is a maximum in the two force components of every part, whose block of the Hessian is negative definite. By
     Haynsworth's formula ``index = negatives(K) - 2 parts``, where the negatives of the elements' condensed blocks count too. The
     normal of a contact with offset is normal to the mean of the two tangents, so that the angle phi is not an independent variation.
-    With friction the equations have no potential and no index: it is -1, and the margin is nan.
+    With friction the equations have no potential and no index: it is -1.
     """
     if solution.layout.rubs:
-        return -1, math.nan
+        return -1
     system = solution.system
     assert system is not None, "an equilibrium has its equations"
     held = _directions(solution)
@@ -31,7 +29,7 @@ def index_and_margin(solution: Solution) -> tuple[int, float]:
     values = np.linalg.eigvalsh(scale[:, None] * reduced * scale)
     inside = np.linalg.eigvalsh(system.blocks)
     negatives = int((values < 0.0).sum() + (inside < 0.0).sum())
-    return negatives - 2 * len(solution.layout.parts), float(np.abs(values).min())
+    return negatives - 2 * len(solution.layout.parts)
 
 
 def _directions(solution: Solution) -> Array:

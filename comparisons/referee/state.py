@@ -9,7 +9,7 @@ from comparisons.referee.basis import GAUSS, VALUES, WEIGHTS, shapes, up_to
 from comparisons.referee.elements import Fields, fields, rotations
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.layout import Part, Touch
-from comparisons.referee.stability import index_and_margin
+from comparisons.referee.stability import index_of
 from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
 
@@ -83,8 +83,6 @@ class Equilibrium:
         Energy of all rods, springs and hinges.
     index : int
         Number of negative eigenvalues of the energy's Hessian on the admissible variations; -1 without an equilibrium.
-    margin : float
-        Smallest absolute eigenvalue of the scaled Hessian; the index is uncertain if it is round-off.
     error : float
         Estimated relative error: the last correction and the last terms of the rotation.
     iterations : int
@@ -101,7 +99,6 @@ class Equilibrium:
     ends: dict[str, Array]
     strain_energy: float
     index: int
-    margin: float
     error: float
     iterations: int
     solution: Solution = field(repr=False)
@@ -151,14 +148,12 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
             ends={},
             strain_energy=np.nan,
             index=-1,
-            margin=np.nan,
             error=np.inf,
             iterations=solution.iterations,
             solution=solution,
         )
     layout = solution.layout
     contacts = {touch.spec.pair: touching(solution, touch) for touch in layout.touches}
-    index, margin = index_and_margin(solution)
     origin = np.array(scene.beams[0].start)
     return Equilibrium(
         status=solution.status,
@@ -172,8 +167,7 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
             for end in station.joint
         },
         strain_energy=solution.system.energy * layout.force * layout.length,
-        index=index,
-        margin=margin,
+        index=index_of(solution),
         error=max(solution.correction, solution.tail),
         iterations=solution.iterations,
         solution=solution,
