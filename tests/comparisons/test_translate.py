@@ -10,7 +10,7 @@ import tsm
 from comparisons.models import MODELS, solve
 from comparisons.models.options import ModelError
 from comparisons.models.translate import to_rod, to_solid, to_structure
-from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
+from comparisons.scene import ContactSpec, LoadSpec, PinSpec, Scene, SpringSpec, SupportSpec, load_scene
 
 KS = load_scene("ks-cantilever")
 FACE = load_scene("ks-face")
@@ -102,6 +102,10 @@ def test_solid_takes_joints_supports_and_moments() -> None:
         {
             "supports": (SupportSpec(beam="cantilever", end="start", kind="clamped"),),
             "loads": (LoadSpec(beam="cantilever", end="start", moment=1.0),),
+        },
+        {
+            "supports": (SupportSpec(beam="cantilever", end="start", kind="clamped"),),
+            "springs": (SpringSpec(beam="cantilever", end="start", stiffness=(1.0, 1.0)),),
         },
     ],
 )

@@ -84,7 +84,7 @@ def _joints(scene: Scene) -> list[tuple[str, ...]]:
 
 
 def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
-    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load.
+    """Whether a support clamps the edge itself: it holds a single end at rest that bears no load and no spring.
 
     Any other support holds the mean displacement and rotation of the end's section.
 
@@ -96,14 +96,15 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     if len(spec.held) < len(COMPONENTS):
         return False
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
-    loaded = any(load.node == spec.node for _, load in _staged(scene))
+    acting = (*(load for _, load in _staged(scene)), *scene.springs)
+    loaded = any(item.node == spec.node for item in acting)
     arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
     moves = scene.prescribed_motions[spec.node].moves
     if not (moves or joined or loaded or arc):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
-            f'the solid model has a full clamp at rest without joint and load, "{spec.node}" is another'
+            f'the solid model has a full clamp at rest without joint, load and spring, "{spec.node}" is another'
         )
     return False
 
