@@ -143,9 +143,8 @@ def mode(assembler: Assembler, state: State, system: Linearisation) -> Mode | No
     """
     from scipy.sparse.linalg import splu
 
-    model, tangent = assembler.model, assembler.whole(system.tangent)
-    columns, rows = model.units, 1 / model.row_units
-    plain = tangent.multiply(rows[:, None]).multiply(columns).tocoo()
+    columns, rows = _units(assembler, state)
+    plain = assembler.whole(system.tangent).multiply(rows[:, None]).multiply(columns).tocoo()
     size = plain.shape[0]
     unit = np.append(np.zeros(size), 1.0)
     x, left = np.random.default_rng(0).standard_normal((2, size)) / np.sqrt(size)
@@ -170,9 +169,21 @@ def loose(assembler: Assembler, state: State, system: Linearisation) -> bool:
     soft = mode(assembler, state, system)
     if soft is None:
         return True
-    plain = assembler.whole(system.tangent)
-    plain = plain.multiply(1 / assembler.model.row_units[:, None]).multiply(assembler.model.units)
+    columns, rows = _units(assembler, state)
+    plain = assembler.whole(system.tangent).multiply(rows[:, None]).multiply(columns)
     return soft.softness <= _LOOSE * float(np.finfo(float).eps) * float(abs(plain).max())
+
+
+def _units(assembler: Assembler, state: State) -> tuple[Array, Array]:
+    """Units of the unknowns, and factors of the rows, with which the tangent is dimensionless; an open contact keeps 1 on the diagonal."""
+    model = assembler.model
+    columns, rows = model.units, 1 / model.row_units
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is None and pair.slot >= 0:
+            start = model.banded + model.border_dofs + pair.slot
+            own = slice(start, start + pair.element_type.contact_unknowns)
+            rows[own] = 1 / columns[own]
+    return columns, rows
 
 
 def _bordered(plain: Any, column: Array, row: Array) -> Any:

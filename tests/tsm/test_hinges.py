@@ -180,6 +180,32 @@ def test_a_contact_without_force_holds_no_mechanism(element: str) -> None:
         assert not len(result.load_parameter)
 
 
+@pytest.mark.parametrize(("length", "force"), [(1e-3, 1e8), (1e3, 1e-8)])
+def test_a_hinged_structure_in_small_or_large_units_is_no_mechanism(length: float, force: float) -> None:
+    """An open contact, whose unknowns nothing couples to the others, has no part in the singular values."""
+    section = tsm.Section(EA=1e4 * force, GA=4e3 * force, EI=force * length**2)
+    frame = tsm.Structure(
+        beams=(
+            tsm.Beam(name="a", start=(0, 0), end=(length, 0), section=section, elements=1, element="exact"),
+            tsm.Beam(
+                name="b",
+                start=(length, 0),
+                end=(length, length),
+                section=section,
+                elements=1,
+                element="exact",
+            ),
+        ),
+        supports=(tsm.Support(beam="a", end="start"), tsm.Support(beam="b", end="end", rotation=None)),
+        hinges=(tsm.Hinge(beam="b", end="start"),),
+        pins=(tsm.Pin(name="p", path=((0.5 * length, -0.1 * length), (0.5 * length, 0.1 * length))),),
+        contacts=(tsm.ContactPair(node="p", beam="a", side="right"),),
+    )
+    result = tsm.solve(frame, T, throw=False)
+    assert result.status is tsm.Status.COMPLETED
+    assert result.contacts["p->a"].arc_position[-1] / length == pytest.approx(0.51, abs=0.02)
+
+
 def test_a_hinge_or_spring_that_cannot_be_is_refused() -> None:
     with pytest.raises(ValueError, match=r"Hinge\(b.end\): the joint turns freely"):
         tsm.solve(replace(truss("mixed", 0.4, 1.0), beams=(beam("b", (0, 0), (1, 0), "mixed"),), loads=(),
