@@ -215,9 +215,9 @@ def _displacement_controlled(
         if step is None or rate is None:
             return None
         along = float(np.sum(c * rate.u))
-        if along == 0:
+        dt = (missing - float(np.sum(c * step.u))) / along if along else np.inf
+        if not np.isfinite(dt):
             return None
-        dt = (missing - float(np.sum(c * step.u))) / along
         correction = replace(step, u=step.u + dt * rate.u, forces=step.forces + dt * rate.forces)
         state = updated(model, replace(state, t=state.t + dt), correction, 1.0)
     return None

@@ -7,6 +7,7 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipk
 
 import fem_reference as fr
+from fem_reference.critical import _displacement_controlled
 from fem_reference.model import build
 from fem_reference.state import at_rest, build_state
 from fem_reference.tangent import linearise
@@ -157,6 +158,22 @@ def test_pin_that_presses_a_buckled_column_straight_loses_it_at_a_limit_point(st
     mode = many.critical[0].mode[STRIP]
     x = many.model.body(STRIP)[0].mesh.stations
     np.testing.assert_allclose(mode[:, 1], 1 - np.cos(np.pi / 2 * x), atol=0.05)
+
+
+@pytest.mark.parametrize("delta", [np.inf, np.nan])
+def test_a_step_of_displacement_control_that_is_not_finite_ends_without_a_state(strip, delta):
+    """The search for a limit point may diverge. It then has no load parameter at which a pin could be placed."""
+    pins = (fr.Pin(name="pin", path=((0.7, -0.1), (0.7, 0.3))),)
+    contacts = (fr.Contact(node="pin", strip=STRIP),)
+    load = fr.EndLoad(strip=STRIP, force=(0.0, euler()))
+    model = build(fr.SolidProblem(strips=(strip(mesh=(10, 1)),), pins=pins, contacts=contacts, loads=(load,)))
+    settings = fr.Settings()
+    start = accept(model, at_rest(model), settings)
+    rate = start.rate(0.0, settings.min_step).u
+    found = _displacement_controlled(
+        model, start.state, start.state.u, rate / np.linalg.norm(rate), delta, settings
+    )
+    assert found is None
 
 
 def test_contact_closed_without_force_has_no_index_where_its_sides_differ(strip):
