@@ -118,6 +118,13 @@ def test_solid_holds_the_section_where_a_clamp_moves_or_is_loaded(changes: dict[
         to_solid(replace(scene, beams=(replace(scene.beams[0], solid_clamp="full"),)))
 
 
+def test_solid_clamps_the_edge_where_another_end_is_loaded_or_sprung() -> None:
+    loads = (LoadSpec(beam="cantilever", end="end", moment=1.0),)
+    springs = (SpringSpec(beam="cantilever", end="end", stiffness=(1.0, 1.0)),)
+    problem = to_solid(replace(KS, loads=loads, springs=springs))
+    assert (problem.strips[0].clamped, problem.supports) == (("start",), ())
+
+
 def test_solid_refuses_a_beam_that_only_contact_holds() -> None:
     pinned = SupportSpec(beam="cantilever", end="start", kind="pinned")
     pin = replace(KS.pins[0], start=(1.0, -0.1))

@@ -96,7 +96,8 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     if len(spec.held) < len(COMPONENTS):
         return False
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
-    loaded = {load.node for _, load in _staged(scene)} | {spring.node for spring in scene.springs}
+    acting = [load.node for _, load in _staged(scene)] + [spring.node for spring in scene.springs]
+    loaded = spec.node in acting
     arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
     moves = scene.prescribed_motions[spec.node].moves
     if not (moves or joined or loaded or arc):
