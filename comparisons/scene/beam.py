@@ -207,6 +207,12 @@ class BeamSpec(Record):
         """Return the mass per undeformed length at a fraction of the length, zero without `density`."""
         return (self.density or 0.0) * self.section(fraction)[0]
 
+    @property
+    def mass(self) -> float:
+        """Mass, zero without `density`; Simpson's rule is exact for a section that tapers."""
+        start, middle, end = (self.mass_per_length(part) for part in (0.0, 0.5, 1.0))
+        return self.length * (start + 4.0 * middle + end) / 6.0
+
 
 def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
     """Return a dimension at a fraction of the length."""

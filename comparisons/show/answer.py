@@ -1,5 +1,6 @@
 """The picture of one answer: deformed shape, section forces along the beams, and forces over the load parameter."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -156,23 +157,35 @@ def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:
     axes.plot(*at, ".", color=palette.PIN, markersize=6, zorder=5, label=None if radius else name)
 
 
-def _arrows(
-    axes: "Axes", response: Response, scene: Scene, lines: dict[str, tuple[Array, Array]], k: int
-) -> None:
-    """Draw contact forces and loads as arrows with a common scale, and their values."""
-    unit, t = unit_names(scene.units)["force"], float(response.load_parameter[k])
-    extent = float(np.ptp(np.concatenate([line for _, line in lines.values()]), axis=0).max())
-    found: list[tuple[Array, Array, str, str]] = []
+def _acting(
+    response: Response, scene: Scene, lines: dict[str, tuple[Array, Array]], k: int
+) -> Iterator[tuple[Array, Array, str, str]]:
+    """Yield the point, the force, the colour and the value of every contact force and load; of a weight, its resultant."""
+    units, t = unit_names(scene.units), float(response.load_parameter[k])
     for spec in scene.contacts:
         contact = response.contacts[spec.pair]
         if contact.vector is not None and contact.force[k] > 0.0:
             at = _at(lines[spec.beam], float(contact.arc_position[k]))
-            found.append((at, contact.vector[k], palette.PIN, f"{contact.force[k]:.4g} {unit}"))
+            yield at, contact.vector[k], palette.PIN, f"{_digits(contact.force[k])} {units['force']}"
     for history in scene.load_histories:
         x, y, _ = history.at(t)
-        per = "" if history.load.force_per_length is None else f"/{unit_names(scene.units)['length']}"
-        words = f"{np.hypot(x, y):.4g} {unit}{per}"
-        found += [(at, force, palette.BLACK, words) for at, force in _load(history, scene, lines, t)]
+        per = "" if history.load.force_per_length is None else f"/{units['length']}"
+        words = f"{_digits(np.hypot(x, y))} {units['force']}{per}"
+        yield from ((at, force, palette.BLACK, words) for at, force in _load(history, scene, lines, t))
+    gravity = np.array(scene.gravity_at(t))
+    for beam in scene.beams:
+        weight = beam.mass * gravity
+        if weight.any():
+            words = f"weight {_digits(np.hypot(*weight))} {units['force']}"
+            yield _at(lines[beam.name], beam.length / 2.0), weight, palette.BLACK, words
+
+
+def _arrows(
+    axes: "Axes", response: Response, scene: Scene, lines: dict[str, tuple[Array, Array]], k: int
+) -> None:
+    """Draw contact forces and loads as arrows with a common scale, and their values."""
+    extent = float(np.ptp(np.concatenate([line for _, line in lines.values()]), axis=0).max())
+    found = list(_acting(response, scene, lines, k))
     largest = max((float(np.hypot(*force)) for _, force, _, _ in found), default=0.0)
     shown: set[str] = set()
     for at, force, colour, words in found:
@@ -196,6 +209,11 @@ def _arrows(
     for colour, words in ((palette.PIN, "contact force on the beam"), (palette.BLACK, "load")):
         if any(own == colour for _, _, own, _ in found):
             axes.plot([], [], color=colour, marker=">", markersize=4, linewidth=1.3, label=words)
+
+
+def _digits(value: float) -> str:
+    """Return four significant digits, without an exponent below a million."""
+    return f"{float(f'{value:.4g}'):.6g}"
 
 
 def _load(

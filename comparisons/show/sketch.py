@@ -251,7 +251,7 @@ class _Sketch:
         for stage, gravity in enumerate((self.scene.gravity, *(one.gravity for one in self.scene.stages)), 1):
             for beam in self.scene.beams if gravity is not None and any(gravity) else ():
                 if beam.density:
-                    weight = np.array(gravity) * _mass(beam)
+                    weight = np.array(gravity) * beam.mass
                     words = f"weight {hypot(*weight):.4g} {force}{_after(stage)}"
                     self._force(np.array(beam.place(WEIGHT)), weight, words, beside=True)
 
@@ -387,12 +387,6 @@ def _axis(beam: BeamSpec, pieces: int = STROKES) -> tuple[Array, Array]:
 
 def _heights(beam: BeamSpec, pieces: int = STROKES) -> Array:
     return np.array([beam.height_at(part) for part in _parts(pieces)])
-
-
-def _mass(beam: BeamSpec) -> float:
-    """Return the mass of a beam; Simpson's rule is exact for a section that tapers."""
-    start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
-    return beam.length * (start + 4.0 * middle + end) / 6.0
 
 
 def _across(tangent: Sequence[float]) -> Array:

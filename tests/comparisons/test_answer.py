@@ -18,8 +18,8 @@ from comparisons.response.events import last_force, peak_force
 from comparisons.response.from_json import restated
 from comparisons.response.round_off import round_off
 from comparisons.response.to_json import as_json
-from comparisons.scene import load_scene
-from comparisons.show.answer import PictureError
+from comparisons.scene import LoadSpec, Scene, load_scene
+from comparisons.show.answer import PictureError, picture
 
 EXACT = Options(element="exact")
 
@@ -155,6 +155,21 @@ def test_a_state_without_force_is_not_drawn() -> None:
     response = answer("double-beam", load_parameters=19)
     loaded = response.load_parameter[response.contacts["pin->lower"].force > 0.0][-1]
     assert f"load parameter {loaded:.6g}" in response.plot().axes[0].get_title()
+
+
+def arrows(scene: Scene) -> set[str]:
+    return {text.get_text() for text in picture(solve(scene, "tsm")).axes[0].texts}
+
+
+def test_the_picture_has_the_weights_of_the_beams_and_numbers_without_an_exponent() -> None:
+    heavy = replace(load_scene("heavy-strip"), load_parameters=2)
+    stiff = replace(heavy.beams[0], height=0.1, youngs_modulus=2.1e14)
+    pressed = LoadSpec(beam="strip", force_per_length=(0.0, -20000.0))
+    beam = heavy.beams[0]
+    weight = beam.density * beam.width * beam.height * beam.length * 9.81
+    assert f"weight {weight:.4g} N" in arrows(heavy)
+    loaded = arrows(replace(heavy, beams=(stiff,), loads=(pressed,)))
+    assert {"20000 N/m", f"weight {weight * 0.1 / beam.height:.4g} N"} <= loaded
 
 
 def test_solve_writes_a_history_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
