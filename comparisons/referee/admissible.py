@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.distance import bending_force
 from comparisons.referee.faces import face_slope, touching_distance
+from comparisons.referee.start import PULL
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
@@ -15,8 +16,6 @@ Array = NDArray[np.float64]
 
 INSIDE = 1e-9
 """Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
-PULL = 1e-9
-"""Largest accepted tensile contact force over EI/L^2 of the touched beam, for the round-off of the models at a release."""
 _POINTS = 201
 _BESIDE = 1e-12
 """Relative distance of two arc positions on either side of a contact."""

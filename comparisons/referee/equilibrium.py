@@ -11,7 +11,7 @@ from comparisons.referee.basis import AMPLITUDE, DEGREE, GAUSS, VALUES, shapes
 from comparisons.referee.elements import Mesh, mesh_of, properties, rotations
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.start import AnswerState, Rotations, first_guess
+from comparisons.referee.start import SHORTEST, AnswerState, Rotations, first_guess
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -188,7 +188,7 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part in layout.parts:
-        if layout.extent(z, part) <= 1e-9:
+        if layout.extent(z, part) <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'

@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 from comparisons.referee.friction import Grip
 from comparisons.referee.layout import Layout, Part
 from comparisons.referee.stations import NONE, Position
-from comparisons.response import Response
-from comparisons.scene import Scene
+from comparisons.response import ContactHistory, Response
+from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
+PULL = 1e-9
+"""Largest contact force that is round-off, over EI/L^2 of the touched beam, for the models' contacts at a release."""
+SHORTEST = 1e-9
+"""Length of a part over the longest beam up to which two stations are at one place."""
 _LOADED = 65
 """Points of a part at which the moment of the load along it is evaluated."""
 _CLOSED_LOOP = 1e-3
@@ -31,7 +35,7 @@ class AnswerState:
     arcs : dict of float
         Arc position of every closed pair, by the pair's name.
     forces : dict of (float, float)
-        Contact force of every closed pair on its beam.
+        Contact force of every pair that has one, on its beam.
     axes : dict of (ndarray, ndarray)
         Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
     reactions : dict of (float, float, float)
@@ -55,16 +59,24 @@ class AnswerState:
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
-    """Return the state of `response` at its load parameter number k."""
-    closed = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
+    """Return the state of `response` at its load parameter number k.
+
+    A contact whose force is round-off is open at an end of its beam, where no rod lies beside it; its force counts in the balance.
+    """
+    pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
+    idle = {
+        spec.pair
+        for spec in scene.contacts
+        if spec.pair in pushing and idle_at_an_end(pushing[spec.pair], scene, spec, k)
+    }
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
-        arcs={pair: float(item.arc_position[k]) for pair, item in closed.items()},
+        arcs={pair: float(item.arc_position[k]) for pair, item in pushing.items() if pair not in idle},
         forces={
             pair: (math.nan, math.nan)
             if item.vector is None
             else (float(item.vector[k, 0]), float(item.vector[k, 1]))
-            for pair, item in closed.items()
+            for pair, item in pushing.items()
         },
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions={
@@ -74,10 +86,17 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
         tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
         drags={
             pair: float(item.friction.tangential[k])
-            for pair, item in closed.items()
+            for pair, item in pushing.items()
             if item.friction is not None
         },
     )
+
+
+def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: int) -> bool:
+    """Whether a contact is at an end of its beam with a force that is round-off."""
+    beam, arc = scene.beam(spec.beam), float(contact.arc_position[k])
+    inside = min(arc, beam.length - arc) / max(item.length for item in scene.beams)
+    return abs(float(contact.force[k])) <= PULL * beam.EI / beam.length**2 and abs(inside) <= SHORTEST
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -15,7 +15,17 @@ from comparisons.models.options import Options
 from comparisons.models.progress import unwatched
 from comparisons.referee import Certificate, Verdict, certify, equilibrium
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec, load_scene
+from comparisons.scene import (
+    BeamSpec,
+    ContactSpec,
+    LoadSpec,
+    PinMove,
+    PinSpec,
+    Scene,
+    StageSpec,
+    SupportSpec,
+    load_scene,
+)
 from tests.comparisons.referee.forged import bent, integrated, stated
 
 PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
@@ -375,3 +385,20 @@ def test_a_certificate_is_stated_as_json() -> None:
 def test_nothing_reached_is_not_judged() -> None:
     cut = replace(answer(KS), load_parameter=np.zeros(0))
     assert certify(cut, KS).verdict is Verdict.NOT_JUDGED
+
+
+@pytest.mark.parametrize(
+    ("beyond", "force", "true"),
+    [(0.0, 1e-14, True), (1e-12, 1e-14, True), (1e-3, 1e-14, False), (0.0, 1e-6, False)],
+)
+def test_a_contact_without_force_at_a_tip_is_open(beyond: float, force: float, true: bool) -> None:
+    """A stage takes the pin back to the tip, where it touches without force; a place beyond round-off, or a force, is refused."""
+    (pin,) = KS.pins
+    back = StageSpec(load_parameters=2, pin=(PinMove(name=pin.name, path=(pin.points[0],)),))
+    scene = replace(KS, load_parameters=4, stages=(back,))
+    response = answer(scene)
+    arc, size, vector = (
+        np.copy(getattr(response.contacts[PAIR], name)) for name in ("arc_position", "force", "vector")
+    )
+    arc[-1], size[-1], vector[-1] = 1.0 + beyond, force, (0.0, force)
+    assert certify(contact(response, arc_position=arc, force=size, vector=vector), scene).certified == true
