@@ -15,7 +15,39 @@ Motion = tuple[float | None, float | None, float | None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Support:
+class AtEnd:
+    """Base of the conditions of one end of a strip.
+
+    Parameters
+    ----------
+    strip, end
+        Name of the strip, and its end, ``"start"`` or ``"end"``.
+
+    Raises
+    ------
+    ValueError
+        If the end has another name.
+    """
+
+    strip: str
+    end: str
+
+    def __post_init__(self) -> None:
+        require_choice(self.owner, "end", self.end, ENDS)
+
+    @property
+    def node(self) -> str:
+        """Name of the end, ``"strip.end"``."""
+        return f"{self.strip}.{self.end}"
+
+    @property
+    def owner(self) -> str:
+        """Name of the condition in error messages."""
+        return f"{type(self).__name__}({self.node!r})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support(AtEnd):
     """A support of a strip's end. The end section may contract and warp.
 
     Parameters
@@ -34,28 +66,21 @@ class Support:
         If nothing is held or a motion is not finite.
     """
 
-    strip: str
-    end: str
     motion: Motion = (0.0, 0.0, 0.0)
     onward: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        owner = f"Support({self.node!r})"
+        super().__post_init__()
+        owner = self.owner
         moved = all(len(change) == 3 and all(map(isfinite, change)) for change in self.onward)
         require(moved, owner, "onward", self.onward, "must be three finite values for every stage")
-        require_choice(owner, "end", self.end, ENDS)
         held = [value for value in self.motion if value is not None]
         finite = len(self.motion) == 3 and all(map(isfinite, held))
         require(finite and len(held) > 0, owner, "motion", self.motion, "must be three, at least one finite")
 
-    @property
-    def node(self) -> str:
-        """Name of the end, ``"strip.end"``."""
-        return f"{self.strip}.{self.end}"
-
 
 @dataclass(frozen=True, kw_only=True)
-class Spring:
+class Spring(AtEnd):
     """Linear springs between a strip's end and the ground, without force in the undeformed state.
 
     Parameters
@@ -71,21 +96,14 @@ class Spring:
         If a stiffness is negative or not finite, or all vanish.
     """
 
-    strip: str
-    end: str
     stiffness: tuple[float, float, float]
 
     def __post_init__(self) -> None:
-        owner = f"Spring({self.node!r})"
-        require_choice(owner, "end", self.end, ENDS)
+        super().__post_init__()
+        owner = self.owner
         finite = len(self.stiffness) == 3 and all(isfinite(value) and value >= 0 for value in self.stiffness)
         rule = "must be three finite values, none negative, not all zero"
         require(finite and any(self.stiffness), owner, "stiffness", self.stiffness, rule)
-
-    @property
-    def node(self) -> str:
-        """Name of the end, ``"strip.end"``."""
-        return f"{self.strip}.{self.end}"
 
     @property
     def motion(self) -> Motion:
@@ -95,7 +113,7 @@ class Spring:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EndLoad:
+class EndLoad(AtEnd):
     """A dead force and a dead moment on an end of a strip.
 
     The force is distributed evenly over the undeformed section. The tractions of the moment are linear over the
@@ -118,25 +136,19 @@ class EndLoad:
         If a value is not finite, or force and moment vanish.
     """
 
-    strip: str
+    end: str = "end"
     force: Point = (0.0, 0.0)
     moment: float = 0.0
-    end: str = "end"
     stage: int = 0
 
     def __post_init__(self) -> None:
-        owner = f"EndLoad({self.node!r})"
-        require_choice(owner, "end", self.end, ENDS)
+        super().__post_init__()
+        owner = self.owner
         require_point(owner, "force", self.force)
         require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
         require(isfinite(self.moment), owner, "moment", self.moment, "must be finite")
         rule = "must not be zero without a moment"
         require(any((*self.force, self.moment)), owner, "force", self.force, rule)
-
-    @property
-    def node(self) -> str:
-        """Name of the end, ``"strip.end"``."""
-        return f"{self.strip}.{self.end}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,11 +206,10 @@ def require_known_ends(
     """Require known ends without clamps, one support and one spring at a joint or end, and joints at one position."""
     positions = {f"{strip.name}.{end}": getattr(strip, end) for strip in strips for end in ENDS}
     clamps = [f"{strip.name}.{end}" for strip in strips for end in strip.clamped]
-    conditions: list[Holding | EndLoad] = [*holding, *loads]
-    for condition in conditions:
-        owner = f"{type(condition).__name__}({condition.node!r})"
-        require(condition.node in positions, owner, "strip", condition.strip, "must name a strip")
-        require(condition.node not in clamps, owner, "end", condition.end, "must not be a clamped end")
+    for condition in (*holding, *loads):
+        owner, node = condition.owner, condition.node
+        require(node in positions, owner, "strip", condition.strip, "must name a strip")
+        require(node not in clamps, owner, "end", condition.end, "must not be a clamped end")
     for joint in joints:
         owner = f"Joint({joint.ends!r})"
         for end in joint.ends:

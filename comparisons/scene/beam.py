@@ -213,6 +213,13 @@ class BeamSpec(Record):
         start, middle, end = (self.mass_per_length(part) for part in (0.0, 0.5, 1.0))
         return self.length * (start + 4.0 * middle + end) / 6.0
 
+    def mass_coefficients(self) -> tuple[float, ...]:
+        """Return the coefficients of the mass per length as a polynomial in the fraction of the length, the constant one first."""
+        start, middle, end = (self.mass_per_length(fraction) for fraction in (0.0, 0.5, 1.0))
+        if not self.tapers:
+            return (middle,)
+        return start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end
+
 
 def _between(dimension: float | tuple[float, float] | None, fraction: float) -> float | None:
     """Return a dimension at a fraction of the length."""

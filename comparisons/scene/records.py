@@ -132,14 +132,28 @@ class Scene(Record):
             motions[support.node] = PrescribedMotion(support=support, increments=((x, y, rotation), *onward))
         return motions
 
+    @property
+    def stage_loads(self) -> tuple[tuple[LoadSpec, ...], ...]:
+        """The loads that are added in every stage."""
+        return (self.loads, *(stage.load for stage in self.stages))
+
+    @property
+    def stage_gravities(self) -> tuple[Point, ...]:
+        """The change of the acceleration of gravity in every stage."""
+        return (self.gravity or (0.0, 0.0), *(stage.gravity for stage in self.stages))
+
+    def numbered_loads(self) -> Iterator[tuple[int, LoadSpec]]:
+        """Yield the number of the stage, from 0, of every load, and the load."""
+        yield from ((number, load) for number, loads in enumerate(self.stage_loads) for load in loads)
+
     @cached_property
     def load_histories(self) -> tuple[LoadHistory, ...]:
         """The dead loads through all stages."""
-        return load_histories((self.loads, *(stage.load for stage in self.stages)))
+        return load_histories(self.stage_loads)
 
     def gravity_at(self, load_parameter: float) -> Point:
         """Return the acceleration of gravity at `load_parameter`."""
-        x, y = amount((self.gravity or (0.0, 0.0), *(stage.gravity for stage in self.stages)), load_parameter)
+        x, y = amount(self.stage_gravities, load_parameter)
         return x, y
 
     @cached_property

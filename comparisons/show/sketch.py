@@ -229,27 +229,21 @@ class _Sketch:
     def loads(self) -> None:
         """Draw the loads of every stage with their values, and the weights of the beams."""
         force, length = self.units
-        for stage, loads in enumerate((self.scene.loads, *(one.load for one in self.scene.stages)), 1):
-            for load in loads:
-                if load.force_per_length is not None:
-                    self._line_load(
-                        load, f"{hypot(*load.force_per_length):.6g} {force}/{length}{_after(stage)}"
-                    )
-                    continue
-                at = (
-                    self.scene.place(load.node)
-                    if load.at is None
-                    else self.scene.beam(load.beam).place(load.at)
-                )
-                if any(load.force):
-                    words = f"{hypot(*load.force):.6g} {force}{_after(stage)}"
-                    self._force(np.array(at), np.array(load.force), words, pulls=self._pulls(load))
-                if load.moment:
-                    words = f"{abs(load.moment):.6g} {force} {length}{_after(stage)}"
-                    self._turn(at, load.moment, words, LOAD)
-                    self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
-        for stage, gravity in enumerate((self.scene.gravity, *(one.gravity for one in self.scene.stages)), 1):
-            for beam in self.scene.beams if gravity is not None and any(gravity) else ():
+        for number, load in self.scene.numbered_loads():
+            after = _after(number + 1)
+            if load.force_per_length is not None:
+                self._line_load(load, f"{hypot(*load.force_per_length):.6g} {force}/{length}{after}")
+                continue
+            at = self.scene.place(load.node) if load.at is None else self.scene.beam(load.beam).place(load.at)
+            if any(load.force):
+                words = f"{hypot(*load.force):.6g} {force}{after}"
+                self._force(np.array(at), np.array(load.force), words, pulls=self._pulls(load))
+            if load.moment:
+                words = f"{abs(load.moment):.6g} {force} {length}{after}"
+                self._turn(at, load.moment, words, LOAD)
+                self.legend.setdefault("moment", legend_symbol(chain(arc(1.0)), LOAD))
+        for stage, gravity in enumerate(self.scene.stage_gravities, 1):
+            for beam in self.scene.beams if any(gravity) else ():
                 if beam.density:
                     weight = np.array(gravity) * beam.mass
                     words = f"weight {hypot(*weight):.4g} {force}{_after(stage)}"

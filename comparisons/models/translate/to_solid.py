@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
+from comparisons.scene import BeamSpec, Scene, SupportSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.keys import STRIPS, unstated
 from comparisons.scene.rules import Point
@@ -96,7 +96,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     if len(spec.held) < len(COMPONENTS):
         return False
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
-    acting = [load.node for _, load in _staged(scene)] + [spring.node for spring in scene.springs]
+    acting = [load.node for _, load in scene.numbered_loads()] + [spring.node for spring in scene.springs]
     loaded = spec.node in acting
     arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
     moves = scene.prescribed_motions[spec.node].moves
@@ -168,17 +168,11 @@ def _turns_with_joint(scene: Scene, node: str, kind: str) -> bool:
     return False
 
 
-def _staged(scene: Scene) -> Iterator[tuple[int, LoadSpec]]:
-    """Yield the number of the stage, from 0, of every load, and the load."""
-    for stage, loads in enumerate((scene.loads, *(stage.load for stage in scene.stages))):
-        yield from ((stage, load) for load in loads)
-
-
 def _end_loads(scene: Scene) -> "Iterator[EndLoad]":
     """Yield the forces and moments on the ends."""
     from fem_reference import EndLoad
 
-    for stage, load in _staged(scene):
+    for stage, load in scene.numbered_loads():
         if load.end is None:
             continue
         beam, end = load.beam, load.end
@@ -208,7 +202,7 @@ def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
     """Yield the forces inside the beams and the forces per length."""
     from fem_reference import LineLoad, PointLoad
 
-    for stage, load in _staged(scene):
+    for stage, load in scene.numbered_loads():
         if load.force_per_length is not None:
             yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
         elif load.at is not None:
@@ -220,19 +214,16 @@ def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
 
 
 def _weights(scene: Scene) -> "Iterator[LineLoad]":
-    """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
+    """Yield the weights of the beams."""
     from fem_reference import LineLoad
 
-    gravities = (scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages))
     for beam in scene.beams:
-        if beam.density is not None:
-            start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
-            mass = [start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end]
-            if not beam.tapers:
-                mass = [middle]
-            for stage, (gx, gy) in enumerate(gravities):
-                if gx or gy:
-                    yield LineLoad(strip=beam.name, force=tuple((gx * m, gy * m) for m in mass), stage=stage)
+        if beam.density is None:
+            continue
+        for stage, (gx, gy) in enumerate(scene.stage_gravities):
+            if gx or gy:
+                force = tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients())
+                yield LineLoad(strip=beam.name, force=force, stage=stage)
 
 
 def rectangle(beam: BeamSpec) -> tuple[float, float]:

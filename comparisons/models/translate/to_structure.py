@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from comparisons.models.options import ModelError
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene, SpringSpec
+from comparisons.scene import BeamSpec, ContactSpec, Scene, SpringSpec
 from comparisons.scene.keys import BEAMS, unstated
 from comparisons.scene.stages import PrescribedMotion
 
@@ -114,7 +114,7 @@ def _beam(scene: Scene, spec: BeamSpec, elements: int | None, kind: "ElementType
 
     nodes = spec.nodes if kind.meshed and not elements else ()
     count = elements or (len(nodes) + 1 if nodes else spec.elements if kind.meshed else 1)
-    own = [load for _, load in _staged(scene) if load.beam == spec.name]
+    own = [load for _, load in scene.numbered_loads() if load.beam == spec.name]
     ends = [part for load in own if load.force_per_length is not None for part in load.span]
     places = [load.at for load in own if load.at is not None]
     return Beam(
@@ -148,17 +148,11 @@ def _spring(spec: SpringSpec) -> "Spring":
     return Spring(beam=spec.beam, end=_end(spec.end), x=x, y=y, rotation=spec.rotation)
 
 
-def _staged(scene: Scene) -> Iterator[tuple[int, LoadSpec]]:
-    """Yield the number of the stage, from 0, of every load, and the load."""
-    for stage, loads in enumerate((scene.loads, *(stage.load for stage in scene.stages))):
-        yield from ((stage, load) for load in loads)
-
-
 def _loads(scene: Scene) -> Iterator["Load"]:
     """Yield the forces and moments at points."""
     from tsm import Load
 
-    for stage, load in _staged(scene):
+    for stage, load in scene.numbered_loads():
         force, moment = load.force, load.moment
         if load.at is not None:
             arc = load.at * scene.beam(load.beam).length
@@ -171,7 +165,7 @@ def _line_loads(scene: Scene) -> Iterator["LineLoad"]:
     """Yield the forces per length."""
     from tsm import LineLoad
 
-    for stage, load in _staged(scene):
+    for stage, load in scene.numbered_loads():
         if load.force_per_length is not None:
             start, end = (part * scene.beam(load.beam).length for part in load.span)
             force = (load.force_per_length,)
@@ -179,19 +173,13 @@ def _line_loads(scene: Scene) -> Iterator["LineLoad"]:
 
 
 def _weights(scene: Scene) -> Iterator["LineLoad"]:
-    """Yield the weights of the beams: the area of a beam that tapers is quadratic in the arc length."""
+    """Yield the weights of the beams."""
     from tsm import LineLoad
 
-    gravities = (scene.gravity or (0.0, 0.0), *(stage.gravity for stage in scene.stages))
     for beam in scene.beams:
         if beam.density is None:
             continue
-        start, middle, end = (beam.mass_per_length(part) for part in (0.0, 0.5, 1.0))
-        mass = (
-            (start, -3 * start + 4 * middle - end, 2 * start - 4 * middle + 2 * end)
-            if beam.tapers
-            else (middle,)
-        )
-        for stage, (gx, gy) in enumerate(gravities):
+        for stage, (gx, gy) in enumerate(scene.stage_gravities):
             if gx or gy:
-                yield LineLoad(beam=beam.name, force=tuple((gx * m, gy * m) for m in mass), stage=stage)
+                force = tuple((gx * mass, gy * mass) for mass in beam.mass_coefficients())
+                yield LineLoad(beam=beam.name, force=force, stage=stage)
