@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from comparisons.models import MODELS, SOLID, TSM, Model
 from comparisons.models.options import ModelError, Options
 from comparisons.response.material import UNDEFINED, clamped
-from comparisons.scene import Scene, unstated
-from comparisons.scene.keys import ACCURACY
+from comparisons.scene import BeamSpec, Scene
 
 STOCKY = 0.1
 """Height over length from which a beam is solved as a solid."""
@@ -44,9 +43,6 @@ def required(
     ModelError
         If the model cannot state the scene, or the quantity.
     """
-    unknown = unstated(scene, "the choice of a resolution", ACCURACY)
-    if unknown is not None:
-        raise ModelError(unknown)
     loaded, said = without_idle(scene)
     if model is None:
         model, reason = (
@@ -76,18 +72,23 @@ def required(
 def _model(scene: Scene, quantity: str) -> tuple[str, str]:
     if quantity == "stress":
         return SOLID.name, "stresses through the thickness are asked for"
-    stocky = [beam for beam in scene.beams if beam.height_at(0.5) > STOCKY * beam.length]
+    stocky = [beam for beam in scene.beams if _height(beam) > STOCKY * beam.length]
     if stocky:
         beam = stocky[0]
-        what = f'beam "{beam.name}" is stocky, h/L = {beam.height_at(0.5) / beam.length:.3g} > {STOCKY:g}'
+        what = f'beam "{beam.name}" is stocky, h/L = {_height(beam) / beam.length:.3g} > {STOCKY:g}'
         refused = SOLID.refusal(scene)
         return (SOLID.name, what) if refused is None else (TSM.name, f"{what}, but {refused}")
     rods = "one slender beam" if len(scene.beams) == 1 else f"{len(scene.beams)} slender beams"
     return TSM.name, f"{rods}: exact rods suffice, which one exact element a beam solves"
 
 
+def _height(beam: BeamSpec) -> float:
+    """Return the largest height of a beam's section, zero where the section has none."""
+    return max(beam.height_at(0.0), beam.height_at(1.0))
+
+
 def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
-    """Return the scene without beams that no load, moving support or pin can reach, and a sentence for each."""
+    """Return the scene without beams that no load, weight, moving support or pin can reach, and a sentence for each."""
     groups = {beam.name: {beam.name} for beam in scene.beams}
 
     def join(one: str, other: str) -> None:
@@ -104,7 +105,8 @@ def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
         if contact.node not in pins:
             join(contact.node.split(".")[0], contact.beam)
     driven = {contact.beam for contact in scene.contacts if contact.node in pins}
-    driven |= {load.beam for load in scene.loads}
+    driven |= {history.load.beam for history in scene.load_histories}
+    driven |= {beam.name for beam in scene.beams if beam.density is not None}
     driven |= {motion.support.beam for motion in scene.prescribed_motions.values() if motion.moves}
     idle = [beam.name for beam in scene.beams if not groups[beam.name] & driven]
     if not idle:
@@ -113,6 +115,8 @@ def without_idle(scene: Scene) -> tuple[Scene, tuple[str, ...]]:
         scene,
         beams=tuple(beam for beam in scene.beams if beam.name not in idle),
         supports=tuple(support for support in scene.supports if support.beam not in idle),
+        springs=tuple(spring for spring in scene.springs if spring.beam not in idle),
+        hinges=tuple(hinge for hinge in scene.hinges if hinge.beam not in idle),
         contacts=tuple(contact for contact in scene.contacts if contact.beam not in idle),
     )
     return kept, tuple(f'beam "{name}" lies on no load path: left out' for name in idle)

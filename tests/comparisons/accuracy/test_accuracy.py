@@ -9,14 +9,28 @@ import pytest
 from comparisons.accuracy import solve_to
 from comparisons.accuracy.pilot import pilot
 from comparisons.accuracy.require import without_idle
+from comparisons.accuracy.theory import beam_theory
 from comparisons.errors import difference
 from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
 from comparisons.quantities import QUANTITIES
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from comparisons.scene import (
+    SPECIAL,
+    BeamSpec,
+    ContactSpec,
+    LoadSpec,
+    PinSpec,
+    Scene,
+    load_scene,
+    read_scene,
+)
+from tests.comparisons.scene.test_special_keys import BEAM, USES
 
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5)
 KS = load_scene("ks-cantilever")
+TIP = LoadSpec(beam="a", end="end", force=(0.0, -1.0))
+LATER = 'load = [{ beam = "a", end = "end", force = [0.0, 2.0] }]'
+IDLE = '[[spring]]\nbeam = "idle"\nend = "end"\nstiffness = [0.0, 3.0]\n'
 
 
 @pytest.fixture(scope="module")
@@ -146,6 +160,49 @@ def test_a_tail_without_load_takes_few_elements():
     assert difference(answer.response, exact, scene, "force") <= 1e-4
     equal = solve(scene, "tsm", Options(elements=len(nodes) + 1))
     assert difference(answer.response, exact, scene, "force") < difference(equal, exact, scene, "force") / 10
+
+
+@pytest.mark.parametrize("element", [None, "mixed"])
+@pytest.mark.parametrize("key", SPECIAL)
+def test_the_promise_is_kept_with_every_special_key(key, element):
+    """Curved, tapered, heavy, sprung and hinged beams, loads inside and along them, and stages."""
+    scene = read_scene(USES[key], "s")
+    reference = solve(scene, "rod")
+    for quantity in ("force", "shape"):
+        found = solve_to(scene, 1e-5, quantity, element=element)
+        assert found.reached
+        assert difference(found.response, reference, scene, quantity) <= 1e-5
+
+
+def test_a_weight_a_later_load_and_a_spring_are_kept_with_their_beams():
+    """A heavy beam and a beam that a stage loads are on a load path; what holds a beam that is left out goes with it."""
+    heavy = read_scene(USES["density"], "s")
+    weight_only = replace(heavy, pins=(), contacts=())
+    assert without_idle(weight_only) == (weight_only, ())
+    later = read_scene(
+        USES["stage"].replace('pin = [{ name = "p", displacement = [0.0, -0.3] }]', LATER), "s"
+    )
+    kept, said = without_idle(replace(later, pins=(), contacts=()))
+    assert (len(kept.beams), said) == (1, ())
+    sprung = read_scene(USES["spring"] + BEAM.replace('"a"', '"idle"').replace("0.0]", "5.0]") + IDLE, "s")
+    kept, said = without_idle(sprung)
+    assert ([beam.name for beam in kept.beams], len(kept.springs), len(said)) == (["a"], 1, 1)
+
+
+def test_the_theory_of_curved_and_tapered_beams_has_their_radius_and_local_height():
+    arc, taper = (read_scene(USES[key], "s") for key in ("turn", "taper"))
+    tight = replace(arc, beams=(replace(arc.beams[0], turn=-2.0),), contacts=(), pins=(), loads=(TIP,))
+    assert beam_theory(solve(tight, "tsm"), tight).slenderness == pytest.approx(
+        0.01 * 2.0 / tight.beams[0].length, rel=1e-12
+    )
+    beam = taper.beams[0]
+    response = solve(taper, "tsm", Options(element="exact"))
+    data = response.grid(len(response.load_parameter) - 1).point_data
+    local = [
+        abs(m) * beam.height_at(s) / (2 * beam.stiffness(s)[2])
+        for s, m in zip(np.clip(data["arc"], 0, 1).tolist(), data["M"].tolist(), strict=True)
+    ]
+    assert beam_theory(response, taper).strain == pytest.approx(max(local), rel=1e-12)
 
 
 @pytest.mark.slow

@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from comparisons.accuracy.require import required
 from comparisons.models import MODELS, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.request import request
 from comparisons.scene import SPECIAL, Scene, read_scene, to_toml
 from comparisons.scene.consistency import signed_gap
-from comparisons.scene.keys import ACCURACY, PROGRAMS, special_keys
+from comparisons.scene.keys import PROGRAMS, special_keys
 
 HEAD = '[scene]\nname = "s"\nload_parameters = 4\n'
 BEAM = """[[beam]]
@@ -56,9 +55,6 @@ def test_every_model_states_a_key_or_refuses_it_in_one_line(key: str) -> None:
     if key not in PROGRAMS:
         with pytest.raises(ModelError, match="does not state"):
             request(scene, Options(), scene.times)
-    if key not in ACCURACY:
-        with pytest.raises(ModelError, match="does not state"):
-            required(scene, "force")
 
 
 @pytest.mark.parametrize("key", SPECIAL)
