@@ -168,6 +168,12 @@ GROUPS = {
             built_in="ks-cantilever",
         ),
         Question(
+            wish="a stop at rest, a support that the beam can leave",
+            keys="a pin with `displacement = [0.0, 0.0]`",
+            changes=(("displacement = [0.0, 0.1]", "displacement = [0.0, 0.0]"),),
+            add=f'{LOAD}end = "end"\nforce = [0.0, -1.0]\n',
+        ),
+        Question(
             wish="a round pin on the surface",
             keys='`radius`, `surface = "face"`',
             limits="one point of contact for a pin and a beam",
@@ -188,7 +194,7 @@ GROUPS = {
         Question(
             wish="friction",
             keys="`friction`",
-            limits="Coulomb, one coefficient; not in the paper's elements",
+            limits="Coulomb, one coefficient; not in the paper's elements, and by no beam on the face of one that tapers in height",
             built_in="ks-friction",
         ),
     ),
