@@ -13,7 +13,7 @@ from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.friction import LOOSE, Grip, Hold
 from comparisons.referee.march import closed_pairs, corners, place, rates, reach, slip_rate, speed
-from comparisons.referee.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.phases import OPEN, PASSES, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import Response
@@ -174,18 +174,37 @@ class History:
             own = Grip(friction=spec.friction, slip=sign)
             try:
                 begin = self._root(spec, number, own)
-                found.append((not self._slipped(spec, number, own, begin), begin))
+                found.append((self._unlike(spec, number, own, begin), begin))
             except UnknownFrictionError as error:
                 reasons.append(error)
         if not found:
             raise reasons[0]
-        # at a corner of a pin's path a slip of either sign can end: the sign is the one of the slip rate before it
-        return min(found, key=lambda item: (item[0], abs(item[1].load_parameter - phase.begin)))[1]
+        # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
+        return min(found, key=lambda item: item[0])[1]
+
+    def _unlike(self, spec: ContactSpec, number: int, own: Grip, begin: Begin) -> tuple[bool, float, float]:
+        """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
+        phase = self.phases[spec.pair][number]
+        off = abs(closed_pairs(begin.solution)[spec.pair] - self.stated_arc(spec.pair, number))
+        slipped = self._slipped(spec, number, own, begin)
+        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.load_parameter - phase.begin)
+
+    def stated_arc(self, pair: str, number: int) -> float:
+        """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
+        stated = self.phases[pair][number].stated
+        arcs = [
+            event.arc_position
+            for event in self.response.events or ()
+            if event.pair == pair and event.load_parameter == stated and event.kind != PASSES
+        ]
+        return arcs[-1] if arcs else math.nan
 
     def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Begin) -> bool:
-        """Whether the slip rate before the beginning of a phase has the sign of the slip `own`."""
+        """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
         before = self.phases[spec.pair][number - 1].begin
         t = begin.load_parameter - _BEFORE * (begin.load_parameter - before)
+        if self.closed(t) != closed_pairs(begin.solution).keys():
+            return True
         state = {**self._around(spec, t), spec.pair: own}
         now = reach(self.scene, begin.solution, t, state)
         if now.status is not SearchStatus.FOUND:

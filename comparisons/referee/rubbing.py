@@ -123,16 +123,9 @@ def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed:
 
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
-    response, number = history.response, history.numbers[spec.pair][k]
-    phase = history.phases[spec.pair][number]
-    began = [
-        event.arc_position
-        for event in response.events or ()
-        if event.pair == spec.pair and event.load_parameter == phase.stated and event.kind != PASSES
-    ]
-    if number == 0:
-        began = [at_rest(history.scene, spec).arc_position]
-    return float(response.contacts[spec.pair].arc_position[k]) - (began[-1] if began else np.nan)
+    number = history.numbers[spec.pair][k]
+    began = history.stated_arc(spec.pair, number) if number else at_rest(history.scene, spec).arc_position
+    return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 
 def _law(response: Response, allowed: float) -> float:
