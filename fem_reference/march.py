@@ -36,6 +36,8 @@ _RATE_GROWTH = 1.5
 """Growth of the rate over a step beyond which a limit point is searched."""
 _SEARCH_INTERVAL = 5
 """Number of consecutive rejected attempts after which a limit point is searched."""
+_AT_END = 1e-2
+"""Largest distance from an end, over the strip's length, of a contact that slips off there within the smallest step."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -295,16 +297,15 @@ def _at_smallest_step(
         progress.critical.append(limit)
         progress.cause, progress.pair = Status.LIMIT_POINT, None
         return Status.LIMIT_POINT
-    after = _after_slip(model, progress.last.state, goal, attempt, settings)
+    lost = _slipped_off(progress.last.state, attempt)
+    after = _after_slip(model, progress.last.state, goal, lost, settings) if lost is not None else None
     released = None
     if after is not None and after.status is Status.CONVERGED:
         released = accept(model, after.state, settings)
-    if after is None or released is None:
-        lost = attempt.status is Status.LOST_CONTACT
-        return Status.LOST_CONTACT if lost else Status.CUTBACK_FLOOR
-    assert attempt.pair is not None, "a slip-off refers to a pair"
+    if lost is None or after is None or released is None:
+        return Status.CUTBACK_FLOOR if lost is None else Status.LOST_CONTACT
     progress.iterations += after.iterations
-    progress.slips.append((attempt.pair, goal))
+    progress.slips.append((lost, goal))
     progress.accept(released, restart=True)
     progress.trial, progress.order = settings.first_step, settings.predictor_order
     return None
@@ -319,18 +320,27 @@ def _approaches_fold(track: tuple[Accepted, ...]) -> bool:
     return second > _RATE_GROWTH * first
 
 
-def _after_slip(
-    model: Model, before: State, goal: float, attempt: Attempt, settings: Settings
-) -> Attempt | None:
-    """Equilibrium after a slip-off without the lost contact; None without slip-off, or if the contact must be kept.
+def _slipped_off(before: State, attempt: Attempt) -> int | None:
+    """Contact that an attempt lost over an end which its node had reached in the state before; None without one.
+
+    An attempt that diverges may lose a contact anywhere.
+    """
+    if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
+        return None
+    touch = before.touches[attempt.pair]
+    first, last = touch.pair.curve.stations[[0, -1]]
+    from_end = min(touch.projection.zeta - first, last - touch.projection.zeta)
+    return attempt.pair if from_end <= _AT_END * (last - first) else None
+
+
+def _after_slip(model: Model, before: State, goal: float, number: int, settings: Settings) -> Attempt | None:
+    """Equilibrium after a slip-off without the contact ``number``; None if the contact must be kept.
 
     A clamped strip without another closed contact, support or joint springs back to rest, and all its contacts open. Every
     other contact whose gap is smaller than the strip's height is closed in the initial guess.
     """
-    if attempt.status is not Status.LOST_CONTACT or attempt.pair is None:
-        return None
-    lost = model.pairs[attempt.pair]
-    if lost.contact.keep or not before.touches[attempt.pair].closed:
+    lost = model.pairs[number]
+    if lost.contact.keep or not before.touches[number].closed:
         return None
     strip = lost.strips[0]
     name = model.problem.strips[strip].name
@@ -341,8 +351,8 @@ def _after_slip(
     if free:
         u[model.parts[strip]] = 0
     conditions = [
-        _condition_after(model, touch, strip if free else None, number == attempt.pair)
-        for number, touch in enumerate(before.touches)
+        _condition_after(model, touch, strip if free else None, own == number)
+        for own, touch in enumerate(before.touches)
     ]
     guess = build_state(model, u, goal, tuple(conditions), before.tie_forces)
     return equilibrium(model, _slid_without_friction(model, guess, settings), settings)

@@ -7,8 +7,9 @@ import pytest
 
 import fem_reference as fr
 from fem_reference.active_set import _rearmed
-from fem_reference.march import _condition_after
+from fem_reference.march import _condition_after, _slipped_off
 from fem_reference.model import build
+from fem_reference.newton import Attempt
 from fem_reference.state import build_state
 from fem_reference.touch import Condition
 from tests.fem_reference.conftest import loads, make_problem, place_pin
@@ -66,6 +67,18 @@ def test_contacts_that_are_near_are_tried_closed_after_a_slip_off(touch, point, 
     model, contact = touch(point, armed=armed)
     after = _condition_after(model, contact, None, lost=False)
     assert (after.closed, after.armed) == (closed, armed)
+
+
+@pytest.mark.parametrize(("x", "lost"), [(0.5, None), (0.02, None), (0.98, None), (0.9999, 0), (1e-4, 0)])
+def test_a_contact_is_lost_over_an_end_that_its_node_has_reached(touch, x, lost):
+    """Newton's method that diverges may leave a contact anywhere. The node does not go through the strip then."""
+    model, contact = touch((x, 0.0), closed=True, force=1.0)
+    before = build_state(model, np.zeros((model.nodes, 2)), 0.0, (contact.condition,))
+    assert (
+        _slipped_off(before, Attempt(status=fr.Status.LOST_CONTACT, state=before, iterations=1, pair=0))
+        == lost
+    )
+    assert _slipped_off(before, Attempt(status=fr.Status.SINGULAR, state=before, iterations=1)) is None
 
 
 def test_lost_contact_is_open_and_disarmed_and_a_strip_at_rest_opens_all_of_its_contacts(touch):
