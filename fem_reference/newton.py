@@ -71,12 +71,13 @@ def check_convergence(model: Model, state: State, R: Floats, settings: Settings)
     if not np.isfinite(error + sum(gap_residuals) + sum(slip_residuals) + tie_residual):
         return Status.NOT_FINITE, None
     for number, touch in enumerate(state.touches):
-        if touch.closed and not touch.projection.stationary:
+        if touch.closed and not (touch.projection.stationary or touch.projection.inside):
             return Status.LOST_CONTACT, number
     allowed = settings.tolerance * force_scale(model, state)
     allowed_slip = allowed / model.axial_stiffness + model.length_round_off
     converged = (
         tie_residual <= allowed_slip
+        and all(touch.projection.stationary for touch in state.closed)
         and all(
             residual <= (allowed if touch.friction and touch.friction.direction else allowed_slip)
             for residual, touch in zip(slip_residuals, state.rubbing, strict=True)
