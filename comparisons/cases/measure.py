@@ -67,8 +67,8 @@ class Measurement:
     @property
     def wrong(self) -> bool:
         """Whether the model reported success and its answer was refused by the checks or the referee."""
-        refused = not self.response.completed or self.verdict in REFUSALS
-        return self.response.reported_success and refused
+        response = self.response
+        return response.false_success or (response.reported_success and self.verdict in REFUSALS)
 
     def to_json(self) -> str:
         """Return the measurement as JSON text; a number that is not finite is null."""
