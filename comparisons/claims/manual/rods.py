@@ -1,6 +1,7 @@
 """Cases with the exact Reissner rod, with stretch and shear, solved independently by quadrature and collocation."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -72,11 +73,7 @@ KS_TEXT = (
 def ks_axis() -> Problem:
     """The main scene."""
     scene = ks()
-    quantities, rod = _at_times(scene)
-
-    def read(response: Response) -> list[float]:
-        return _read(scene, response)
-
+    (quantities, rod), read = _at_times(scene), partial(_read, scene)
     return Problem(
         name="ks-axis",
         title="Konyukhov-Schweizerhof cantilever, contact on the axis",
@@ -100,11 +97,7 @@ def ks_axis() -> Problem:
 def ks_face() -> Problem:
     """The main scene with the contact on the face."""
     scene = ks("ks-face")
-    quantities, rod = _at_times(scene)
-
-    def read(response: Response) -> list[float]:
-        return _read(scene, response)
-
+    (quantities, rod), read = _at_times(scene), partial(_read, scene)
     return Problem(
         name="ks-face",
         title="Konyukhov-Schweizerhof cantilever, contact on the face",
@@ -127,11 +120,7 @@ def ks_face() -> Problem:
 def ks_biot() -> Problem:
     """The main scene with a solid whose material law is equivalent to the rod's."""
     scene = ks(material="biot-linear")
-    quantities, rod = _at_times(scene)
-
-    def read(response: Response) -> list[float]:
-        return _read(scene, response)
-
+    (quantities, rod), read = _at_times(scene), partial(_read, scene)
     return Problem(
         name="ks-biot",
         title="Konyukhov-Schweizerhof cantilever, solid of the rod's own law",
