@@ -81,7 +81,8 @@ def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -
             continue
         contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
         outside = abs(contact.drag) - touch.grip.friction * contact.push
-        if touch.grip.slip == 0 and outside > allowed * float(np.hypot(*contact.force)):
+        size = max(float(np.hypot(*contact.force)), LEAST * least_force(history.scene))
+        if touch.grip.slip == 0 and outside > allowed * size:
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
         if touch.grip.slip == 0:
             yield from _creeps(history, k, touch, exact, allowed)

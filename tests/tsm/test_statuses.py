@@ -139,6 +139,20 @@ def test_falling(element):
     np.testing.assert_allclose(result.contacts["p->b"].force, 0.1 * result.load_parameter, rtol=1e-4)
 
 
+def test_a_fall_into_a_round_pin():
+    """A load lifts the tip from under a round pin, which slips off; the beam would rest within the pin."""
+    section = tsm.Section(EA=1e4, GA=4e3, EI=1.0)
+    pushed = tsm.Structure(
+        beams=(replace(BEAM, section=section, element="exact", elements=1),),
+        supports=(CLAMP,),
+        pins=(tsm.Pin(name="p", path=((0.8, 0.3), (1.4, 0.3))),),
+        contacts=(tsm.ContactPair(node="p", beam="b", side="left", offset=0.3),),
+        loads=(tsm.Load(beam="b", end="end", force=(0.0, 6.0)),),
+    )
+    result = ends_in(Status.FALLING, pushed)
+    assert len(result.load_parameter) == 3
+
+
 def test_two_contacts_on_an_element_of_the_paper():
     near = ((0.86, 0.0), (0.86, 0.2))
     ends_in(Status.TWO_CONTACTS, structure(element="timoshenko", more=(near,)))
