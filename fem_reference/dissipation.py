@@ -33,14 +33,22 @@ def slip_rates(tangent: Tangent, pair: int, *, forward: bool) -> tuple[float, fl
 def with_dissipation(last: Tangent, tangent: Tangent) -> State:
     """Return the state of a tangent with the energies dissipated since the state of the ``last`` one.
 
-    ``integral T d xi`` where slip and tangential force are Hermite polynomials of the load parameter.
+    ``integral T d xi`` where slip and tangential force are Hermite polynomials of the load parameter. A contact that slips and opens in
+    between dissipates until its force is zero, see `_last_work`.
     """
     state, conditions = tangent.state, list(tangent.state.conditions)
     for pair, touch in enumerate(state.touches):
-        before = last.state.conditions[pair].friction
-        if touch.friction is not None and touch.friction.direction and before is not None:
-            energy = before.dissipated + _work(last, tangent, pair)
-            conditions[pair] = replace(touch.condition, friction=replace(touch.friction, dissipated=energy))
+        before, after = last.state.conditions[pair].friction, touch.condition.friction
+        if before is None or after is None:
+            continue
+        if touch.closed and after.direction:
+            energy = _work(last, tangent, pair)
+        elif last.state.touches[pair].closed and not touch.closed and before.direction:
+            energy = _last_work(last, state.t, pair)
+        else:
+            continue
+        friction = replace(after, dissipated=before.dissipated + energy)
+        conditions[pair] = replace(touch.condition, friction=friction)
     return with_conditions(state, tuple(conditions))
 
 
@@ -67,3 +75,17 @@ def _work(last: Tangent, tangent: Tangent, pair: int) -> float:
         value = x * x * (3 - 2 * x) * change + x * (1 - x) ** 2 * initial + x * x * (x - 1) * final
         total += w * (begin + value[1]) * slope[0]
     return float(total)
+
+
+def _last_work(last: Tangent, t: float, pair: int) -> float:
+    """Work of a contact's tangential force on its slip from a state to the opening before ``t`` [J].
+
+    To first order in the step, slip goes on at its rate, and the force falls to zero at its rate: ``-T^2 (d xi/dt) / (2 dT/dt)``.
+    """
+    friction, rates = last.state.touches[pair].friction, slip_rates(last, pair, forward=True)
+    assert friction is not None, "a contact keeps its friction"
+    if rates is None or rates[1] * friction.force >= 0.0:
+        return 0.0
+    slip, fall = rates
+    duration = min(-friction.force / fall, t - last.state.t)
+    return max(0.0, (friction.force + 0.5 * fall * duration) * slip * duration)

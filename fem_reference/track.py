@@ -57,7 +57,7 @@ def accept(model: Model, state: State, settings: Settings, last: Accepted | None
     tangent = linearise(model, state)
     if tangent is None:
         return None
-    if last is not None and state.rubbing:
+    if last is not None and (state.rubbing or last.state.rubbing):
         state = with_dissipation(last.tangent, tangent)
         tangent = replace(tangent, state=state)
     force_tolerance = settings.tolerance * force_scale(model, state)

@@ -75,3 +75,24 @@ def test_a_pin_at_rest_alone_does_nothing() -> None:
         SceneError, match=r"pin\[0\]\.displacement = \[0\.0, 0\.0\]: give a load, or a pin or a support"
     ):
         scene()
+
+
+def test_a_slipping_contact_dissipates_until_it_opens_in_the_solid() -> None:
+    """The round stop of a strip slips back and opens between two load parameters, where exact elements state the event."""
+    text = """
+scene = { name = "stop", units = "N, mm", load_parameters = 10 }
+beam = [{ name = "strip", start = [0, 0], end = [100, 0], clamped = ["start"], width = 10, height = 1, youngs_modulus = 2.1e5, poissons_ratio = 0.3 }]
+pin = [{ name = "stop", start = [60, -3], displacement = [0, 0], radius = 2 }]
+contact = [{ node = "stop", beam = "strip", side = "right", surface = "face", friction = 0.2 }]
+load = [{ beam = "strip", end = "end", force = [0, -10] }]
+[[stage]]
+load_parameters = 10
+load = [{ beam = "strip", end = "end", force = [0, 10] }]
+"""
+    given = read_scene(text, "stop")
+    beams, solid = (solve(given, model, options(model)) for model in ("tsm", "solid"))
+    assert (beams.events[-1].kind, beams.contacts["stop->strip"].force[-1]) == ("release", 0.0)
+    spent = [answer.contacts["stop->strip"].friction.dissipated for answer in (beams, solid)]
+    assert spent[0][-1] > spent[0][-2]
+    assert np.diff(spent[1])[-1] == pytest.approx(np.diff(spent[0])[-1], rel=0.05)
+    assert certified(solid, given).completed
