@@ -17,7 +17,7 @@ SAMPLES = 101
 _CLOSED = ("pass-through", "slip", "stick")
 """Kinds of events at which a contact stays closed."""
 _AROUND = 0.2
-"""Distance from an end, over the node's path, within which a node may have passed around the end."""
+"""Distance from touching an end, over the node's path, within which a node may have passed around the end."""
 
 
 def passages(response: Response, scene: Scene) -> Iterator[str]:
@@ -100,17 +100,16 @@ def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, w
         before, where = where, _whereabouts(moved, node, scene, spec)
         if before == "before" and where != "before":
             through = where == "behind" or _cuts(moved, start, node, scene, spec)
-            through = through and not (leaves and _near_an_end(line, line_after, moved, nodes, node))
+            short = np.hypot(*(node - moved[[0, -1]]).T) - np.max(_reach(moved, scene, spec))
+            through = through and not (leaves and _near_an_end(line, line_after, nodes, short))
         through = through and where != "before"
     return through
 
 
-def _near_an_end(line: Array, line_after: Array, moved: Array, nodes: Array, node: Array) -> bool:
-    """Whether a node crosses the axis so near to an end that it may have passed around the end."""
-    ends = moved[[0, -1]]
-    near = np.hypot(*(node - ends).T)
+def _near_an_end(line: Array, line_after: Array, nodes: Array, short: Array) -> bool:
+    """Whether a node crosses the axis so near to an end that it may have passed around the end; `short` are its distances from touching them."""
     way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
-    return bool((near <= _AROUND * way).any())
+    return bool((short <= _AROUND * way).any())
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:

@@ -107,6 +107,7 @@ MENDED_SPECIAL = {
     505: "a hinged beam that a contact without force would have to hold",
     560: "a stiff beam slips on for a moment where its slip ends",
     583: "a stage takes all loads away, and the energy left is round-off",
+    622: "a round pin passes around the end of a beam between two load parameters",
     642: "a structure fell into a round pin",
     734: "round-off of the force at a touch near a clamp decides between stick and slip",
     845: "the sign of a slip that ends where another contact opens",
