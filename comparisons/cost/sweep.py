@@ -16,7 +16,6 @@ from comparisons.cost.plots import plot_all
 from comparisons.cost.points import COSTS, Point, Trade, front
 from comparisons.cost.references import (
     Measured,
-    NoReferenceError,
     best_reference,
     reference_cases,
     solid_limit,
@@ -27,8 +26,7 @@ from comparisons.files import writable_folder
 from comparisons.models import MODELS
 from comparisons.output import Row, write_numbers, write_rows
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.scene import Scene, to_toml, unstated
-from comparisons.scene.keys import COST
+from comparisons.scene import Scene, to_toml
 
 Runner = Callable[[Sequence[Case]], Measured]
 """Measures cases."""
@@ -93,9 +91,6 @@ def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:
     NoReferenceError
         If there is nothing to measure errors against.
     """
-    unknown = unstated(scene, "accuracy over cost", COST)
-    if unknown is not None:
-        raise NoReferenceError(unknown)
     cases = list(dict.fromkeys([*reference_cases(scene), *sweep_cases(scene, quick=quick)]))
     measured = run(cases)
     reference = best_reference(scene, measured)

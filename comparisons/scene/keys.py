@@ -31,8 +31,6 @@ PROGRAMS: Final[frozenset[str]] = frozenset()
 """Keys that the resolved scene states, which programs of others read."""
 MATERIAL: Final = frozenset({"turn"})
 """Keys under which the material force is defined."""
-COST: Final[frozenset[str]] = frozenset()
-"""Keys under which accuracy over cost can be measured."""
 
 
 def special_keys(scene: Scene) -> Iterator[str]:

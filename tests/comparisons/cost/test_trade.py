@@ -21,9 +21,10 @@ from comparisons.cost.tables import cheapest_text, setting_rows, stopped_text
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.scene import load_scene, to_toml
+from comparisons.scene import SPECIAL, load_scene, read_scene, to_toml
 from comparisons.scene.conditions import LoadSpec
 from comparisons.show.pages import text
+from tests.comparisons.scene.test_special_keys import USES
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -40,6 +41,12 @@ def few(cases: Sequence[Case]) -> dict[Case, Measurement]:
     return {
         case: stopped if case.model == "solid" and resolution(case) > 10 else measured(case) for case in cases
     }
+
+
+def beams_only(cases: Sequence[Case]) -> dict[Case, Measurement]:
+    """Measure all models but the solid, which stops by name."""
+    stopped = changed(measured(cases[0]), status="LEFT_OUT", completed=False)
+    return {case: stopped if case.model == "solid" else measured(case) for case in cases}
 
 
 def changed(measurement: Measurement, **response: object) -> Measurement:
@@ -159,6 +166,25 @@ def test_front_ends_at_the_uncertainty(trade: Trade) -> None:
     assert [(one.cost, one.error) for one in beams] == [(1.0, 1e-2), (2.0, 1e-4)]
     assert [one.cost for one in front(made, "solid", "path", "force", "unknowns")] == [1000, 3000, 9000]
     assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("key", SPECIAL)
+def test_special_keys_have_a_reference_and_errors_that_fall(key: str) -> None:
+    """What an element or a model does not state is a setting without a solution."""
+    scene = read_scene(USES[key], "s")
+    made = measure_trade(scene, beams_only, quick=True)
+    assert made.reference.uncertainty["path"]["force"] < 1e-9
+    whole = [point for point in made.points if point.case.scene.load_parameters == scene.load_parameters]
+    errors = {
+        point.case.options.elements: point.errors["path"]["force"]
+        for point in whole
+        if family(point.case) == "TSM mixed"
+    }
+    assert errors[40] < 1e-3 * errors[2]
+    assert errors[40] < 1e-4
+    stopped = {point.case.model for point in made.points if point.measured.response.status == "REFUSED"}
+    assert "elastica" in stopped
 
 
 def test_order_of_mixed_elements(trade: Trade) -> None:
