@@ -1,5 +1,7 @@
 r"""Mean displacement and rotation of an end section, and the ties that hold or join end sections.
 
+A section inside a strip that bears a moment has them too, with the shape functions integrated over its height.
+
 With the consistent weights ``w_j = integral N_j dy / h`` and ``v_j = integral N_j (y - y_m) dy`` of the edge's shape
 functions, an end has the mean displacement ``sum w_j u_j`` and the first moment ``m = c sum v_j x_j``, where c makes
 ``|m| = L`` at rest. Its rotation is the angle of m from m at rest, with the derivatives
@@ -20,6 +22,7 @@ from scipy.sparse import csr_matrix
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.mesh import Discretisation, edge_moments, edge_weights
+from fem_reference.sampling import SECTION_LAYERS, sample, section_points
 from fem_reference.stages import amount
 from fem_reference.strip import Strip
 
@@ -31,12 +34,12 @@ ROTATION = 2
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EndSection:
-    """An end section of the discrete model.
+    """An end section of the discrete model, or a section inside a strip that bears a moment.
 
     Parameters
     ----------
     node
-        Name of the end, ``"strip.end"``.
+        Name of the end, ``"strip.end"``, or of the section inside, ``"strip at 0.5"``.
     position
         Undeformed mean position ``(2,)`` in the global frame, relative to the model's origin [m].
     rows
@@ -171,6 +174,18 @@ def end_rows(strip: Strip, mesh: Discretisation, end: str) -> tuple[csr_matrix, 
         shape=(2, len(mesh.nodes)),
     )
     return rows, float(y[-1] - y[0])
+
+
+def inner_rows(strip: Strip, mesh: Discretisation, at: float) -> tuple[csr_matrix, float]:
+    """Weights like `end_rows` of the section at the part ``at`` of a strip's length, and its height."""
+    layers = strip.mesh[1] if strip.mesh_file is None else SECTION_LAYERS
+    station = np.array([at * strip.length])
+    points, shares, heights = section_points(mesh.places, mesh.edges, station, layers)
+    y = points[:, 1]
+    moments = shares * (y - shares @ y)
+    moments = moments * (strip.length / (moments @ y))
+    rows = csr_matrix(np.stack([shares, moments])) @ sample(mesh, points).rows(len(mesh.nodes))
+    return rows, float(heights[0])
 
 
 def anchor(strip: Strip, mesh: Discretisation, expansion: csr_matrix, end: str) -> csr_matrix:

@@ -1,7 +1,7 @@
 """Dead loads inside a strip: forces at points of the axis, and forces per length such as a weight.
 
-They act on the mean displacement of the sections: a force inside a strip as a uniform traction over the height of its section, a
-force per length as a force per volume that is uniform over the height of every section. A weight is such a force.
+They act on the mean displacement of the sections: a force inside a strip as a uniform traction over the height of its section, a moment
+as tractions that are linear over the height and normal to the mean direction of the deformed section, a force per length as a force per volume that is uniform over the height of every section. A weight is such a force.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from fem_reference.strip import Strip
 
 @dataclass(frozen=True, kw_only=True)
 class PointLoad:
-    """A dead force on the section inside a strip, distributed evenly over its height.
+    """A dead force and a dead moment on the section inside a strip: the force evenly over its height, the moment linearly.
 
     Parameters
     ----------
@@ -26,18 +26,21 @@ class PointLoad:
         Position of the section over the length, between 0 and 1.
     force
         Force at the load parameter 1, in the global frame [N]. It is proportional to the load parameter.
+    moment
+        Moment at the load parameter 1, anticlockwise [N m]. It is proportional to the load parameter.
     stage
-        Number from 0 of the stage during which the force is added.
+        Number from 0 of the stage during which force and moment are added.
 
     Raises
     ------
     ValueError
-        If a value is out of range or not finite, or the force vanishes.
+        If a value is out of range or not finite, or force and moment vanish.
     """
 
     strip: str
     at: float
-    force: Point
+    force: Point = (0.0, 0.0)
+    moment: float = 0.0
     stage: int = 0
 
     def __post_init__(self) -> None:
@@ -45,7 +48,14 @@ class PointLoad:
         require(self.stage >= 0, owner, "stage", self.stage, "must not be negative")
         require(0 < self.at < 1, owner, "at", self.at, "must lie between 0 and 1")
         require_point(owner, "force", self.force)
-        require(any(self.force), owner, "force", self.force, "must not be zero")
+        require(isfinite(self.moment), owner, "moment", self.moment, "must be finite")
+        rule = "must not be zero without a moment"
+        require(any((*self.force, self.moment)), owner, "force", self.force, rule)
+
+    @property
+    def node(self) -> str:
+        """Name of the section, ``"strip at 0.5"``."""
+        return f"{self.strip} at {self.at!r}"
 
     def on_sections(self, strip: Strip, stations: Floats) -> Floats:
         """Forces ``(m, 2)`` on the mean displacements of the sections at ``stations`` ``(m,)``, in the global frame [N]."""

@@ -9,10 +9,11 @@ from scipy.sparse import block_diag, csr_matrix
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.body import ANCHORED, Body, build_body
-from fem_reference.conditions import ENDS, Joint
+from fem_reference.conditions import ENDS, EndLoad, Joint
 from fem_reference.contact import Carrier, Pair
 from fem_reference.curve import contact_curve
-from fem_reference.end_section import EndSection, Tie, anchor_stiffness, end_rows
+from fem_reference.end_section import EndSection, Tie, anchor_stiffness, end_rows, inner_rows
+from fem_reference.loads import PointLoad
 from fem_reference.mesh import edge_weights
 from fem_reference.problem import Contact, Pin, SolidProblem
 
@@ -36,7 +37,7 @@ class Model:
     loads
         Nodal forces ``(s, n, 2)`` of the dead forces that are added in every stage, each in the frame of its strip [N].
     sections, columns
-        End sections that are supported, joined, anchored or loaded by a moment, and their columns ``(2 n, 4 e)``.
+        End sections that are supported, joined, anchored or loaded by a moment, sections inside with a moment, and their columns ``(2 n, 4 e)``.
     ties
         Ties of these sections: components of supports, then of springs, then of joints.
     moments
@@ -91,7 +92,8 @@ class Model:
         for inner in self.problem.inner_loads:
             body, _ = self.body(inner.strip)
             total = inner.on_sections(body.strip, body.mesh.stations).sum(axis=0)
-            found[inner.stage] = max(found[inner.stage], float(np.hypot(*total)))
+            moment = abs(inner.moment) if isinstance(inner, PointLoad) else 0.0
+            found[inner.stage] = max(found[inner.stage], float(np.hypot(*total)), moment / self.length)
         return tuple(found)
 
     @cached_property
@@ -143,7 +145,8 @@ def build(problem: SolidProblem) -> Model:
     columns = [section.columns for section in sections]
     numbers = {section.node: number for number, section in enumerate(sections)}
     moments = np.zeros((problem.stages, len(sections)))
-    for load in problem.loads:
+    bearing: list[EndLoad | PointLoad] = [*problem.loads, *problem.inner_moments]
+    for load in bearing:
         if load.moment:
             moments[load.stage, numbers[load.node]] += load.moment
     return Model(
@@ -178,34 +181,59 @@ def _dead_forces(problem: SolidProblem, body: Body) -> Floats:
 def _sections(
     problem: SolidProblem, bodies: tuple[Body, ...], parts: tuple[slice, ...]
 ) -> tuple[EndSection, ...]:
-    """End sections that are supported, joined, anchored or loaded by a moment."""
+    """End sections that are supported, joined, anchored or loaded by a moment, and sections inside that are loaded by one."""
     needed = {support.node for support in problem.supports} | {spring.node for spring in problem.springs}
     needed |= {end for joint in problem.joints for end in joint.ends}
     needed |= {load.node for load in problem.loads if load.moment}
     anchored = {f"{body.strip.name}.{ANCHORED}" for body in bodies if body.anchor is not None}
-    return tuple(
-        _section(problem, body, part, parts[-1].stop, end, f"{body.strip.name}.{end}" in anchored)
+    ends = [
+        _section(
+            problem,
+            body,
+            (part, parts[-1].stop),
+            f"{body.strip.name}.{end}",
+            end_rows(body.strip, body.mesh, end),
+            anchor_stiffness(body.strip) if f"{body.strip.name}.{end}" in anchored else 0.0,
+        )
         for body, part in zip(bodies, parts, strict=True)
         for end in ENDS
         if f"{body.strip.name}.{end}" in needed | anchored
-    )
+    ]
+    loaded = {load.node: load for load in problem.inner_moments}
+    inside = [
+        _section(
+            problem,
+            body,
+            (part, parts[-1].stop),
+            load.node,
+            inner_rows(body.strip, body.mesh, load.at),
+        )
+        for body, part in zip(bodies, parts, strict=True)
+        for load in loaded.values()
+        if load.strip == body.strip.name
+    ]
+    return (*ends, *inside)
 
 
 def _section(
-    problem: SolidProblem, body: Body, part: slice, nodes: int, end: str, anchored: bool
+    problem: SolidProblem,
+    body: Body,
+    among: tuple[slice, int],
+    node: str,
+    weights: tuple[csr_matrix, float],
+    anchored: float = 0.0,
 ) -> EndSection:
-    """Build the end section of a body among all ``nodes`` of the model."""
-    strip = body.strip
-    rows, height = end_rows(strip, body.mesh, end)
+    """Build the section ``node`` of a body, whose nodes are a range among all of the model, from its weights and height."""
+    strip, (rows, height) = body.strip, weights
     mean, first_moment = (rows @ body.mesh.nodes) @ strip.frame.T
     return EndSection(
-        node=f"{strip.name}.{end}",
+        node=node,
         position=mean + (np.array(strip.start) - np.array(problem.strips[0].start)),
-        rows=_among_all(rows, part, nodes),
+        rows=_among_all(rows, *among),
         first_moment=first_moment,
         frame=strip.frame,
         height=height,
-        anchor_stiffness=anchor_stiffness(strip) if anchored else 0.0,
+        anchor_stiffness=anchored,
     )
 
 

@@ -19,12 +19,33 @@ def section_means(model: Model, state: State, strip: str) -> Floats:
 
 def axis_line(result: Result, strip: str, k: int) -> Floats:
     """Section means ``(m, 2)`` from start to end at the accepted load parameter ``k``, in the global frame [m]."""
-    return section_means(result.model, result.states[k], strip)
+    model, state = result.model, result.states[k]
+    arcs, numbers = _bent_sections(model, strip)
+    origin = np.array(model.problem.strips[0].start)
+    means = [origin + model.sections[i].position + state.poses[i].displacement for i in numbers]
+    before = np.searchsorted(model.body(strip)[0].mesh.stations, arcs)
+    return np.insert(section_means(model, state, strip), before, np.reshape(means, (-1, 2)), axis=0)
 
 
 def axis_stations(result: Result, strip: str) -> Floats:
-    """Undeformed axial coordinates ``(m,)`` of the points in `axis_line` [m]."""
-    return result.model.body(strip)[0].mesh.stations
+    """Undeformed axial coordinates ``(m,)`` of the points in `axis_line` [m]: the mesh's sections, and those inside that bear a moment."""
+    stations = result.model.body(strip)[0].mesh.stations
+    arcs, _ = _bent_sections(result.model, strip)
+    return np.insert(stations, np.searchsorted(stations, arcs), arcs)
+
+
+def _bent_sections(model: Model, strip: str) -> tuple[Floats, list[int]]:
+    """Axial coordinates, increasing, and numbers of the sections inside a strip that bear a moment between two sections of its mesh."""
+    body, _ = model.body(strip)
+    places = {load.node: load.at for load in model.problem.inner_moments if load.strip == strip}
+    found = sorted(
+        (places[section.node] * body.strip.length, number)
+        for number, section in enumerate(model.sections)
+        if section.node in places
+    )
+    apart = 1e-9 * body.strip.length
+    between = [item for item in found if np.abs(body.mesh.stations - item[0]).min() > apart]
+    return np.array([arc for arc, _ in between]), [number for _, number in between]
 
 
 def nodal_stress(result: Result, k: int) -> Floats:

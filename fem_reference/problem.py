@@ -232,6 +232,11 @@ class SolidProblem:
         return tuple(sorted({*ends, *(turn for pin in self.pins for turn in pin.turns)}))
 
     @cached_property
+    def inner_moments(self) -> tuple[PointLoad, ...]:
+        """The loads inside the strips that have a moment."""
+        return tuple(load for load in self.inner_loads if isinstance(load, PointLoad) and load.moment)
+
+    @cached_property
     def stages(self) -> int:
         """Number of stages. The load parameter of the last state is at most this number."""
         loads = (1 + load.stage for load in (*self.loads, *self.inner_loads))

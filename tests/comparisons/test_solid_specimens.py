@@ -56,6 +56,9 @@ CASES = {
         h, conditions=CLAMP + LOAD + "force_per_length = [3 EI, -4 EI]\npart = [0.3, 0.73]\n"
     ),
     "at": lambda h: scene(h, conditions=CLAMP + LOAD + "at = 0.41\nforce = [0.0, -4 EI]\n"),
+    "moment": lambda h: scene(
+        h, conditions=CLAMP + LOAD + "at = 0.413\nforce = [0.0, 3 EI]\nmoment = -3 EI\n"
+    ),
     "weight": lambda h: scene(h, gravity="gravity = [0.0, -9.81]", conditions=CLAMP + "density = DENSITY\n"),
     "taper": lambda h: scene(
         h,
@@ -110,7 +113,7 @@ def test_the_solid_is_the_rod(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["part", "at", "weight", "taper"])
+@pytest.mark.parametrize("name", ["part", "at", "moment", "weight", "taper"])
 def test_the_difference_falls_at_least_as_the_height_squared(name):
     high, low = (difference(CASES[name], height, (100, 4)) for height in (0.08, 0.04))
     assert high > 3.0 * low
@@ -145,8 +148,11 @@ def test_a_frame_with_hinges_is_the_rods():
 
 
 def test_what_the_solid_cannot_state_costs_one_line():
-    moment = scene(0.02, conditions=CLAMP + LOAD + "at = 0.41\nmoment = 3 EI\n")
-    with pytest.raises(
-        ModelError, match=r'does not state a moment inside a beam, which acts on "s at 0\.41"'
-    ):
-        to_solid(moment)
+    hinged = scene(
+        0.02,
+        conditions=CLAMP
+        + LOAD
+        + 'end = "end"\nforce = [0.0, 3 EI]\n[[hinge]]\nbeam = "s"\nend = "start"\nstiffness = 5.0\n',
+    )
+    with pytest.raises(ModelError, match=r'at an end without a hinge, the support "s\.start" has one'):
+        to_solid(hinged)

@@ -166,7 +166,7 @@ def test_a_hinge_between_two_strips_bears_its_springs_moment(stiffness):
     assert result.supports["a.start"].moment[-1] == pytest.approx(SMALL / 2 * a - m, rel=1e-5)
 
 
-def test_the_tangent_is_exact_with_springs_and_hinges():
+def test_the_tangent_is_exact_with_springs_hinges_and_a_moment_inside():
     """By complex steps of displacements, and by the forces of the ties."""
     EI = make_strip().bending_stiffness
     strips = (
@@ -177,7 +177,10 @@ def test_the_tangent_is_exact_with_springs_and_hinges():
         strips=strips,
         joints=(fr.Joint(ends=("a.end", "b.start"), hinged=("b.start",), stiffness=(EI,)),),
         springs=(fr.Spring(strip="b", end="end", stiffness=(EI, 2 * EI, 3 * EI)),),
-        inner_loads=(fr.LineLoad(strip="b", force=((EI, 0.0), (0.0, EI))),),
+        inner_loads=(
+            fr.LineLoad(strip="b", force=((EI, 0.0), (0.0, EI))),
+            fr.PointLoad(strip="a", at=0.3, moment=EI),
+        ),
     )
     model = build(problem)
     rng = np.random.default_rng(0)
@@ -208,6 +211,7 @@ def test_the_tangent_is_exact_with_springs_and_hinges():
         (lambda: fr.LineLoad(strip="s", force=((0.0, 0.0),)), "force = .*must not be zero"),
         (lambda: fr.LineLoad(strip="s", force=((0.0, 1.0),), part=(0.5, 0.5)), "must be two increasing"),
         (lambda: fr.PointLoad(strip="s", at=1.0, force=(0.0, 1.0)), "at = 1.0: must lie between 0 and 1"),
+        (lambda: fr.PointLoad(strip="s", at=0.5), "force = .*must not be zero without a moment"),
         (lambda: fr.Spring(strip="s", end="end", stiffness=(-1.0, 0.0, 0.0)), "must be three finite values"),
         (
             lambda: fr.Joint(ends=("a.end", "b.end"), hinged=("a.end",)),

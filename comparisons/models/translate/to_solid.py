@@ -199,18 +199,14 @@ def _fixed_end(scene: Scene, node: str) -> str:
 
 
 def _inner_loads(scene: Scene) -> "Iterator[PointLoad | LineLoad]":
-    """Yield the forces inside the beams and the forces per length."""
+    """Yield the forces and moments inside the beams and the forces per length."""
     from fem_reference import LineLoad, PointLoad
 
     for stage, load in scene.numbered_loads():
         if load.force_per_length is not None:
             yield LineLoad(strip=load.beam, force=(load.force_per_length,), part=load.span, stage=stage)
         elif load.at is not None:
-            if load.moment:
-                raise ModelError(
-                    f'the solid model does not state a moment inside a beam, which acts on "{load.node}"'
-                )
-            yield PointLoad(strip=load.beam, at=load.at, force=load.force, stage=stage)
+            yield PointLoad(strip=load.beam, at=load.at, force=load.force, moment=load.moment, stage=stage)
 
 
 def _weights(scene: Scene) -> "Iterator[LineLoad]":
