@@ -53,7 +53,7 @@ def request(scene: Scene, options: Options, load_parameters: Sequence[float]) ->
             {
                 "name": pin.name,
                 "radius": pin.radius or 0.0,
-                "path": pin.points,
+                "path": pin.points if pin.moving else pin.points * 2,
                 "corners": pin.corners,
                 "positions": [pin.position(t) for t in load_parameters],
             }

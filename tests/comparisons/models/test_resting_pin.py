@@ -1,10 +1,13 @@
 """Pins at rest: stops and supports that a beam can leave, in all models."""
 
+import json
+
 import numpy as np
 import pytest
 
 from comparisons.models import MODELS, certified, solve
 from comparisons.models.options import Options
+from comparisons.models.outside.request import request
 from comparisons.scene import Scene, SceneError, read_scene
 
 STRIP = """
@@ -68,6 +71,14 @@ def test_a_stick_that_begins_as_a_stage_ends_is_certified_without_an_event() -> 
         slip = answer.contacts["stop->strip"].friction.slip
         assert slip[1] != 0
         assert slip[2] == 0
+
+
+def test_a_program_gets_a_path_of_two_points() -> None:
+    """Programs pair the points of a path with load parameters: 0, the corners, and 1."""
+    given = scene(LOAD)
+    (pin,) = json.loads(request(given, Options(), given.times))["pins"]
+    assert len(pin["path"]) == len(pin["corners"]) + 2
+    assert {tuple(point) for point in (*pin["path"], *pin["positions"])} == {(0.7, 0.0)}
 
 
 def test_a_pin_at_rest_alone_does_nothing() -> None:
