@@ -141,22 +141,28 @@ def clamp(strip: Strip, mesh: Discretisation) -> csr_matrix:
     """Matrix ``(2 n, m)`` from the unknowns, ordered along the strip, to the displacements that the clamps admit.
 
     If the edge has no node at its middle, the rod's clamp sets the transverse displacement interpolated there from the
-    two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite.
+    two adjacent nodes to zero. With three bilinear elements over the height the two displacements are opposite. At the end of an arc
+    the transverse direction is the section's there.
     """
     n = len(mesh.nodes)
     factor = np.ones(2 * n)
     master = np.arange(2 * n)
-    for edge in (mesh.edges[end] for end in strip.clamped):
-        y = mesh.nodes[edge, 1] - mesh.nodes[edge[[0, -1]], 1].mean()
-        factor[2 * edge] = 0
+    for end in strip.clamped:
+        edge = mesh.edges[end]
+        y = mesh.places[edge, 1] - mesh.places[edge[[0, -1]], 1].mean()
+        x, factor[2 * edge + 1] = strip.directions(np.array(0.0 if end == "start" else strip.length))[1]
+        factor[2 * edge] = x
+        master[2 * edge] = 2 * edge + 1
         if strip.clamp == "full":
-            factor[2 * edge + 1] = 0
+            factor[2 * edge], factor[2 * edge + 1] = 0, 0
         elif np.abs(y).min() < 1e-9 * strip.height:
-            factor[2 * edge[np.argmin(np.abs(y))] + 1] = 0
+            middle = 2 * edge[np.argmin(np.abs(y))]
+            factor[[middle, middle + 1]] = 0
         else:
             k = int(np.searchsorted(y, 0.0))
-            below, above = 2 * edge[k - 1] + 1, 2 * edge[k] + 1
-            master[above], factor[above] = below, y[k] / y[k - 1]
+            above = [2 * edge[k], 2 * edge[k] + 1]
+            master[above] = 2 * edge[k - 1] + 1
+            factor[above] *= y[k] / y[k - 1]
     order = np.lexsort(
         (np.round(mesh.places[:, 1] / strip.height, 9), np.round(mesh.places[:, 0] / strip.height, 9))
     )

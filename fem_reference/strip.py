@@ -136,14 +136,11 @@ class Strip:
         require_choice(owner, "plane", self.plane, PLANES)
 
     def _require_arc(self, owner: str) -> None:
-        """Require an arc that has room for its section and is clamped at its start only."""
+        """Require an arc that has room for its section."""
         if self.turn:
             narrow = abs(self.curvature) * self.largest_height < 2
             require(
                 narrow, owner, "turn", self.turn, "must leave the radius of the axis above half the height"
-            )
-            require(
-                "end" not in self.clamped, owner, "clamped", self.clamped, "must not be the end of an arc"
             )
             require(self.mesh_file is None, owner, "turn", self.turn, "must be zero with a mesh file")
 

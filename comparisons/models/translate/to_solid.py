@@ -98,9 +98,8 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
     joined = spec.node in _hinged(scene) or any(spec.node in ends for ends in _joints(scene))
     acting = [load.node for _, load in scene.numbered_loads()] + [spring.node for spring in scene.springs]
     loaded = spec.node in acting
-    arc = scene.beam(spec.beam).turn != 0.0 and spec.end == "end"
     moves = scene.prescribed_motions[spec.node].moves
-    if not (moves or joined or loaded or arc):
+    if not (moves or joined or loaded):
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
