@@ -176,9 +176,16 @@ def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
 def _stability(rows: Sequence[Row]) -> Iterable[str]:
     indices = [(row.family, -1 if row.response.index is None else row.response.index) for row in rows]
     silent = dict.fromkeys(family for family, index in indices if not np.any(np.greater_equal(index, 0)))
+    partial = dict.fromkeys(
+        family
+        for family, index in indices
+        if family not in silent and np.any(np.less(index, 0)) and not np.any(np.greater(index, 0))
+    )
     unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
     if silent:
         yield f"Stability is not stated by {_listed(silent)}."
+    if partial:
+        yield f"Stability is stated at a part of the load parameters by {_listed(partial)}."
     if unstable:
         yield f"Unstable equilibria are on the path of {_listed(unstable)}."
 

@@ -85,10 +85,12 @@ def _error(value: float) -> str:
 
 
 def _stable(response: Response) -> str:
-    """Return yes, no, or a dash where the model states no index."""
+    """Return yes, no, a dash where the model states no index, or that it states one at a part of the load parameters."""
     if response.index is None or not np.any(response.index >= 0):
         return "-"
-    return "no" if np.any(response.index > 0) else "yes"
+    if np.any(response.index > 0):
+        return "no"
+    return "yes" if np.all(response.index >= 0) else "in part"
 
 
 def table_csv(rows: list[Row]) -> str:

@@ -1,5 +1,6 @@
 """The findings of a comparison: every sentence changes with its data."""
 
+import csv
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
@@ -15,7 +16,7 @@ from comparisons.models.options import Options
 from comparisons.referee import Verdict
 from comparisons.scene import load_scene
 from comparisons.show.findings import BUDGET, findings
-from comparisons.show.table import Row
+from comparisons.show.table import Row, table_csv
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
 LABEL = ROD.label
@@ -183,6 +184,15 @@ def test_stability(rows: list[Row]) -> None:
     assert "Unstable equilibria are on the path of TSM exact." in told(
         changed(stated, 2, index=np.array([0, 0, 1, 0, 0]))
     )
+
+
+def test_stability_that_is_judged_in_part_is_said_to_be_so(rows: list[Row]) -> None:
+    """With friction in closed contacts the index is -1; where no contact is closed, the state is judged."""
+    stated = [replace(row, response=replace(row.response, index=np.zeros(5, dtype=int))) for row in rows]
+    part = changed(stated, 2, index=np.array([0, -1, -1, -1, 0]))
+    assert "Stability is stated at a part of the load parameters by TSM exact." in told(part)
+    cells = [row["stable"] for row in csv.DictReader(table_csv(part).splitlines())]
+    assert cells == ["in part" if n == 2 else "yes" for n in range(len(part))]
 
 
 def test_certificates(rows: list[Row]) -> None:
