@@ -7,7 +7,7 @@ import pytest
 
 import tsm
 from comparisons.models.translate import to_structure
-from comparisons.scene import load_scene
+from comparisons.scene import load_scene, read_scene
 from tests.verification.structures import (
     KS,
     KS_PATH,
@@ -289,3 +289,42 @@ def test_what_many_elements_leave_on_the_ks_cantilever(stated):
 def test_round_off_does_not_grow_with_the_elements(elements):
     error, gamma = error_on_ks(elements)
     assert error <= 0.3 * gamma**3
+
+
+STRETCHED = """
+[scene]
+name = "stretched"
+load_parameters = 10
+[[beam]]
+name = "strip"
+start = [0.0, 0.0]
+end = [1.0, 0.0]
+youngs_modulus = 1e5
+poissons_ratio = 0.3
+width = 1.0
+height = 0.02
+clamped = ["start", "end"]
+[[pin]]
+name = "pin"
+start = [{}, 0.0]
+displacement = [0.0, 0.05]
+[[contact]]
+node = "pin"
+beam = "strip"
+side = "right"
+"""
+
+
+def force_on_a_stretched_strip(place, **resolution):
+    structure = to_structure(read_scene(STRETCHED.format(place), "stretched.toml"), **resolution)
+    return tsm.solve(structure, steps(10)).contacts["pin->strip"].force[-1]
+
+
+@pytest.mark.parametrize(("place", "order", "factors"), [(0.5, 4, (10, 25)), (0.4137, 2, (0.3, 0.7))])
+def test_order_between_the_nodes_of_a_stretched_strip(place, order, factors):
+    """Fourth order where the pin is at a node, second order between nodes: the kink of a contact's own shear is not stretched with the axis."""
+    exact = force_on_a_stretched_strip(place, elements=2, element="exact")
+    assert exact / (1e5 * 0.02**3 / 12) == pytest.approx(50, rel=0.05)
+    for n in (16, 32):
+        error = abs(force_on_a_stretched_strip(place, elements=n, element="mixed") / exact - 1)
+        assert factors[0] <= error * n**order <= factors[1]
