@@ -114,8 +114,8 @@ MENDED_SPECIAL = {
     849: "a stick whose force has gone, where the cone is round-off",
 }
 """Scenes with special keys that were answered wrongly, refused wrongly or given up, and why."""
-STOPPED = {505: "MECHANISM", 642: "FALLING"}
-"""Those of them that stop by name."""
+STOPPED = {505: {"MECHANISM"}, 642: {"FALLING"}, 845: {"COMPLETED", "INACCURATE"}}
+"""How those of them end that stop by name; the `mixed` elements of 845 are too coarse."""
 
 
 @pytest.mark.slow
@@ -123,7 +123,7 @@ STOPPED = {505: "MECHANISM", 642: "FALLING"}
 def test_drawn_scenes_with_special_keys_that_once_failed(seed: int) -> None:
     found = judged(drawn_special(seed), BEAMS, (3,))
     assert not found.findings, found.report()
-    assert {row.ended for row in found.rows} == {STOPPED.get(seed, "COMPLETED")}
+    assert {row.ended for row in found.rows} == STOPPED.get(seed, {"COMPLETED"})
 
 
 def test_drawn_scenes_have_every_special_key() -> None:
