@@ -1,7 +1,10 @@
 """Dead loads inside a strip: forces at points of the axis, and forces per length such as a weight.
 
-They act on the mean displacement of the sections: a force inside a strip as a uniform traction over the height of its section, a moment
-as tractions that are linear over the height and normal to the mean direction of the deformed section, a force per length as a force per volume that is uniform over the height of every section. A weight is such a force.
+They act on the sections of the strip:
+
+- a force as a uniform traction over the height of its section;
+- a moment as tractions that are linear over the height, normal to the mean direction of the deformed section;
+- a force per length as a force per volume that is uniform over the height of every section. A weight is such a force.
 """
 
 from dataclasses import dataclass

@@ -51,8 +51,8 @@ class Jump:
         Returns
         -------
         Equilibrium or Status
-            FALLING if the structure finds no rest, or one inside a round pin only, LOST_CONTACT if a contact opens that must persist, REST_UNKNOWN if contacts with
-            friction are closed at the rest.
+            FALLING if the structure finds no rest, or only one inside a round pin. LOST_CONTACT if a contact opens that must persist.
+            REST_UNKNOWN if contacts with friction are closed at the rest.
         """
         newton, model = self.fall.newton, self.fall.newton.model
         energy = began = newton.potential(event.state)
