@@ -14,7 +14,7 @@ import numpy as np
 from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.verify import penetration
-from comparisons.referee import Judgement, certify
+from comparisons.referee import Judgement, Verdict, certify
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
 from tests.fuzz.judge import LIMIT, Hang, time_limit
@@ -24,6 +24,7 @@ MODELS = {
     "mixed": ("tsm", Options(element="mixed")),
     "solid": ("solid", Options()),
 }
+BEAMS = ("exact", "mixed")
 ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": math.inf}
 """Largest distance from the exact equilibrium in forces and places, where it is less than the certificate's own."""
 NOTHING = 1e-3
@@ -59,6 +60,8 @@ class Row:
     certificate: str = ""
     off: float = math.nan
     certified: bool = False
+    lost: bool = False
+    """Whether the referee finds no equilibrium at all near the answer."""
 
     @property
     def completed(self) -> bool:
@@ -146,7 +149,8 @@ def run(scene: Scene, model: str, *, every: bool = True) -> Row:
     line = (
         found.line() if near or not found.certified else f"FAR: off by {off:.2g}, allowed {ALLOWED[model]:g}"
     )
-    return replace(row, certificate=line, off=off, certified=found.certified and near)
+    lost = any(item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is None for item in found.judged)
+    return replace(row, certificate=line, off=off, certified=found.certified and near, lost=lost)
 
 
 def _off(scene: Scene, item: Judgement) -> float:
@@ -201,6 +205,26 @@ def findings(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
             yield Finding(kind="BRANCHES", text=f"{off:.2g} apart: " + " | ".join(row.line() for row in both))
 
 
+def wrong(found: Judged) -> Iterator[Finding]:
+    """Yield the findings on answers that are completed and wrong.
+
+    What the referee refuses is right if the other elements complete with it at every load parameter and are certified, or if the
+    referee finds no equilibrium near either.
+    """
+    own = found.scene.load_parameters
+    rows = {row.model: row for row in found.rows if row.completed and row.number == own}
+    known = any(row.certified for row in rows.values()) or all(row.lost for row in rows.values())
+    every = range(len(found.scene.times))
+    same = len(rows) > 1 and all(apart(found.scene, *rows.values(), at=k) <= BETWEEN for k in every)
+    fine = {"HANG", "RAISED", Verdict.NOT_JUDGED.name}
+    if known and same:
+        fine |= set(Verdict.__members__)
+    for item in found.findings:
+        kind = item.kind.partition(" ")[0]
+        if kind not in fine and (kind != "DEPENDS" or "apart" in item.text):
+            yield item
+
+
 def _depends(scene: Scene, first: Row, other: Row) -> Iterator[Finding]:
     """Yield how an answer depends on the number of load parameters."""
     lines = f"{first.line()} | {other.line()}"
@@ -220,24 +244,24 @@ def kind(ended: str) -> str:
     return GAVE_UP if ended in NO_NEXT_STEP else ended
 
 
-def apart(scene: Scene, one: Row, other: Row) -> float:
-    """Return the largest difference of two answers at the last load parameter: tips over the length, forces over the largest."""
+def apart(scene: Scene, one: Row, other: Row, at: int = -1) -> float:
+    """Return the largest difference of two answers at one load parameter, the last one: tips over the length, forces over the largest."""
     a, b = one.response, other.response
     assert a is not None, "it is completed"
     assert b is not None, "it is completed"
     found = [
-        float(np.hypot(*(a.tips[beam.name][-1] - b.tips[beam.name][-1]))) / beam.length
+        float(np.hypot(*(a.tips[beam.name][at] - b.tips[beam.name][at]))) / beam.length
         for beam in scene.beams
     ]
-    forces = [np.hypot(*item.force[-1]) for answer in (a, b) for item in answer.supports.values()]
-    forces += [item.force[-1] for answer in (a, b) for item in answer.contacts.values()]
+    forces = [np.hypot(*item.force[at]) for answer in (a, b) for item in answer.supports.values()]
+    forces += [item.force[at] for answer in (a, b) for item in answer.contacts.values()]
     left = 2.0 * NEWTON * max(beam.EI / beam.length**2 for beam in scene.beams)
     size = max(NOTHING * least_force(scene), left / SAME, *map(float, forces))
     found += [
-        abs(float(a.contacts[pair].force[-1] - b.contacts[pair].force[-1])) / size for pair in a.contacts
+        abs(float(a.contacts[pair].force[at] - b.contacts[pair].force[at])) / size for pair in a.contacts
     ]
     found += [
-        float(np.hypot(*(a.supports[node].force[-1] - b.supports[node].force[-1]))) / size
+        float(np.hypot(*(a.supports[node].force[at] - b.supports[node].force[at]))) / size
         for node in a.supports
     ]
     return max(found, key=lambda value: math.inf if math.isnan(value) else value)

@@ -1,0 +1,76 @@
+"""Scenes that nobody has drawn before: the date is the seed, ``CROSSVAL_DAY=20261231`` draws those of another day."""
+
+import os
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime
+from time import process_time
+
+import pytest
+from hypothesis import given, seed, settings
+
+from comparisons.scene import Scene, SceneError, read_scene
+from tests.fuzz import world_judge
+from tests.fuzz.broken import toml_text
+from tests.fuzz.scenes import Tables, valid_scenes
+from tests.fuzz.special import drawn_special
+from tests.fuzz.test_scene_files import DRAWN
+from tests.fuzz.world import drawn, drawn_with_friction
+from tests.fuzz.world_judge import BEAMS, judged, wrong
+
+NUMBER = 15
+"""Scenes of each kind."""
+BUDGET = 50.0
+"""Processor seconds for each kind; what is not drawn until then is counted."""
+LIMIT = 10.0
+"""Processor seconds for one solution, and for one certificate."""
+FINE = 40
+"""Elements of `mixed` where a scene is drawn with few."""
+
+
+def of_a_file(first: int) -> Scene:
+    """Return a scene as the reader's tests draw them, with enough elements."""
+    found = list[Tables]()
+
+    @settings(DRAWN, max_examples=2)
+    @seed(first)
+    @given(valid_scenes)
+    def draw(tables: Tables) -> None:
+        found.append(tables)
+
+    draw()
+    try:
+        # the first is the same for every seed
+        scene = read_scene(toml_text(found[-1]), f"file {first}")
+    except SceneError:
+        return of_a_file(first + 1_000_000)
+    return replace(scene, beams=tuple(replace(beam, elements=FINE, nodes=()) for beam in scene.beams))
+
+
+KINDS = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "file": of_a_file}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_completed_answers_of_the_day_are_right(
+    kind: str, record_property: Callable[[str, object], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A completed answer is certified, or the other elements have it too; what else comes out is listed."""
+    monkeypatch.setattr(world_judge, "LIMIT", LIMIT)
+    day = int(os.environ.get("CROSSVAL_DAY") or f"{datetime.now(UTC):%Y%m%d}")
+    began, ends, faults = process_time(), Counter[str](), []
+    for number in range(100 * day, 100 * day + NUMBER):
+        if process_time() - began > BUDGET:
+            ends["not drawn in time"] += 1
+            continue
+        found = judged(KINDS[kind](number), BEAMS)
+        ends.update(f"{row.model} {row.ended}" for row in found.rows)
+        left = list(wrong(found))
+        ends.update(f"listed: {item.kind} of {number}" for item in found.findings if item not in left)
+        if left:
+            faults.append(f"CROSSVAL_DAY={day}, {kind} {number}\n{found.report()}")
+    record_property(
+        "listed", f"CROSSVAL_DAY={day}, {kind}: " + ", ".join(f"{n} {end}" for end, n in sorted(ends.items()))
+    )
+    assert not faults, f"{len(faults)} of {NUMBER} scenes\n" + "\n\n".join(faults)
