@@ -1,12 +1,14 @@
 """What every test can rely on."""
 
+import os
 import signal
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import pytest
 
-from tests.stated import check
+from tests.stated import MEASURED, check, left, record
 
 
 def pytest_configure() -> None:
@@ -51,3 +53,33 @@ def _leave_to_the_slow_tier(items: list[pytest.Item], *, whole: bool) -> None:
 def stated(request: pytest.FixtureRequest) -> Callable[..., None]:
     """``stated(name, *values)`` judges what a test measures against the pages, see `tests.stated.check`."""
     return partial(check, write=request.config.getoption("write_results"))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Print what tests have recorded to be listed, whether they pass or not."""
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            for name, line in getattr(report, "user_properties", ()):
+                if name == "listed" and report.when == "call":
+                    terminalreporter.write_line(str(line))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Take what a worker has measured."""
+    for name, (bound, values) in getattr(node, "workeroutput", {}).get("measured", {}).items():
+        record(name, bound, values)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """After a run of all tests judge the numbers of the pages that many tests measure, or none; where programs may be missing, the latter are listed."""
+    config = session.config
+    if hasattr(config, "workeroutput"):
+        config.workeroutput["measured"] = MEASURED
+    elif config.args_source is pytest.Config.ArgsSource.TESTPATHS and not (
+        config.option.markexpr or config.option.keyword or config.option.collectonly or session.exitstatus
+    ):
+        lines = list(left(write=config.getoption("write_results")))
+        print("", *lines, sep="\n")
+        if any("measured it" not in line or os.environ.get("CI") for line in lines):
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED

@@ -70,6 +70,8 @@ def main() -> int:
         print(f"         {name}: {1e3 * value:.3g} ms")
     write_text(given.out, recorded(gates, times))
     failures = compared(gates, write=given.write_results)
+    marks = {mark for page in pages() for mark in MARK.findall(page.read_text()) if mark.startswith("bench.")}
+    failures += [f"{mark}: nothing measures it" for mark in sorted(marks - {gate.mark for gate in gates})]
     print(*failures, sep="\n")
     return bool(failures)
 

@@ -31,8 +31,8 @@ def check_penetration_and_work(problem, panels, stated):
     penetration, difference = np.abs(result.contacts[PAIR].gap).max(), abs(work / energy - 1)
     assert penetration <= 1e-10
     assert difference <= 1e-6
-    stated("solid.penetration", penetration, bound=True)
-    stated("solid.work", difference, bound=True)
+    stated("solid.penetration", penetration, part=True)
+    stated("solid.work", difference, part=True)
 
 
 @surfaces

@@ -54,7 +54,7 @@ def test_ks_at_every_load_parameter(ks_scene, stated):
     )
     error = max(np.abs(part).max() for part in differences)
     assert error <= 1e-9
-    stated("exact.ks", error, bound=True)
+    stated("exact.ks", error, part=True)
 
 
 @pytest.mark.parametrize("count", [2, 5, 50, pytest.param(500, marks=pytest.mark.slow)])
@@ -89,13 +89,13 @@ def test_41_at_60_depths_and_its_slip_off(x, slip_off_41, stated):
     differences = contact.force / exact.magnitude[1:] - 1, contact.arc_position - exact.arc_position[1:]
     error = np.abs(differences).max()
     assert error <= 1e-9
-    stated("exact.4.1", error, bound=True)
+    stated("exact.4.1", error, part=True)
     for count in (1, 20):
         over = tsm.solve(cantilever(raised(x, 2.0), section=section, length=length), steps(count))
         assert essentials(over) == [(EventKind.SLIP_OFF, "p0->b")]
         error = abs(2.0 * slip_offs(over)[0] / slip_off_41[x] - 1)
         assert error <= 1e-9
-        stated("exact.4.1-slip-off", error, bound=True)
+        stated("exact.4.1-slip-off", error, part=True)
         assert np.abs(over.tips["b"][-1] - [length, 0.0]).max() <= 1e-9
 
 
@@ -114,7 +114,7 @@ def test_41_map(x, slip_off_41, stated):
     error = np.abs(np.array(ends) - ends[0]).max()
     assert error <= 1e-9
     stated("exact.step-counts", len(counts))
-    stated("exact.4.1-map", error, bound=True)
+    stated("exact.4.1-map", error, part=True)
 
 
 DOUBLE_BEAM_EVENTS = [
@@ -215,7 +215,7 @@ def test_elastica_ks(stated):
     )
     error = max(np.abs(part).max() for part in differences)
     assert error <= 1e-9
-    stated("exact.elastica", error, bound=True)
+    stated("exact.elastica", error, part=True)
     assert np.abs(result.tips["b"][-1] - [-0.0831776691, 0.6995120682]).max() <= 1e-9
 
 
@@ -237,9 +237,7 @@ def test_elastica_slip_off(x, stated):
     for count in (1, 10):
         result = tsm.solve(cantilever(raised(x, 1.0), section=STIFF), steps(count))
         assert slip_offs(result) == pytest.approx([elastica.slip_off_displacement(x)], rel=1e-9)
-        stated(
-            "exact.elastica", abs(slip_offs(result)[0] / elastica.slip_off_displacement(x) - 1), bound=True
-        )
+        stated("exact.elastica", abs(slip_offs(result)[0] / elastica.slip_off_displacement(x) - 1), part=True)
 
 
 def top(x, y):
@@ -261,7 +259,7 @@ def test_elastica_limit_points(stated):
         force = -2 * result.supports["b.start"].force[:, 1] if support else result.contacts["p0->b"].force
         load, displacement = top(depth, force / STIFF.EI)
         assert load == pytest.approx(limit.load, rel=1e-9)
-        stated("exact.elastica", abs(load / limit.load - 1), bound=True)
+        stated("exact.elastica", abs(load / limit.load - 1), part=True)
         assert displacement == pytest.approx(limit.displacement, abs=1e-8)
 
 
@@ -271,7 +269,7 @@ def test_elastica_dead_load(load, stated):
     result = tsm.solve(cantilever(section=STIFF, load=tip), steps(2))
     error = np.abs(result.tips["b"][-1] - tip_under_dead_load(load)).max()
     assert error <= 1e-9
-    stated("exact.elastica", error, bound=True)
+    stated("exact.elastica", error, part=True)
 
 
 @pytest.mark.parametrize(("turns", "elements"), [(1, 1), (2, 2), (2, 1)])
@@ -284,7 +282,7 @@ def test_roll_up(turns, elements, stated):
         exact = np.stack([np.sin(angle) / angle, (1 - np.cos(angle)) / angle], axis=1)
         error = np.abs(result.tips["b"] - exact).max()
         assert error <= 1e-9
-        stated("exact.roll-up", error, bound=True)
+        stated("exact.roll-up", error, part=True)
         assert result.shape("b", -1)[-1, 2] == pytest.approx(2 * np.pi * turns, rel=1e-9)
 
 

@@ -54,7 +54,7 @@ def test_units_do_not_matter(count, stated):
             assert np.array_equal(result.newton_iterations, plain.newton_iterations)
             error = np.abs(dimensionless(result) - dimensionless(plain)).max()
             assert error <= 1e-9
-            stated("exact.units", error, bound=True)
+            stated("exact.units", error, part=True)
 
 
 SLENDER, SHEAR = (10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6), (1e-2, 1e-1, 1 / 2.6, 1e3, 1e12)
@@ -75,7 +75,7 @@ def test_slenderness_and_shear_modulus(slenderness, shear, stated):
     differences = contact.force / exact.magnitude[1:] - 1, contact.arc_position - exact.arc_position[1:]
     error = np.abs(differences).max()
     assert error <= 1e-8
-    stated("exact.slenderness", error, bound=True)
+    stated("exact.slenderness", error, part=True)
     at_once = tsm.solve(structure, steps(1))
     assert at_once.newton_iterations.sum() <= 80
     assert np.abs(dimensionless(at_once)[-1] - dimensionless(result)[-1]).max() <= 1e-8

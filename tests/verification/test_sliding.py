@@ -49,7 +49,7 @@ def test_slip_off_displacements(x, exact, stated):
     """Within 1e-5, which is of the third power of the shear strain there, with 18 and with 72 elements."""
     error = max(abs(slip_off(x, elements) / exact - 1) for elements in (18, 72))
     assert error <= 1e-5
-    stated("sliding.slip-off", error, bound=True)
+    stated("sliding.slip-off", error, part=True)
 
 
 def test_floor_is_the_fourth_power_of_the_shear_strain():
@@ -94,7 +94,7 @@ def test_success_map(x, stated):
         worst = max(worst, np.abs(tenths / reference - 1).max())
     assert worst <= 1e-8
     stated("sliding.step-counts", len(counts))
-    stated("sliding.success-map", worst, bound=True)
+    stated("sliding.success-map", worst, part=True)
 
 
 @pytest.mark.slow
@@ -144,7 +144,7 @@ def test_objectivity(name, stated):
         found = forces(tsm.solve(other, t))
         worst = max(worst, float(np.abs(found - plain).max() / np.abs(plain).max()))
     assert worst <= 1e-10
-    stated("sliding.rigid-motion", worst, bound=True)
+    stated("sliding.rigid-motion", worst, part=True)
 
 
 def test_end_swap_and_mirror():
@@ -258,7 +258,7 @@ def test_a_beam_that_is_let_go_far_over_falls_to_rest(height, path, stated):
     assert slips[0].load_parameter == pytest.approx(slips[1].load_parameter, abs=1e-5)
     error = abs(slips[0].released / slips[1].released - 1)
     assert error <= 1e-5
-    stated("sliding.released", error, bound=True)
+    stated("sliding.released", error, part=True)
     assert mixed.strain_energy[-1] <= 1e-12 * slips[0].released
 
 

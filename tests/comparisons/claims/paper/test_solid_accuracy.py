@@ -63,8 +63,8 @@ def test_q2_does_not_lock(stated) -> None:
         assert abs(row["Q1"]) > 0.05
         if row["h_over_L"] < 0.01:
             assert abs(row["Q2-full"]) > 20 * abs(row["Q2"])
-        name = f"solid.locking-{row['h_over_L']:g}-{row['poissons_ratio']:g}"
-        stated(name, row["Q1"], row["Q2-full"], row["Q2"])
+        case = f"{row['h_over_L']:g}-{row['poissons_ratio']:g}"
+        stated(f"solid.locking-{case}", row["Q1"], row["Q2-full"], row["Q2"])
 
 
 @pytest.mark.slow
