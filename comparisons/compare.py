@@ -82,6 +82,8 @@ DRAWN = tuple(sorted((run for run in RUNS if run not in (MIXED, ELASTICA)), key=
 BRANCH = ("force", "moment", "tip")
 WRITTEN = 5
 """Parts of the files: shapes, stress, budget, VTU files, tables and page."""
+NAMES = ("report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png", "budget.png", "budget.svg", "budget.json")  # fmt: skip
+"""The files beside those of ParaView."""
 APART = 0.5
 """Error of one of these quantities beyond which two answers are different equilibria."""
 
@@ -159,7 +161,7 @@ def compare(
     refused = find(ROD.model).refusal(scene)
     if refused is not None:
         raise ModelError(f"compare: errors are measured against the {ROD.label}; {refused}")
-    folder = writable_folder(folder)
+    folder = writable_folder(folder, *NAMES)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
     runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
@@ -277,7 +279,7 @@ def _write_all(
     files = [*shapes, *_write_picture(scene, responses, folder, report)]
     count(2, WRITTEN)
     if budget is not None:
-        files += [folder / name for name in ("budget.png", "budget.svg", "budget.json")]
+        files += [folder / name for name in NAMES[-3:]]
         plot_budget(budget, *files[-3:-1])
         write_budget(budget, files[-1])
     count(3, WRITTEN)

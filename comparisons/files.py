@@ -1,10 +1,14 @@
-"""Atomic files: a file is written completely or not at all."""
+"""Files of this program: each is written completely or not at all, and replaces only one that this program wrote.
 
+The hidden list `WRITTEN` of a folder has the digests of the files that this program wrote there.
+"""
+
+import hashlib
 import os
 import signal
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -14,6 +18,10 @@ except ImportError:  # Windows
     LOCKS_FOLDERS = False
 else:
     LOCKS_FOLDERS = True
+
+
+WRITTEN = ".crossval"
+"""Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
 
 
 class OutputError(ValueError):
@@ -48,6 +56,64 @@ def read_regular(path: str, most: int) -> bytes:
     return data
 
 
+def _entry(path: Path, name: str) -> str:
+    """Return the line of a list for the file `path`, whose name is or becomes `name`."""
+    with path.open("rb") as file:
+        return f"{hashlib.file_digest(file, 'sha256').hexdigest()}  {printable(name)}"
+
+
+def _listed(folder: Path) -> set[str]:
+    """Return the lines of the list of a folder; none where there is no list."""
+    try:
+        return set((folder / WRITTEN).read_text(encoding="utf-8").splitlines())
+    except (OSError, ValueError):
+        return set()
+
+
+def own(folder: Path, names: Iterable[str]) -> set[str]:
+    """Return those of `names` that are files in `folder` as this program wrote them."""
+    listed = _listed(folder)
+    paths = {name: folder / name for name in names}
+    return {
+        name
+        for name, path in paths.items()
+        if path.is_file() and not path.is_symlink() and _entry(path, name) in listed
+    }
+
+
+def check_free(folder: Path, *names: str) -> None:
+    """Raise unless each of `names` is free in `folder`, or a file as this program wrote it.
+
+    Raises
+    ------
+    OutputError
+        Names the first file that this program did not write there, or that was changed since.
+    """
+    there = [name for name in names if os.path.lexists(folder / name)]
+    foreign = set(there) - own(folder, there)
+    for name in there:
+        if name in foreign:
+            raise OutputError(
+                f"{folder / name}: is there already, and is not as crossval wrote it: move it, or choose another name"
+            )
+
+
+def _list(folder: Path, entries: Iterable[str]) -> None:
+    """Add lines to the list of a folder. What will be renamed is listed before, so that no file of this program is without a line."""
+    lines = sorted(set(entries) - _listed(folder))
+    if lines:
+        with (folder / WRITTEN).open("a", encoding="utf-8") as file:
+            file.write("".join(f"{line}\n" for line in lines))
+
+
+def move(aside: Path, folder: Path, names: Iterable[str]) -> None:
+    """Move finished files from the folder `aside` to `folder`, in the order of `names`."""
+    names = list(names)
+    _list(folder, (_entry(aside / name, name) for name in names))
+    for name in names:
+        (aside / name).replace(folder / name)
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name in the folder of `path`; rename it to `path` once the block has written it.
@@ -57,11 +123,13 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises
     ------
     OutputError
-        If the disk is full or the system refuses to write the file.
+        If a file is there that this program did not write, the disk is full or the system refuses to write the file.
     """
+    check_free(path.parent, path.name)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
         yield temporary
+        _list(path.parent, [_entry(temporary, path.name)])
         temporary.replace(path)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
@@ -131,21 +199,23 @@ def interrupts_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def writable_folder(folder: Path) -> Path:
+def writable_folder(folder: Path, *names: str) -> Path:
     """Return `folder` after a trial of writing in it; the folder is created if it does not exist.
 
     Raises
     ------
     OutputError
-        If the folder cannot be created or written in.
+        If the folder cannot be created or written in, or one of `names` is there and is not as this program wrote it.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
-            return folder
+            pass
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise OutputError(f"{folder}: cannot be written: {reason}") from None
+    check_free(folder, *names)
+    return folder
 
 
 def writable_file(path: Path) -> Path:
@@ -165,4 +235,11 @@ def writable_file(path: Path) -> Path:
     if not target.parent.is_dir():
         raise OutputError(f"{path}: cannot be written: there is no folder {path.parent}")
     writable_folder(target.parent)
+    return target
+
+
+def result_file(path: Path) -> Path:
+    """Return `writable_file`, unless a file is there that this program did not write."""
+    target = writable_file(path)
+    check_free(target.parent, target.name)
     return target

@@ -14,7 +14,7 @@ from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
 from comparisons.claims.claim import Allowance, Claim, Quantity, judge
-from comparisons.files import alone_in, write_text
+from comparisons.files import alone_in
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
@@ -191,7 +191,7 @@ def check(
                     text = replaced(
                         text, one, tuple(0.5 * LOOSE * value for value in measured) if up else measured, up=up
                     )
-                write_text(path, text)
+                path.write_text(text, encoding="utf-8")
             else:
                 assert not failures, failures
     assert places, f"{name}: no page has this mark"

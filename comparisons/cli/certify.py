@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from comparisons.cli import values
 from comparisons.cli.options import ModelNames, add_options, chosen
 from comparisons.cli.outcome import DONE, STOPPED, WRONG
-from comparisons.files import writable_file, write_text
+from comparisons.files import OutputError, result_file, write_text
 from comparisons.models import TSM
 from comparisons.models.options import ModelError
 from comparisons.scene import load_scene
@@ -51,12 +51,14 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Read or solve, judge, and print the certificate."""
-    file = None if given.json in (None, "-") else writable_file(Path(given.json))
+    file = None if given.json in (None, "-") else result_file(Path(given.json))
     from comparisons.output import json_text
     from comparisons.referee import Verdict, certify
     from comparisons.response.from_json import read_response
 
     stored = given.answer.endswith(".json")
+    if stored and file == Path(given.answer).resolve():
+        raise OutputError(f"--json {given.json}: is the answer to be judged, choose another name")
     if stored:
         for option in ("model", "elements", "element", "mesh"):
             if getattr(given, option) is not None:

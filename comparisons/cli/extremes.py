@@ -39,7 +39,7 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Run the matrix, name the files and whatever is wrong."""
-    writable_folder(given.out)
+    writable_folder(given.out, "extremes.html", "extremes.csv", "extremes.json")
     from comparisons.cases.progress import line_ended, shown
     from comparisons.cases.workers import local
     from comparisons.claims.extremes.run import counts, extremes

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli.options import ModelNames, add_options, chosen
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
-from comparisons.files import writable_file, write_text
+from comparisons.files import result_file, write_text
 from comparisons.models import TSM
 from comparisons.quantities import QUANTITIES
 from comparisons.scene import load_scene
@@ -60,7 +60,7 @@ def _bound(text: str) -> tuple[str, float]:
 def run(given: argparse.Namespace) -> int:
     """Measure, print the bounds and write them."""
     scene = load_scene(given.scene)
-    file = None if given.junit is None else writable_file(Path(given.junit))
+    file = None if given.junit is None else result_file(Path(given.junit))
     from comparisons.claims.gate import gate
 
     found = gate(scene, given.model, chosen(given), dict(given.max_error), given.against)

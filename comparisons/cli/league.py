@@ -49,7 +49,9 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Measure, print the summary and name the files."""
     scenes = [load_scene(name) for name in given.scenes or built_in_scenes()]
-    folder = writable_folder(given.out)
+    folder = writable_folder(
+        given.out, *(f"league.{kind}" for kind in ("csv", "json", "svg", "png")), "report.html"
+    )
     given.workers = given.workers or 1
     from comparisons.cases.progress import line_ended, shown
     from comparisons.league.entries import measure_league

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparisons.cli.outcome import DONE, WRONG, report
-from comparisons.files import writable_file, writable_folder, write_text
+from comparisons.files import result_file, writable_folder, write_text
 
 if TYPE_CHECKING:
     import argparse
@@ -55,8 +55,8 @@ def run(given: "argparse.Namespace") -> int:
         cards = write_cards(given.cards, watch, problems)
         print(f"{len(cards) - 1} cards and their schema in {given.cards}")
         return DONE
-    writable_folder(given.out)
-    file = None if given.junit is None else writable_file(given.junit)
+    writable_folder(given.out, "index.md", "manual.json")
+    file = None if given.junit is None else result_file(given.junit)
     from comparisons.claims.junit import junit_text
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.text import junit_cases

@@ -39,7 +39,7 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Reproduce and name the files."""
-    writable_folder(given.out)
+    writable_folder(given.out, "report.html")
     from comparisons.claims.paper.reproduce import reproduce
 
     done = reproduce(given.figure, given.out, quick=given.quick, report=report)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE
-from comparisons.files import OutputError, writable_file, write_text
+from comparisons.files import OutputError, result_file, writable_file, write_text
 from comparisons.scene import built_in_scenes, load_scene
 from comparisons.scene.rules import RuleError, name
 from comparisons.scene.tables import InputError
@@ -53,7 +53,8 @@ def run_new(given: "argparse.Namespace") -> int:
         text = _shipped("template.toml").replace('name = "NAME"', f'name = "{given.name}"')
     else:
         text = built_in_scenes()[given.like].replace(f'name = "{given.like}"', f'name = "{given.name}"', 1)
-    write_text(path, text)
+    with path.open("x", encoding="utf-8") as file:
+        file.write(text)
     print(f"{path.name}: edit it, then: crossval check {path.name}")
     return DONE
 
@@ -61,7 +62,8 @@ def run_new(given: "argparse.Namespace") -> int:
 def run_check(given: "argparse.Namespace") -> int:
     """Say which models can state the scene, and draw it."""
     scene = load_scene(given.scene)
-    picture = writable_file(Path(given.out or f"{scene.name}.png"))
+    picture = result_file(Path(given.out or f"{scene.name}.png"))
+    file = None if given.json is None else result_file(Path(given.json))
     if picture.suffix not in (".png", ".svg"):
         raise OutputError(f"{given.out}: must end in .png or .svg")
     from comparisons.models.options import Options
@@ -70,9 +72,8 @@ def run_check(given: "argparse.Namespace") -> int:
 
     for line in stated(scene, given.others):
         print(line)
-    if given.json is not None:
-        resolved = request(scene, Options(), scene.times)
-        write_text(writable_file(Path(given.json)), resolved)
+    if file is not None:
+        write_text(file, request(scene, Options(), scene.times))
         print(f"resolved scene: {given.json}")
     draw(scene, picture)
     print(f"drawn: {given.out or picture.name}")

@@ -10,7 +10,7 @@ from comparisons.cli import values
 from comparisons.cli.options import ModelNames, add_options, argument, chosen
 from comparisons.cli.outcome import DONE, EPILOG, STOPPED, exit_status, report
 from comparisons.cli.progress import watching
-from comparisons.files import OutputError, writable_file, writable_folder, write_text
+from comparisons.files import OutputError, result_file, writable_folder, write_text
 from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
@@ -144,11 +144,13 @@ class _Stages:
 def _check_files(given: "argparse.Namespace", scene: "Scene") -> None:
     """Raise `OutputError` for a file that cannot be written, before anything is computed."""
     if given.json not in (None, "-"):
-        writable_file(Path(given.json))
+        given.json = result_file(Path(given.json))
     if given.csv is not None:
-        writable_file(given.csv)
-    if given.plot is not None and writable_file(given.plot).suffix not in PICTURES:
-        raise OutputError(f"{given.plot}: must end in {', '.join(PICTURES)}")
+        given.csv = result_file(given.csv)
+    if given.plot is not None:
+        given.plot = result_file(given.plot)
+        if given.plot.suffix not in PICTURES:
+            raise OutputError(f"{given.plot}: must end in {', '.join(PICTURES)}")
     if given.vtk is not None:
         from comparisons.show.export import check_series
 
@@ -176,7 +178,7 @@ def _write(given: "argparse.Namespace", response: "Response", scene: "Scene", mo
         if given.json == "-":
             sys.stdout.write(as_json(response, **more))
         else:
-            write_text(Path(given.json), as_json(response, **more))
+            write_text(given.json, as_json(response, **more))
     if given.csv is not None:
         from comparisons.response.table import csv_history
 

@@ -70,7 +70,7 @@ def _answer(given: "argparse.Namespace") -> int:
             raise InputError(
                 f"--{option.replace('_', '-')}", f"belongs to a study file, {given.study} is a question"
             )
-    writable_folder(given.out)
+    writable_folder(given.out, f"{given.study}.csv")
     from comparisons.claims.solid.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 

@@ -79,7 +79,7 @@ def _target(out: Path | None, name: str) -> Path | None:
         not sys.platform.startswith("linux") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
     ):
         return None
-    return writable_folder(out or Path("out") / f"{name}-view")
+    return writable_folder(out or Path("out") / f"{name}-view", "view.png", "view.gif")
 
 
 def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Response]]":

@@ -69,7 +69,7 @@ def trade_off(
     NoReferenceError
         If there is nothing to measure errors against.
     """
-    file = writable_folder(folder) / "results.sqlite"
+    file = writable_folder(folder, "report.html", "trade.csv", "trade.json") / "results.sqlite"
 
     tallies: list[Tally] = []
 

@@ -7,7 +7,6 @@ from inspect import getdoc
 from pathlib import Path
 from typing import Any
 
-from comparisons.files import write_text
 from comparisons.scene import rules
 from comparisons.scene.read import LISTS, STAGE_LISTS
 from comparisons.scene.records import Scene
@@ -141,4 +140,4 @@ def _descriptions(kind: type) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    write_text(Path(__file__).with_name("scene.schema.json"), json_schema_text())
+    Path(__file__).with_name("scene.schema.json").write_text(json_schema_text(), encoding="utf-8")

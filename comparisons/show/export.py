@@ -4,15 +4,15 @@ A load parameter has one VTU file for each beam, one for the contacts, one for t
 The PVD file lists the load parameters.
 """
 
+import re
 from pathlib import Path
 
 import numpy as np
 
-from comparisons.files import alone_in, interrupts_held, staging, write_text
+from comparisons.files import alone_in, check_free, interrupts_held, move, own, staging, write_text
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import ContactSpec, Scene
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.show.listing import check_free, digest, listed, unchanged, with_digests
 from comparisons.show.symbols import inward
 from comparisons.show.vtu import blocks_text, grid_text, series_text
 
@@ -187,13 +187,13 @@ def check_series(folder: Path, model: str, scene: Scene) -> None:
         for k in range(len(scene.times))
         for name in (_set(model, k), *(_file(model, k, number) for number in range(count)))
     ]
-    check_free(folder, names, _lists(folder, model))
+    check_free(folder, *names, _list(model))
 
 
 def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
-    """Write the VTU files of the `blocks` and a VTM that names them, per load parameter, and ``MODEL.pvd`` that lists them with their digests.
+    """Write the VTU files of the `blocks` and a VTM that names them, per load parameter, and ``MODEL.pvd`` that lists them.
 
-    Files that the same model wrote here before, as its list gives them, are replaced, and removed where the series is shorter now.
+    Files of the same model that this program wrote here before are replaced, and removed where the series is shorter now.
     Nothing is written if another file has a name of the series. All files are written to a folder aside first. A run waits while
     another run writes into `folder`.
 
@@ -211,9 +211,12 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
         check_series(folder, response.model, scene)
         with staging(folder) as aside:
             entries, files = _write_blocks(aside, response, scene)
-            digests = {name: digest(aside / name) for name in files}
+            write_text(aside / _list(response.model), series_text(entries))
             with interrupts_held():
-                _move(aside, folder, response.model, series_text(entries), digests)
+                move(aside, folder, [*files, _list(response.model)])
+                # last, so that no list names a file that is gone
+                for name in _earlier(folder, response.model) - set(files):
+                    (folder / name).unlink()
     return [folder / name for _, name in entries]
 
 
@@ -227,9 +230,15 @@ def _file(model: str, k: int, number: int) -> str:
     return f"{model}-{k + 1:04d}-{number}.vtu"
 
 
-def _lists(folder: Path, model: str) -> tuple[Path, Path]:
-    """The list of a series, and the one of a run that was ended while it moved its files."""
-    return folder / f"{model}.pvd", folder / f".{model}.pvd"
+def _list(model: str) -> str:
+    """Name of the list of a series."""
+    return f"{model}.pvd"
+
+
+def _earlier(folder: Path, model: str) -> set[str]:
+    """Names of the sets and blocks of a model that this program wrote in `folder`."""
+    series = re.compile(re.escape(model) + r"-\d{4,}(\.vtm|-\d+\.vtu)")
+    return own(folder, (path.name for path in folder.iterdir() if series.fullmatch(path.name)))
 
 
 def _write_blocks(
@@ -250,17 +259,3 @@ def _write_blocks(
         entries.append((float(t), _set(response.model, k)))
         names += [*files.values(), _set(response.model, k)]
     return entries, names
-
-
-def _move(aside: Path, folder: Path, model: str, collection: str, digests: dict[str, str]) -> None:
-    """Put a finished series in its place; wherever this is ended, one of the two lists knows every file."""
-    shown, kept = _lists(folder, model)
-    earlier = {**(listed(kept) or {}), **(listed(shown) or {})}
-    stale = {name: value for name, value in earlier.items() if name not in digests}
-    write_text(kept, with_digests(collection, {**stale, **digests}))
-    for name in digests:
-        (aside / name).replace(folder / name)
-    kept.replace(shown)
-    # last, so that no list names a file that is gone
-    for path in unchanged(folder, stale):
-        path.unlink()

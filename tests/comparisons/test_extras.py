@@ -51,7 +51,7 @@ def test_a_comparison_draws_by_matplotlib(tmp_path: Path, monkeypatch: pytest.Mo
     assert [row.response.status for row in found.rows] == ["COMPLETED"] * 3
     names = {"report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png"}
     assert {path.name for path in found.files} == names | {"tsm.pvd", "solid.pvd"}
-    assert {path.name for path in tmp_path.iterdir()} == names | {"tsm", "solid"}
+    assert {path.name for path in tmp_path.iterdir()} == names | {"tsm", "solid", ".crossval"}
     assert [line for line in lines if "install" in line] == [
         "side-by-side.png: pyvista is not installed (install tsm-crossval[view]), matplotlib drew the picture instead",
     ]

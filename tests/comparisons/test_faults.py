@@ -15,6 +15,7 @@ import meshio
 import pytest
 
 from comparisons.extras import install
+from comparisons.files import WRITTEN, write_text
 from comparisons.scene import built_in_scenes
 from comparisons.show.render import INSTEAD
 
@@ -116,7 +117,7 @@ def check_interrupts(folder: Path, times: int) -> None:
         interrupted_while_writing(place, how, 0.3 * (number + draw.random()) / times)
         assert check_whole(place) > 0
         if how is signal.SIGINT:
-            assert not list(place.glob(".*"))
+            assert {path.name for path in place.glob(".*")} == {WRITTEN}
 
 
 def test_files_are_whole_or_absent_when_interrupted(tmp_path: Path) -> None:
@@ -159,7 +160,7 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
     assert listed(folder / "tsm.pvd") == states
     blocks = set[str | None]().union(*(listed(folder / name) for name in states))
     assert blocks == names(folder) - states - {"tsm.pvd"}
-    assert not list(folder.glob(".*"))
+    assert {path.name for path in folder.glob(".*")} == {WRITTEN}
 
 
 @pytest.mark.slow
@@ -175,7 +176,7 @@ def test_two_comparisons_into_one_folder(tmp_path: Path) -> None:
         assert child.returncode == 0, err
     summary = json.loads((out / "summary.json").read_text())
     assert all((out / name).is_file() for name in summary["files"])
-    assert not list(out.rglob(".*"))
+    assert {path.name for path in out.rglob(".*")} == {WRITTEN}
 
 
 FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"
@@ -193,13 +194,14 @@ def test_no_room_for_a_file(
     (tmp_path / "v").mkdir()
     kept = {"tsm-pin.vtu" if "--vtk" in options else file}
     for name in kept:
-        (tmp_path / name).write_text("kept")
+        write_text(tmp_path / name, "kept")
+    list_of_them = (tmp_path / WRITTEN).read_text()
     status, err = crossval(*SOLVE, *options, setup=FULL.format(size=size))
     assert (status, err.count("\n")) == (2, 1)
     assert re.fullmatch(rf"crossval: \S*{file}: cannot be written: File too large\n", err)
-    assert {path.name: path.read_text() for path in tmp_path.rglob("*") if path.is_file()} == dict.fromkeys(
-        kept, "kept"
-    )
+    there = {path.name: path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
+    assert there.pop(WRITTEN) == list_of_them
+    assert there == dict.fromkeys(kept, "kept")
 
 
 @pytest.mark.slow_at("arguments1-", "arguments1-1")

@@ -178,7 +178,7 @@ def test_picture_and_motion(tmp_path: Path, capsys: Output) -> None:
     )
     out = tmp_path / "out"
     assert main(["view", str(scene), "--mesh", "16x1", "--out", str(out)]) == 0
-    assert sorted(path.name for path in out.iterdir()) == ["view.gif", "view.png"]
+    assert sorted(path.name for path in out.iterdir()) == [".crossval", "view.gif", "view.png"]
     with Image.open(out / "view.gif") as motion:
         assert motion.n_frames == 3
         frames = []

@@ -186,6 +186,7 @@ def test_the_command_fails_where_a_cell_is_wrong(
     assert "extremes.html" in out
     assert ("elements 5, tsm timoshenko 5: wrong: COMPLETED" in err) == bool(status)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        ".crossval",
         "extremes.csv",
         "extremes.html",
         "extremes.json",

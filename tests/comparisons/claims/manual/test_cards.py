@@ -114,6 +114,7 @@ def test_the_command_writes_cards_and_solves_nothing(
     assert reported.err == "roll-up: 3 quantities\nlocking: 2 quantities\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cards"]
     assert sorted(path.name for path in Path("cards").iterdir()) == [
+        ".crossval",
         "card.schema.json",
         "locking.json",
         "roll-up.json",

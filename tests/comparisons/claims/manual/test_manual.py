@@ -149,7 +149,7 @@ def test_a_manual_of_two_cases(tmp_path: Path):
     assert manual.passed
     assert [case.problem.name for case in manual.cases] == ["dead-load", "elastica-identity"]
     assert len(lines) == 2
-    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(
+    assert sorted(path.name for path in (tmp_path / "new").glob("[!.]*")) == sorted(
         path.name for path in manual.files
     )
     for case in manual.cases:

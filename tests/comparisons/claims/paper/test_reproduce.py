@@ -85,7 +85,7 @@ def run(figure: str, folder: Path) -> dict[str, Any]:
     done = reproduce(figure, folder, quick=True, report=lambda _: None)
     check_files(folder, figure)
     assert done.stopped == ()
-    assert sorted(done.files) == sorted(folder.iterdir())
+    assert sorted(done.files) == sorted(folder.glob("[!.]*"))
     assert set(verdicts(folder, f"claims-{figure}.md")) == {
         claim.text for claim in CLAIMS if claim.figure == figure
     }
