@@ -2,13 +2,15 @@
 
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from functools import partial
 from typing import Any
 
 import pytest
 
 from tests.stated import MEASURED, check, left, record
+
+CI = os.environ.get("CI") == "true"
 
 
 def pytest_configure() -> None:
@@ -55,6 +57,16 @@ def stated(request: pytest.FixtureRequest) -> Callable[..., None]:
     return partial(check, write=request.config.getoption("write_results"))
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Let a test fail that is skipped where continuous integration runs: there everything that tests need is there."""
+    report = yield
+    if CI and report.skipped:
+        report.outcome = "failed"
+        report.longrepr = f"{item.nodeid} must not be skipped where CI=true: {report.longrepr}"
+    return report
+
+
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Print what tests have recorded to be listed, whether they pass or not."""
     for reports in terminalreporter.stats.values():
@@ -81,5 +93,5 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     ):
         lines = list(left(write=config.getoption("write_results")))
         print("", *lines, sep="\n")
-        if any("measured it" not in line or os.environ.get("CI") for line in lines):
+        if any("measured it" not in line or CI for line in lines):
             session.exitstatus = pytest.ExitCode.TESTS_FAILED

@@ -25,10 +25,9 @@ def test_strip_is_in_equilibrium(folder):
     assert np.all(forces <= 1e-6 * np.abs(system.K).max())
 
 
-@pytest.mark.parametrize("name", list(linear_solvers.SOLVERS))
+@pytest.mark.parametrize(
+    "name", [name for name, (_, package) in linear_solvers.SOLVERS.items() if find_spec(package)]
+)
 def test_solvers_agree(folder, name):
-    package = linear_solvers.SOLVERS[name][1]
-    if not find_spec(package):
-        pytest.skip(f"{package} is not installed")
     x, reference = (linear_solvers.measure(one, LOAD, folder).x for one in (name, linear_solvers.REFERENCE))
     assert np.abs(x - reference).max() <= 1e-6 * np.abs(reference).max()

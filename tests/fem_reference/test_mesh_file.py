@@ -1,6 +1,7 @@
 import os
 import re
 
+import meshio
 import numpy as np
 import pytest
 
@@ -8,8 +9,6 @@ import fem_reference as fr
 from fem_reference.body import build_body, discretise
 from fem_reference.sampling import sample
 from tests.fem_reference.conftest import PAIR, loads, rotation, surfaces
-
-meshio = pytest.importorskip("meshio")
 
 
 def parts(nx=20, ny=2, length=1.0, height=0.02, tilt=0.2):

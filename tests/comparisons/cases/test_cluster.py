@@ -11,14 +11,13 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
+import distributed
 import pytest
 
 from comparisons.cases import workers
 from comparisons.cli import main
 from tests.comparisons.cases.conftest import tiny
 from tests.comparisons.cases.test_command import CASES, histories, recorded, table, wait_for
-
-distributed = pytest.importorskip("distributed")
 
 
 @pytest.fixture
