@@ -30,6 +30,8 @@ _LOCATED = 1e-13
 """Tolerance of the search: width of the bracket of the critical load parameter, and g over its value at the ends of the step."""
 _SHIFT = 1e-6
 """Amplitude of the mode in the difference quotient that gives its shape along the axis."""
+_NOT_SMALL = 0.1
+"""Part of a mode's largest displacement across the axes that decides on its sign."""
 
 
 class CriticalKind(StrEnum):
@@ -73,7 +75,7 @@ def _bordered(newton: Newton, system: Linearisation, across: Array | None = None
     size = len(newton.scale)
     draw = np.random.default_rng(1)
     b = draw.uniform(0.5, 1.0, size) * draw.choice([-1.0, 1.0], size) / newton.scale
-    c = draw.uniform(0.5, 1.0, size) * newton.per_step if across is None else across
+    c = draw.uniform(0.5, 1.0, size) * newton.per_unknown if across is None else across
     solved = newton.assembler.solve(system, b)
     if solved is None or not np.isfinite(solved[:, 1]).all():
         return 0.0, np.zeros(size)
@@ -106,7 +108,7 @@ def locate_bifurcation(
         Equilibrium at the point, None where the path is not found between the two ends.
     """
     _, v = _bordered(newton, before.system)
-    weights = newton.per_step**2
+    weights = newton.per_unknown**2
     length = float(v @ (weights * v))
     if not 0 < length < np.inf:
         return None
@@ -150,7 +152,7 @@ def critical_point(
 
 
 def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[str, Array]] | None:
-    """Buckling mode near a critical point.
+    """Buckling mode near a critical point, of the sign with which it begins to the left: see `_side`.
 
     Returns
     -------
@@ -163,9 +165,24 @@ def mode_shape(newton: Newton, equilibrium: Equilibrium) -> tuple[Array, dict[st
         return None
     moved = newton.update(state, soft.x * _SHIFT, equilibrium.system)
     system = newton.assembler.linearise(moved)
-    shapes = {
-        beam: axis_line(model, moved, system, beam)[1] - axis_line(model, state, equilibrium.system, beam)[1]
-        for beam in model.beams
-    }
+    axes = {beam: axis_line(model, state, equilibrium.system, beam)[1] for beam in model.beams}
+    shapes = {beam: axis_line(model, moved, system, beam)[1] - axis for beam, axis in axes.items()}
     most = max(float(np.abs(shape).max()) for shape in shapes.values()) or 1.0
+    most *= _side(np.concatenate([_leftwards(axes[beam], shape) for beam, shape in shapes.items()]))
     return soft.x * (_SHIFT / most), {beam: shape / most for beam, shape in shapes.items()}
+
+
+def _leftwards(axis: Array, shape: Array) -> Array:
+    """Displacements to the left of an axis that is followed from start to end."""
+    x, y = np.gradient(axis, axis=0).T
+    left: Array = (x * shape[:, 1] - y * shape[:, 0]) / np.hypot(x, y)
+    return left
+
+
+def _side(left: Array) -> float:
+    """Sign of the first displacement, beam by beam from start to end, that is not small.
+
+    It does not depend on the frame of reference, the elements or round-off.
+    """
+    first = np.argmax(np.abs(left) > _NOT_SMALL * np.abs(left).max())
+    return 1.0 if left[first] >= 0 else -1.0

@@ -58,6 +58,8 @@ class Fall:
     def beside(self, critical: Equilibrium, ahead: float) -> tuple[Equilibrium, float] | Status:
         """Return the equilibrium of least potential beside a critical point, and the potential that the fall there releases.
 
+        Of two with the same potential it is the one on the mode's positive side, see `mode_shape`.
+
         Parameters
         ----------
         critical : Equilibrium
@@ -83,7 +85,8 @@ class Fall:
             return Status.FALLING
         if any(grips(rest.state) for _, rest in rests):
             return Status.REST_UNKNOWN
-        least, rest = min(rests, key=lambda pair: pair[0])
+        least = min(energy for energy, _ in rests)
+        rest = next(rest for _, rest in rests if descends(self.newton, least, rest.state))
         return rest, self.newton.potential(held) - least
 
     def rests_beside(self, state: State, push: Array, system: Linearisation) -> Iterator[Equilibrium]:

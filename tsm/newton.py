@@ -11,7 +11,7 @@ from tsm.contact import chord_owner, handed_over
 from tsm.elements.properties import Array
 from tsm.groups import Change
 from tsm.model import Model
-from tsm.scaling import SHARP, largest, scales_of
+from tsm.scaling import SHARP, TURN, largest, scales_of
 from tsm.settings import Settings
 from tsm.state import State, Touch
 from tsm.status import Status
@@ -97,13 +97,23 @@ class Newton:
         self.tolerance = settings.tolerance
         scales = scales_of(model, model.coordinates, model.properties, model.sizes)
         self.scale, self.per_step, self.noise = scales.residual, scales.step, float(scales.noise)
+        kind = model.kind
+        self.per_unknown = self.per_step + np.where((kind > 2) & (kind < 6), 1 / model.units, 0.0)
         if model.springs is not None:
             self.noise = max(self.noise, model.springs.noise(model.extent, model.least_force))
         self.longest = _LONGEST_WHOLE if model.whole else LONGEST
 
     def apart(self, one: State, other: State) -> float:
-        """Largest difference of two states, in largest Newton steps."""
-        return self.size((other.q - one.q)[self.model.free])
+        """Size of the motion from one state to another, the one measure of how far they are apart."""
+        return self.size(self.motion(one, other, other))
+
+    def motion(self, one: State, other: State, like: State) -> Array:
+        """Changes of the free displacements and rotations, then of the rotations inside the elements, at the places of a third state.
+
+        Positions inside need no entries: they follow from the rotations and the nodes.
+        """
+        inside = [group.turned(one, other, like) for group in self.model.groups]
+        return np.concatenate([(other.q - one.q)[self.model.free], *inside])
 
     def potential(self, state: State) -> float:
         """Strain energy less the work of the dead loads."""
@@ -129,9 +139,11 @@ class Newton:
         noise = max(self.noise, self.tolerance) * model.force_scale + system.noise
         return bool(np.abs(total).max() <= 1e-8 * largest + len(model.coordinates) * noise)
 
-    def size(self, change: Array) -> float:
-        """Largest of the changes of the free displacements and rotations, in largest Newton steps."""
-        return float(largest(change, self.per_step[: self.model.equations]))
+    def size(self, motion: Array) -> float:
+        """Largest entry of a motion, in largest Newton steps; nan inside does not count."""
+        nodes = self.model.equations
+        size, inside = float(largest(motion[:nodes], self.per_step[:nodes])), motion[nodes:]
+        return max(size, float(np.fmax.reduce(np.abs(inside))) / TURN) if len(inside) else size
 
     def norm(self, system: Linearisation) -> float:
         """Scaled norm of a residual."""

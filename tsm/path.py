@@ -1,7 +1,8 @@
 """The tangent of the equilibrium path, and whether a step kept to the path.
 
 Newton's method finds some equilibrium; after a long step it may belong to another branch. A step from A to B has followed the path if the
-tangents at both its ends explain it: with the displacements q, their rates q' and the step h of the load parameter::
+tangents at both its ends explain it: with the displacements and rotations q, at nodes and inside exact elements (`Newton.motion`), their
+rates q' and the step h of the load parameter::
 
     |q_B - q_A - h q'_A| <= c |q_B - q_A|,    |q_B - q_A - h q'_B| <= c |q_B - q_A|
 
@@ -26,8 +27,8 @@ FOLLOWED = 0.35
 """The bound c. A limit point is approached by a factor of (1 + 2 c)^2 = 2.9 a step."""
 LONGEST_STEP = 1.0
 """Longest step whatever its tangents are, in largest Newton steps (0.3 L, 0.7 rad)."""
-_RESOLVED = 1e-9
-"""Shorter steps, in the same measure, are round-off."""
+_RESOLVED = 1e-8
+"""Smaller motions, in the same measure, are round-off, as of a column that stays straight: it moves along itself only."""
 
 
 class PathTangent:
@@ -43,7 +44,8 @@ class PathTangent:
 
     def __init__(self, newton: Newton, equilibrium: Equilibrium) -> None:
         self.newton, self.state, self.system = newton, equilibrium.state, equilibrium.system
-        self._known: dict[Drive, Array | None] = {}
+        self._known: dict[Drive, tuple[Array, Array] | None] = {}
+        self._left: tuple[State, State, float] | None = None
 
     @cached_property
     def index(self) -> int:
@@ -59,26 +61,37 @@ class PathTangent:
         ndarray, shape (equations + contact unknowns,) or None
             Derivatives in the load parameter; None where the tangent is singular.
         """
-        assembler = self.newton.assembler
+        along = self._along(begin, end)
+        return None if along is None else along[0]
+
+    def _along(self, begin: float, end: float) -> tuple[Array, Array] | None:
+        """Rates, and motion per unit of the load parameter, see `Newton.motion`."""
+        assembler, model = self.newton.assembler, self.newton.model
         drive = assembler.drive(begin, end)
         if drive not in self._known:
             solved = assembler.solve(self.system, -assembler.rate(self.state, drive))
-            rates = None if solved is None else solved[:, 1]
-            finite = rates is not None and bool(np.isfinite(rates).all())
-            self._known[drive] = rates if finite else None
+            if solved is None or not np.isfinite(solved[:, 1]).all():
+                self._known[drive] = None
+                return None
+            rates, dofs = solved[:, 1], assembler.prescribed_rate(drive.stage)
+            dofs[model.free], contacts = rates[: model.equations], rates[model.equations :]
+            inside = [
+                group.turning(self.state, tangent, dofs, contacts)
+                for group, tangent in zip(model.groups, self.system.tangent.groups, strict=True)
+            ]
+            self._known[drive] = rates, np.concatenate([dofs[model.free], *inside])
         return self._known[drive]
 
+    @cached_property
     def speed(self) -> float:
-        """Largest rate of a displacement or rotation in largest Newton steps per whole load; infinite at a limit point."""
+        """Size of the motion per whole load, no less than what round-off may be; infinite at a limit point."""
         t = self.state.load_parameter
-        rates = self.rates(t, t)
-        if rates is None:
-            return math.inf
-        return self.newton.size(rates[: self.newton.model.equations])
+        along = self._along(t, t)
+        return math.inf if along is None else max(self.newton.size(along[1]), _RESOLVED)
 
     def release(self) -> None:
         """Let go of the assembled tangent, which every accepted configuration would hold otherwise; its speed stays known."""
-        self.speed()
+        _ = self.speed
         self.system.__dict__.pop("tangent", None)
 
     def predicted(self, state: State, t: float) -> State:
@@ -90,11 +103,15 @@ class PathTangent:
 
     def unexplained(self, before: State, after: State) -> float:
         """Part of the step between two states that the tangent does not explain, ``|q_B - q_A - h q'|/|q_B - q_A|``."""
-        model, newton = self.newton.model, self.newton
-        step = (after.q - before.q)[model.free]
-        size = newton.size(step)
-        rates = self.rates(before.load_parameter, after.load_parameter)
-        if size <= _RESOLVED or rates is None:
+        if self._left is None or self._left[0] is not before or self._left[1] is not after:
+            self._left = before, after, self._unexplained(before, after)
+        return self._left[2]
+
+    def _unexplained(self, before: State, after: State) -> float:
+        along = self._along(before.load_parameter, after.load_parameter)
+        if along is None:
             return 0.0
-        length = after.load_parameter - before.load_parameter
-        return newton.size(step - length * rates[: model.equations]) / size
+        step = self.newton.motion(before, after, self.state)
+        size, length = self.newton.size(step), after.load_parameter - before.load_parameter
+        left = self.newton.size(step - length * along[1])
+        return left / size if min(left, size) > _RESOLVED else 0.0

@@ -17,7 +17,7 @@ ROUND_OFF = 4 * float(np.finfo(float).eps)
 SHARP = 1e-3
 """Scale of positions over the length. Positions are solved to a thousandth of the relative residual of forces. A stiff contact needs
 this accuracy, and it has no cost."""
-_TURN, _WAY = 0.7, 0.3
+TURN, _WAY = 0.7, 0.3
 """Largest step: rotation [rad], and displacement in parts of the structure's extent."""
 
 
@@ -49,7 +49,7 @@ def scales_of(model: Model, coordinates: Array, properties: Properties, sizes: S
     sharp = 1 / (SHARP * length)
     free, held = 0 * one, (1 / force, 1 / force, 1 / (force * length))
     residual = np.array([*held, sharp, sharp, one / SHARP, sharp, sharp, 1 / force, one / SHARP])
-    way, turn = 1 / (_WAY * extent), one / _TURN
+    way, turn = 1 / (_WAY * extent), one / TURN
     step = np.array([way, way, turn, free, free, free, free, free, way, turn])
     EA, EI, l0 = (value[model.closed] for value in (properties.EA, properties.EI, properties.l0))
     noise = ROUND_OFF * (EA * extent / l0 + EI / l0**2).max(axis=0, initial=0.0) / force

@@ -108,9 +108,9 @@ class Track:
 
     def folds(self) -> bool:
         """Whether the path is as fast as beside a limit point."""
-        return self.tangent.speed() > _FOLD
+        return self.tangent.speed > _FOLD
 
     def _speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Load parameter and speed of the path at the last two equilibria."""
-        one, two = ((item.state.load_parameter, item.speed()) for item in (self.earlier, self.tangent))
+        one, two = ((item.state.load_parameter, item.speed) for item in (self.earlier, self.tangent))
         return one, two

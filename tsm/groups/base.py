@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
+import numpy as np
+
 from tsm.contact_block import ContactBlock
 from tsm.elements.properties import Array
 from tsm.projection import Projection
@@ -156,6 +158,14 @@ class ElementGroup(ABC):
     @abstractmethod
     def alike(self, history: list[State]) -> list[State]:
         """The latest states that can be extrapolated together."""
+
+    def turned(self, _one: State, _other: State, _like: State) -> Array:
+        """Rotations inside the elements from one state to another, at the Gauss nodes of a third; nan where the elements are cut otherwise."""
+        return np.zeros(0)
+
+    def turning(self, _state: State, _tangent: Any, _dofs: Array, _contacts: Array) -> Array:
+        """Rates of the rotations inside the elements at rates of all degrees of freedom and of the contacts' unknowns."""
+        return np.zeros(0)
 
     @abstractmethod
     def refined(self, state: State, forces: Any, tolerance: float) -> State | None:

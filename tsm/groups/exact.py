@@ -16,7 +16,7 @@ from tsm.projection import PROJECTED, Projection, arc_position, overshoot, slide
 from tsm.rods.accuracy import deflected, finer, inaccurate, truncation
 from tsm.rods.assembly import Rods
 from tsm.rods.layout import OWN
-from tsm.rods.profile import alike, recut, undeformed
+from tsm.rods.profile import alike, angles_at, recut, undeformed
 from tsm.rods.records import RodBalance, RodTangent
 from tsm.rods.shape import RodShape, Stations, pieces, tangent_at
 from tsm.rods.varying import VaryingRods
@@ -128,6 +128,15 @@ class ExactGroup(ElementGroup):
     def alike(self, history: list[State]) -> list[State]:
         """The latest states that are cut alike, with as many Gauss nodes as the last."""
         return alike(self.rods, history)
+
+    def turned(self, one: State, other: State, like: State) -> Array:
+        """Differences of the angles at the Gauss nodes."""
+        begin, end = (angles_at(self.rods, state, like) for state in (one, other))
+        return (end - begin).ravel()
+
+    def turning(self, state: State, tangent: RodTangent, dofs: Array, contacts: Array) -> Array:
+        """Rates of the angles at the Gauss nodes."""
+        return self.rods.inside(tangent, state, dofs, contacts, (1.0, 0.0)).ravel()
 
     def refined(self, state: State, forces: RodBalance, tolerance: float) -> State | None:
         """State with more Gauss nodes, None where they suffice."""

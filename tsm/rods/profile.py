@@ -80,6 +80,20 @@ def alike(rods: Rods, history: list[State]) -> list[State]:
     return states
 
 
+def angles_at(rods: Rods, state: State, like: State) -> Array:
+    """Angles (s, p) inside at the Gauss nodes of another state, nan in elements that are cut otherwise there."""
+    there, order = profile_of(like), profile_of(like).angle.shape[1]
+    here = profile_of(state if profile_of(state).angle.shape[1] == order else resampled(rods, state, order))
+    if here.cuts == there.cuts:
+        return here.angle
+    angle = np.full(there.angle.shape, np.nan)
+    (one, two), count = (dict(here.cuts), dict(there.cuts)), len(rods.length)
+    begin, end = layout(count, here.cuts), layout(count, there.cuts)
+    for e in (e for e in range(count) if one.get(e) == two.get(e)):
+        angle[end.first[e] : end.last[e] + 1] = here.angle[begin.first[e] : begin.last[e] + 1]
+    return angle
+
+
 def resampled(rods: Rods, state: State, order: int) -> State:
     """State with another number of Gauss nodes."""
     shape = plain_shape(rods, state, rods.enter(state))

@@ -1,0 +1,110 @@
+"""Scenes of one beam that is held at both ends and shortened, one for every seed: ``python -m tests.fuzz.held SEED`` prints it.
+
+Clamped at both ends, or clamped and pinned; slender to stocky, straight and arched; shortened by one to four times what buckles it, some
+by up to a third of the length; turned and moved aside, or neither, so that the path bifurcates; with a pin beside it, or without.
+``python -m tests.fuzz.held SEED NUMBER`` judges so many from that seed on.
+"""
+
+import math
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from random import Random
+
+from comparisons.scene import Scene, SceneError, read_scene, to_toml
+from tests.fuzz.broken import toml_text
+from tests.fuzz.scenes import Place, Tables
+from tests.fuzz.world_judge import Finding, Judged, Row, apart, findings, judged
+
+NUMBERS = (1, 3, 7, 20)
+"""Numbers of load parameters with which every scene is solved."""
+SAME = 1e-9
+"""Largest difference between the answers of `exact` with them."""
+
+
+def drawn_held(seed: int) -> Scene:
+    """Return the scene of a seed: the first that its numbers make and that breaks no rule."""
+    random = Random(-3_000_000_000 - seed)  # noqa: S311 - nothing is secret
+    while True:
+        try:
+            return read_scene(toml_text(_tables(random, f"held-{seed}")), f"seed {seed}")
+        except SceneError:
+            continue
+
+
+def _tables(random: Random, name: str) -> Tables:
+    place = Place(10.0 ** random.uniform(-1.0, 3.0), random.choice((0.0, math.pi / 2, -2.1)), (0.0, 0.0))
+    length, height = place.length, 10.0 ** random.uniform(-2.7, -0.9)
+    beam: Tables = {
+        "name": "b", "start": place.point(0.0, 0.0), "end": place.point(1.0, 0.0), "clamped": ["start"],
+        "width": height * length, "height": height * length,
+        "youngs_modulus": 10.0 ** random.uniform(3.0, 11.0), "poissons_ratio": 0.3, "elements": 80,
+    }  # fmt: skip
+    kind = random.choice(("clamped", "clamped", "pinned"))
+    # critical shortening over the length: the load, 39.5 or 20.2 EI/L^2, over EA
+    critical = (39.478 if kind == "clamped" else 20.191) * height**2 / 12.0
+    shortened = random.choice((1.0, 1.0, 1.0, 0.0)) * critical * random.uniform(1.0, 4.0) or random.uniform(
+        0.02, 0.3
+    )
+    aside = random.choice((0.0, 0.0, random.uniform(-0.1, 0.1)))
+    end: Tables = {"beam": "b", "end": "end", "kind": kind, "displacement": place.vector(-shortened, aside)}
+    turn = random.choice((0.0, random.uniform(0.0, 0.4), 10.0 ** random.uniform(-6.0, -0.4)))
+    if turn and kind == "clamped":
+        end["rotation"] = turn
+    if random.random() < 0.4:
+        beam["turn"] = random.choice((-1.0, 1.0)) * 10.0 ** random.uniform(-3.0, 0.0)
+    tables: Tables = {
+        "scene": {"name": name, "load_parameters": NUMBERS[0]}, "beam": [beam], "support": [end],
+    }  # fmt: skip
+    if random.random() < 0.4:
+        side, at, far = random.choice((-1.0, 1.0)), random.uniform(0.15, 0.85), random.uniform(0.01, 0.15)
+        begin, way = random.choice((0.0, 0.02)) + 1.0 / 8.0, random.uniform(-0.1, 0.1)
+        path = {
+            "start": place.point(at, -side * begin),
+            "displacement": place.vector(way, side * (begin + far)),
+        }
+        tables["pin"] = [{"name": "p", **path}]
+        tables["contact"] = [{"node": "p", "beam": "b", "side": "right" if side > 0 else "left"}]
+    return tables
+
+
+def findings_held(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
+    """Yield what is wrong with the solutions of such a scene; that `mixed` elements are coarse is not."""
+    yield from (item for item in findings(scene, rows) if item.kind != "NOT_AN_EQUILIBRIUM mixed")
+    exact, mixed = ([row for row in rows if row.model == model] for model in ("exact", "mixed"))
+    for row in exact[1:]:
+        if row.completed and exact[0].completed and not (off := apart(scene, exact[0], row)) <= SAME:
+            yield Finding(kind="DEPENDS exact", text=f"{off:.2g} apart: {row.line()}")
+    for row in mixed:
+        if row.ended == "BIFURCATION" != exact[0].ended:
+            yield Finding(kind="NOT NAMED", text=f"{exact[0].line()} | {row.line()}")
+
+
+def judged_held(seed: int) -> Judged:
+    """Solve the scene of a seed with every number of load parameters, and judge the answers."""
+    found = judged(drawn_held(seed), ("exact", "mixed"), NUMBERS)
+    return replace(found, findings=tuple(findings_held(found.scene, found.rows)))
+
+
+def main(first: int, number: int) -> None:
+    """Judge drawn scenes and count how they end."""
+    ends, ways = Counter[str](), Counter[str]()
+    began = time.process_time()
+    for seed in range(first, first + number):
+        found = judged_held(seed)
+        exact, mixed = (next(row for row in found.rows if row.model == model) for model in ("exact", "mixed"))
+        ends[f"exact {exact.ended}, mixed {mixed.ended}"] += 1
+        ways.update(item.kind for item in found.findings)
+        if found.findings or exact.ended != mixed.ended:
+            lines = (f"{item.kind}: {item.text}" for item in found.findings)
+            print(seed, f"exact {exact.ended}, mixed {mixed.ended}", *lines, sep="\n  ", flush=True)
+    print(f"{(time.process_time() - began) / number:.2f} s a scene", dict(ends), dict(ways))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 2:
+        print(to_toml(drawn_held(int(sys.argv[1]))))
+    else:
+        main(*map(int, sys.argv[1:]))
