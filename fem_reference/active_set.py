@@ -115,9 +115,8 @@ def _verified(model: Model, attempt: Attempt, settings: Settings) -> Attempt:
             return replace(attempt, status=Status.LOST_CONTACT, pair=number)
         if touch.closed and -touch.gap > settings.max_penetration * _length(model, touch):
             return replace(attempt, status=Status.TOO_DEEP, pair=number)
-    # The round-off of a sum over the nodes grows like a random walk.
-    floor = np.sqrt(state.u.size) * model.round_off
-    if imbalance(model, state) > settings.balance_tolerance * force_scale(model, state) + floor:
+    allowed = settings.balance_tolerance * force_scale(model, state) + model.balance_round_off
+    if imbalance(model, state) > allowed:
         return replace(attempt, status=Status.UNBALANCED)
     conditions = tuple(_rearmed(model, touch) for touch in state.touches)
     return replace(attempt, state=with_conditions(state, conditions))

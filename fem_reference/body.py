@@ -84,6 +84,11 @@ class Body:
 
         return factorise(band) if np.all(np.isfinite(entries)) else None
 
+    def least_volume(self, u: Floats) -> float:
+        """Least determinant of the deformation gradient."""
+        F = deformation_gradient(self.mesh, u)
+        return float((F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]).min())
+
     def strain_energy(self, u: Array) -> float:
         """Strain energy [J]."""
         W = self.law.energy(deformation_gradient(self.mesh, u))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fem_reference.active_set import revised
 from fem_reference.arrays import Floats
@@ -13,16 +14,16 @@ from fem_reference.stages import amount
 from fem_reference.state import State, build_state, contact_energy, residual, spring_energy
 from fem_reference.status import Status
 from fem_reference.tangent import Tangent, linearise
-from fem_reference.track import Accepted, accept, accepted_state, root_by_inverse_interpolation
+from fem_reference.track import Accepted, accept, accepted_state
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
 _MAX_ITERATIONS = 60
 _PRECISION = 1e-10
 """Largest relative change of a load parameter or amplitude at the end of a search."""
+_LOCATED = 1e-9
+"""Relative error of a bifurcation's load parameter."""
 _LARGEST_DISPLACEMENT = 0.05
 """Largest root mean square displacement in the search for a limit point, relative to the length."""
-_CLOSE = 1e-5
-"""Relative change of a bifurcation's load parameter at which the search ends."""
 _FIRST_AMPLITUDE = 1e-2
 """First displacement along the mode in the search for a branch, relative to the length."""
 _OPENING_STEPS = 20
@@ -60,34 +61,34 @@ class Located:
 
 
 def bifurcation(model: Model, a: Accepted, b: Accepted, settings: Settings) -> Located | None:
-    """Locate the change of index between two states of one branch; None if a state between is on another branch.
+    """Locate a bifurcation between two states with different indices; None if they are on different branches.
 
-    Bisection until the index changes by one, then inverse interpolation of the vanishing eigenvalue. The search ends at the
-    relative change `_CLOSE`, since nearer to the point the rate along the null vector is dominated by round-off.
+    The root of the eigenvalue nearest to zero by Brent's method. Where it has one sign at both states, no eigenvalue passes zero between them.
     """
-    low, high = a, b
-    values: list[tuple[float, float]] = []
-    root = 0.5 * (low.state.t + high.state.t)
-    while high.state.t - low.state.t > _PRECISION * high.state.t and len(values) < _MAX_ITERATIONS:
-        t = min(max(root, low.state.t), high.state.t)
-        middle = _between(model, low, high, t, settings)
-        if middle is None:
-            return None
-        value, _ = smallest_eigenpair(model, middle.tangent)
-        single = abs(high.index - low.index) == 1 and (value > 0) == (middle.index == min(a.index, b.index))
-        values = [*values, (value, t)] if single else []
-        low, high = (middle, high) if middle.index == low.index else (low, middle)
-        last, root = (
-            root,
-            root_by_inverse_interpolation(values[-4:])
-            if len(values) > 1
-            else 0.5 * (low.state.t + high.state.t),
-        )
-        if len(values) > 2 and abs(root - last) <= _CLOSE * root:
-            break
-    near = low if root - low.state.t <= high.state.t - root else high
+    met: dict[float, Accepted] = {a.state.t: a, b.state.t: b}
+
+    def value(t: float) -> float:
+        if t not in met:
+            middle = _between(model, a, b, t, settings)
+            if middle is None:
+                raise _ElsewhereError
+            met[t] = middle
+        return smallest_eigenpair(model, met[t].tangent)[0]
+
+    low, high = a.state.t, b.state.t
+    if value(low) * value(high) >= 0:
+        return None
+    try:
+        root = float(brentq(value, low, high, rtol=_LOCATED))
+    except _ElsewhereError:
+        return None
+    near = met[min(met, key=lambda t: abs(t - root))]
     _, vector = smallest_eigenpair(model, near.tangent)
     return Located(point=_point(model, BIFURCATION, root, vector), near=near, vector=vector)
+
+
+class _ElsewhereError(Exception):
+    """A state between is on another branch."""
 
 
 def _between(model: Model, a: Accepted, b: Accepted, t: float, settings: Settings) -> Accepted | None:

@@ -20,6 +20,7 @@ from fem_reference.critical import (
     opening_limit,
     stable_branch,
 )
+from fem_reference.events import SLIP_OFF, ContactEvent, changes, contact_event
 from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
 from fem_reference.newton import Attempt
@@ -54,11 +55,8 @@ class Step:
         Last accepted state with its load parameter and index. If an event ends the path, its load parameter instead.
     iterations, cutbacks, substeps
         Numbers of linear solutions, rejected attempts and accepted states since the previous requested load parameter.
-    slips
-        Indices of contacts that slipped off, with the load parameters.
-    slip_changes
-        Indices of contacts whose friction changed, with the load parameters and the directions of the slip from there on; 0
-        where the contact sticks.
+    events
+        Changes of contacts since the previous requested load parameter.
     critical
         Critical points since the previous requested load parameter.
     """
@@ -72,8 +70,7 @@ class Step:
     iterations: int
     cutbacks: int
     substeps: int
-    slips: tuple[tuple[int, float], ...]
-    slip_changes: tuple[tuple[int, float, int], ...]
+    events: tuple[ContactEvent, ...]
     critical: tuple[CriticalPoint, ...]
 
 
@@ -81,6 +78,7 @@ class Step:
 class _Progress:
     """Variables of the march to one requested load parameter."""
 
+    model: Model
     track: tuple[Accepted, ...]
     trial: float
     order: int
@@ -90,8 +88,7 @@ class _Progress:
     failures: int = 0
     cause: Status = Status.CONVERGED
     pair: int | None = None
-    slips: list[tuple[int, float]] = field(default_factory=list)
-    slip_changes: list[tuple[int, float, int]] = field(default_factory=list)
+    events: list[ContactEvent] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
     ended_at: float | None = None
 
@@ -101,15 +98,14 @@ class _Progress:
 
     def accept(self, state: Accepted, *, restart: bool = False) -> None:
         """Append an accepted state to the track, or start a new track with it."""
+        self.events += changes(self.model, self.last.state, state.state)
         self.track = (state,) if restart else (*self.track, state)[-TRACK_LENGTH:]
         self.substeps += 1
         self.failures = 0
 
     def accept_event(self, event: SlipEvent) -> None:
-        """Start a new track with the state of an event."""
+        """Start a new track with the state of an event; a contact that touches or leaves there does so in the next step."""
         self.accept(event.at, restart=True)
-        if event.direction is not None:
-            self.slip_changes.append((event.pair, event.at.state.t, event.direction))
 
 
 def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator[Step]:
@@ -118,8 +114,13 @@ def march(model: Model, load_parameters: Floats, settings: Settings) -> Iterator
     assert start is not None, "the undeformed stiffness is regular, since no strip can move without strain"
     track: tuple[Accepted, ...] = (start,)
     trial = settings.first_step
+    if model.ill_conditioned or start.index > 0:
+        progress = _Progress(model=model, track=track, trial=trial, order=settings.predictor_order)
+        progress.cause = Status.ILL_CONDITIONED
+        yield _step(progress, Status.ILL_CONDITIONED)
+        return
     for target in map(float, load_parameters):
-        progress = _Progress(track=track, trial=trial, order=settings.predictor_order)
+        progress = _Progress(model=model, track=track, trial=trial, order=settings.predictor_order)
         status = _advance(model, target, progress, settings)
         yield _step(progress, status)
         if status is not Status.CONVERGED:
@@ -156,8 +157,7 @@ def _step(progress: _Progress, status: Status) -> Step:
         iterations=progress.iterations,
         cutbacks=progress.cutbacks,
         substeps=progress.substeps,
-        slips=tuple(progress.slips),
-        slip_changes=tuple(progress.slip_changes),
+        events=tuple(progress.events),
         critical=tuple(progress.critical),
     )
 
@@ -305,8 +305,12 @@ def _at_smallest_step(
     if lost is None or after is None or released is None:
         return Status.CUTBACK_FLOOR if lost is None else Status.LOST_CONTACT
     progress.iterations += after.iterations
-    progress.slips.append((lost, goal))
+    touch, before = progress.last.state.touches[lost], len(progress.events)
     progress.accept(released, restart=True)
+    progress.events[before:] = [
+        contact_event(SLIP_OFF, touch, lost, goal, 0),
+        *(event for event in progress.events[before:] if event.pair != lost),
+    ]
     progress.trial, progress.order = settings.first_step, settings.predictor_order
     return None
 

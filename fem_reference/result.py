@@ -6,6 +6,7 @@ from typing import Any
 from fem_reference import present
 from fem_reference.arrays import Floats, Ints
 from fem_reference.critical import CriticalPoint
+from fem_reference.events import ContactEvent
 from fem_reference.model import Model
 from fem_reference.state import State
 from fem_reference.status import Status
@@ -36,8 +37,8 @@ class ContactHistory:
         Sum of the slips, along the strip positive, ``(s,)`` [m].
     dissipated
         Energy that friction has dissipated, ``(s,)`` [J].
-    slip_changes
-        Load parameters at which the contact came to stick or began to slip, with the direction from there on.
+    events
+        Changes of the contact, in order.
     """
 
     force: Floats
@@ -50,7 +51,7 @@ class ContactHistory:
     direction: Ints
     slip: Floats
     dissipated: Floats
-    slip_changes: tuple[tuple[float, int], ...]
+    events: tuple[ContactEvent, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,6 +103,8 @@ class Result:
         Critical points on the path, including sub-steps.
     unknowns
         Number of unknown displacements.
+    round_off
+        Round-off of a sum of nodal forces: reactions balance to this force [N].
     wall_seconds
         Wall time of the solution without model generation [s].
     mesh_points
@@ -128,6 +131,7 @@ class Result:
     index: Ints
     critical: tuple[CriticalPoint, ...]
     unknowns: int
+    round_off: float
     wall_seconds: float
     mesh_points: Floats
     mesh_cells: dict[str, Ints]

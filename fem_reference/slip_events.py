@@ -1,4 +1,4 @@
-"""Events of friction: a node touches, a slip comes to rest, or a contact that sticks begins to slip.
+"""Events of a scene with friction: a node touches or leaves, a slip comes to rest, or a contact that sticks begins to slip.
 
 Slip counts from accepted states, and a contact sticks where its slip came to rest. An accepted state therefore lies at every
 such event, so that the answer does not depend on the load steps.
@@ -14,6 +14,7 @@ from fem_reference.model import Model
 from fem_reference.settings import Settings
 from fem_reference.state import State, with_conditions
 from fem_reference.status import Status
+from fem_reference.touch import Touch
 from fem_reference.track import Accepted, accept, predict
 
 _MAX_STEPS = 80
@@ -24,12 +25,12 @@ _VANISHED = 1e-9
 _COINCIDENT = 1e-4
 """Interval of the load parameter in which different events may be simultaneous."""
 _TOUCHING = 1e-9
-"""Gap of a contact that touches, relative to the strip's length."""
+"""Gap of a contact that touches, over the strip's length, and force of one that leaves, over the scale of forces."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SlipEvent:
-    """A contact's change to stick, or to slip in a ``direction``; for a touch the direction is None.
+    """A contact's change to stick, or to slip in a ``direction``; for a touch and a release the direction is None.
 
     Parameters
     ----------
@@ -50,15 +51,16 @@ class SlipEvent:
 def first_slip_event(
     model: Model, last: Accepted, candidate: Accepted, settings: Settings
 ) -> SlipEvent | None:
-    """Locate the first event of friction between an accepted state and the next one; None without an event.
+    """Locate the first event between an accepted state and the next one; None without an event, and in a scene without friction.
 
     Within a step shorter than `_COINCIDENT` other changes that come first count as simultaneous, and the event is not located.
     """
+    if all(condition.friction is None for condition in last.state.conditions):
+        return None
     events = [
         event
         for number, touch in enumerate(last.state.touches)
-        if touch.condition.friction is not None
-        and (event := _event(model, last, candidate, number, settings)) is not None
+        if (event := _event(model, last, candidate, number, settings)) is not None
     ]
     if not events:
         return None
@@ -81,10 +83,10 @@ def _event(
 ) -> SlipEvent | None:
     """Locate the event of one contact."""
     before, after = last.state.touches[pair], candidate.state.touches[pair]
-    if after.friction is None:
-        return None
-    if before.friction is None:
+    if before.closed != after.closed:
         expected = _touch(model, last, pair)
+    elif before.friction is None or after.friction is None:
+        return None
     elif before.friction.direction:
         expected = _rest(last, candidate, pair)
     else:
@@ -107,11 +109,19 @@ Expected = tuple[Callable[[Accepted], float], int | None]
 """A value that is positive before an event and vanishes there, and the direction of slip from there on."""
 
 
+def about_to_change(model: Model, touch: Touch) -> bool:
+    """Whether an open contact touches without force, or a closed one bears none."""
+    if touch.closed:
+        return touch.force <= _TOUCHING * model.force_scale
+    return touch.gap <= _TOUCHING * model.problem.strips[touch.pair.strips[0]].length
+
+
 def _touch(model: Model, last: Accepted, pair: int) -> Expected | None:
-    """Return the gap of an open contact; None if it touches."""
+    """Return the gap of an open contact, or the force of a closed one; None if it is zero already."""
     touch = last.state.touches[pair]
-    touching = _TOUCHING * model.problem.strips[touch.pair.strips[0]].length
-    return None if touch.gap <= touching else (lambda at: at.state.touches[pair].gap, None)
+    if about_to_change(model, touch):
+        return None
+    return (lambda at: at.state.touches[pair].force if touch.closed else at.state.touches[pair].gap), None
 
 
 def _rest(last: Accepted, candidate: Accepted, pair: int) -> Expected | None:

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from fem_reference.arrays import Floats, Ints
+from fem_reference.events import SLIP_OFF, ContactEvent
 from fem_reference.march import Step, march
 from fem_reference.model import Model, build
 from fem_reference.observe import section_means
@@ -16,6 +17,8 @@ from fem_reference.state import Reaction, State, contact_force, reactions, sprin
 from fem_reference.status import Status
 
 EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
+_SMALL_STRAIN = 0.8
+"""Part of an element's area below which a limit point may be the mesh's."""
 CELL_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
 
 
@@ -82,7 +85,7 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
     done = [step for step in steps if step.status is Status.CONVERGED]
     states = tuple(step.state for step in done)
     status, message = _outcome(model, steps[-1])
-    slips = dict(reversed([slip for step in steps for slip in step.slips]))
+    events = tuple(event for step in steps for event in step.events)
     displacement = np.zeros((len(states), model.nodes, 2))
     for body, part in model.bodies_and_nodes():
         for row, state in zip(displacement, states, strict=True):
@@ -94,15 +97,7 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         reached=steps[-1].load_parameter,
         contacts={
             pair.name: _contact_history(
-                states,
-                number,
-                slips.get(number, np.nan),
-                tuple(
-                    (t, way)
-                    for step in steps
-                    for pair_number, t, way in step.slip_changes
-                    if pair_number == number
-                ),
+                states, number, tuple(event for event in events if event.pair == number)
             )
             for number, pair in enumerate(model.pairs)
         },
@@ -115,6 +110,7 @@ def _collect(model: Model, steps: list[Step], seconds: float) -> Result:
         index=np.array([step.index for step in done], dtype=np.int64),
         critical=tuple(point for step in steps for point in step.critical),
         unknowns=model.unknowns,
+        round_off=model.balance_round_off,
         wall_seconds=seconds,
         mesh_points=np.concatenate([body.strip.to_global(body.mesh.nodes) for body in model.bodies]),
         mesh_cells=_cells(model),
@@ -131,6 +127,9 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     pair = "" if last.pair is None else f" ({model.pairs[last.pair].name})"
     cause = "" if last.cause is last.status else f" because {last.cause.value}"
     preposition = "at" if last.status in EVENTS else "after"
+    squeezed = min(body.least_volume(last.state.u[part]) for body, part in model.bodies_and_nodes())
+    if last.status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
+        cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
     return (
         last.status,
         f"{last.status.value}{cause}{pair}, {preposition} load parameter {last.load_parameter:.9g}",
@@ -138,7 +137,7 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
 
 
 def _contact_history(
-    states: tuple[State, ...], number: int, slip_off: float, slip_changes: tuple[tuple[float, int], ...]
+    states: tuple[State, ...], number: int, events: tuple[ContactEvent, ...]
 ) -> ContactHistory:
     touches = [state.touches[number] for state in states]
     frictions = [touch.condition.friction for touch in touches]
@@ -149,11 +148,11 @@ def _contact_history(
         arc_position=np.array([touch.projection.zeta if touch.closed else np.nan for touch in touches]),
         gap=np.array([touch.reported_gap for touch in touches]),
         vector=np.array([contact_force(touch) for touch in touches]).reshape(-1, 2),
-        slip_off=slip_off,
+        slip_off=next((event.load_parameter for event in events if event.kind == SLIP_OFF), np.nan),
         direction=np.array([state.contact_set[number][1] for state in states], dtype=np.int64),
         slip=np.array([0.0 if friction is None else friction.slip for friction in frictions]),
         dissipated=np.array([0.0 if friction is None else friction.dissipated for friction in frictions]),
-        slip_changes=slip_changes,
+        events=events,
     )
 
 

@@ -49,7 +49,7 @@ class Tangent:
 
     Parameters
     ----------
-    model, at
+    model, state
         The model and the state of linearisation.
     factors
         Factorised stiffness of every body.

@@ -24,7 +24,7 @@ class Accepted:
 
     Parameters
     ----------
-    at
+    state
         The state.
     tangent
         Linearisation at the state.

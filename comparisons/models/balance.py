@@ -36,7 +36,7 @@ def balance_failures(response: Response, scene: Scene) -> Iterator[str]:
     outer = _sum([*supports, *loads], len(response.load_parameter))
     pushing, magnitude, pins = _pins(response, scene, outer)
     largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
-    scale = BALANCE * largest + force_round_off(scene, largest)
+    scale = BALANCE * largest + max(force_round_off(scene, largest), response.round_off)
     missing = np.hypot(*outer.force.T)
     off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
     length = max(beam.length for beam in scene.beams)

@@ -1,5 +1,6 @@
 """Responses of the two discrete models: TSM beams and the solid."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -212,6 +213,8 @@ def solve_solid(scene: Scene, options: Options, watch: Watch = unwatched) -> Res
             end: SupportHistory(force=item.force, moment=item.moment) for end, item in result.springs.items()
         },
         material_force=Deferred(lambda: j_integrals(scene, result)),
+        round_off=result.round_off,
+        events=_solid_events(result) if any(contact.friction for contact in problem.contacts) else None,
         deformation=deformation,
         sections=sections,
     )
@@ -240,6 +243,25 @@ def _with_clamps(scene: Scene, result: Any, beam: str, k: int, at: Sections) -> 
         column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
         table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
     return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
+
+
+def _solid_events(result: Any) -> tuple[ContactEvent, ...]:
+    """Return the events of a scene with friction, whose load parameters are located; no element owns a contact."""
+    found = (
+        ContactEvent(
+            kind=event.kind,
+            load_parameter=event.load_parameter,
+            pair=pair,
+            element=-1,
+            arc_position=event.arc_position,
+            force=event.force,
+            released=0.0,
+            stage=max(1, math.ceil(event.load_parameter)),
+        )
+        for pair, contact in result.contacts.items()
+        for event in contact.events
+    )
+    return tuple(sorted(found, key=lambda event: event.load_parameter))
 
 
 def _half_turns(response: Response, beam: str) -> Array:

@@ -253,6 +253,8 @@ class Response:
         response has `comparisons.response.axis.SampledAxes` here.
     grid : callable
         ``grid(k)``: the model's mesh and fields at load parameter k; a response that was stored has none.
+    round_off : float
+        Force to which the reactions balance, where that is more than the round-off of a rod [force].
     integration_error : float
         Estimated error of the integration inside exact elements: the largest error of positions over the longest beam, of angles,
         and of forces over ``EI/L^2``.
@@ -300,6 +302,7 @@ class Response:
     continuum: bool = False
     outside: bool = False
     integration_error: float = 0.0
+    round_off: float = 0.0
     work: Array | None = None
     deformation: Deformation | None = None
     index: NDArray[np.int64] | None = None

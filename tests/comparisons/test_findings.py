@@ -1,5 +1,6 @@
 """Scenes that 0.5.1 answered wrongly with status COMPLETED: each is right now, or ends by name, whatever its load parameters."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -115,3 +116,40 @@ def test_a_frame_is_certified():
     assert found.status == "COMPLETED"
     assert found.certificate is not None
     assert found.certificate.certified
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["solid-f2", "solid-f2b"])
+def test_events_of_the_solid_are_the_rods(name):
+    """The certificate refused both: no touch was stated, and what a slipping contact dissipates until it opens was of first order."""
+    asked = scene(name)
+    solid, rod = certified(solve(asked, "solid", Options()), asked), solve(asked, "tsm", EXACT)
+    assert solid.status == "COMPLETED", solid.message
+    events = [
+        [(event.kind, event.load_parameter) for event in answer.events if event.kind != "pass-through"]
+        for answer in (solid, rod)
+    ]
+    assert [kind for kind, _ in events[0]] == [kind for kind, _ in events[1]]
+    assert [t for _, t in events[0]] == pytest.approx([t for _, t in events[1]], abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "mesh", "status", "words"),
+    [
+        ("solid-f3a", (50, 2), "ILL_CONDITIONED", "too thin for this mesh in double precision"),
+        pytest.param(
+            "solid-f3b",
+            (100, 2),
+            "LIMIT_POINT",
+            r"discrete solid.* compressed to 0\.52 of its area",
+            marks=pytest.mark.slow,
+        ),
+        ("solid-f3c", (50, 2), "COMPLETED", ""),
+    ],
+)
+def test_strips_that_are_thin_or_far_beyond_small_strain_are_named(name, mesh, status, words):
+    """A limit point of round-off, a traceback in the search for a bifurcation, and a balance by a rod's round-off."""
+    asked = scene(name)
+    found = certified(solve(asked, "solid", Options(mesh=mesh)), asked)
+    assert found.status == status
+    assert re.search(words, found.message)
