@@ -8,7 +8,7 @@ from scipy.sparse import eye_array
 import fem_reference as fr
 from fem_reference.curve import ContactCurve, CurveFrom, averaging, band_slopes, closest
 from fem_reference.model import build
-from tests.fem_reference.conftest import STEP, place_pin, surfaces
+from tests.fem_reference.conftest import PAIR, STEP, loads, make_problem, place_pin, surfaces
 
 # Inside an element, at a corner and a midside node, one unit of round-off beside it, near both ends.
 PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97]
@@ -255,3 +255,9 @@ def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
     distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
     assert stationary
     assert zeta == pytest.approx(places[np.argmin(distances)], abs=2.5e-4)
+
+
+def test_the_gap_of_a_pin_beyond_the_end_is_that_of_its_surface():
+    """A pin passes .2 behind the end of a strip that stays at rest."""
+    result = fr.solve(make_problem(path=((1.2, -0.2), (1.2, -0.1)), radius=0.03, mesh=(10, 1)), loads(2))
+    assert result.contacts[PAIR].gap == pytest.approx(np.hypot(0.2, [0.15, 0.1]) - 0.03, abs=1e-12)

@@ -473,3 +473,16 @@ def test_friction_ends_with_a_status_when_the_contact_is_lost():
     )
     result = fr.solve(scene, loads(10), throw=False)
     assert result.status is Status.LOST_CONTACT
+
+
+def test_two_load_parameters_dissipate_what_many_do():
+    """Slip and force over a step are polynomials of the third degree."""
+    scene = make_problem(
+        path=((0.8, 0.0), (0.8, 0.05), (0.6, 0.07)),
+        contact={"friction": 0.3, "penalty": None},
+        mesh=(20, 1),
+        material="biot-linear",
+    )
+    few, many = (fr.solve(scene, loads(n)).contacts[PAIR].dissipated[-1] for n in (2, 8))
+    assert few > 0
+    assert few == pytest.approx(many, rel=1e-4)

@@ -31,7 +31,7 @@ def deflection(moment, shear, height=lambda _: H, width=lambda _: B):
         bent = moment(x) * (1 - x) / (E * width(x) * height(x) ** 3 / 12)
         return bent + shear(x) / (GA / B * width(x) * height(x))
 
-    points = [0.3, 0.437, 0.73]
+    points = [0.3, 0.437, 0.5, 0.73]
     return quad(work, 0, 1, points=points, epsabs=0, epsrel=1e-10, limit=200)[0]
 
 
@@ -50,6 +50,10 @@ LOADS = {
     "point": (
         fr.PointLoad(strip=STRIP, at=0.437, force=(0.0, -SMALL)),
         (lambda x: max(0.437 - x, 0.0), lambda x: float(x < 0.437)),
+    ),
+    "point between elements": (
+        fr.PointLoad(strip=STRIP, at=0.5, force=(0.0, -SMALL)),
+        (lambda x: max(0.5 - x, 0.0), lambda x: float(x < 0.5)),
     ),
 }
 

@@ -349,3 +349,12 @@ def test_work_is_kept_past_a_corner_at_which_the_contact_slips_on(elements: int)
     path = ((0.5, 0.0), (0.5, 0.1), (0.6, 0.1), (0.5, 0.1))
     result = Cantilever(section=STRIP, friction=0.3, path=path).solve(4, "mixed", elements)
     assert balance(result) <= 5e-9
+
+
+def test_a_load_along_a_beam_works_too() -> None:
+    """What pin and load do is stored or dissipated."""
+    structure = replace(ks(0.3), path=((1.0, 0.0), (0.8, 0.1))).structure()
+    load = tsm.LineLoad(beam="beam", force=((0.0, -5.0 * structure.beams[0].section.EI),))
+    result = tsm.solve(replace(structure, line_loads=(load,)), np.ones(1))
+    assert result.contacts[PAIR].friction.dissipated[-1] > 0.05 * result.work[-1]
+    assert balance(result) <= 1e-10

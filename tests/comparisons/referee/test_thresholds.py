@@ -19,8 +19,10 @@ from comparisons.scene import (
     PinSpec,
     Scene,
     SpringSpec,
+    StageSpec,
     load_scene,
 )
+from tests.comparisons.referee.forged import bent, stated
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 RUBBED = replace(load_scene("ks-friction"), load_parameters=6)
@@ -31,6 +33,8 @@ ARC = Scene(
     name="arc", load_parameters=1, beams=(STRIP,), loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)
 )
 """A strip of EI = 1 that a moment bends to an arc of radius 1 about (0, 1)."""
+BUCKLES = np.pi**2 / 4.0
+"""Force at which the strip buckles, without stretch and shear."""
 SPRUNG = replace(
     ARC, springs=(SpringSpec(beam="cantilever", end="end", stiffness=(0.0, 0.0), rotation=0.25),)
 )
@@ -200,3 +204,40 @@ def test_a_threshold_lies_where_it_is_stated(name: str) -> None:
     value, said, words = CASES[name]
     assert said(0.9 * value) == ""
     assert words in said(1.1 * value)
+
+
+def test_a_coarse_axis_excuses_no_more_than_its_chords() -> None:
+    """The arc position of a contact is off by more than `judge.PLACE`: by less than the bound of 16 chords of an arc, .00195, or by more."""
+    response, scene = on_the_arc(force=1e-8)
+    arc = np.linspace(0.0, 1.0, 17)
+    line = np.stack([np.sin(arc), 1.0 - np.cos(arc)], axis=1)
+    coarse = replace(response, axis_line=lambda *_: (arc, line))
+    assert refused(contact(coarse, arc_position=np.array([0.502])), scene) == ""
+    assert "supports and contacts are off" in refused(contact(coarse, arc_position=np.array([0.506])), scene)
+
+
+def test_the_path_to_the_other_side_of_a_column_is_not_followed() -> None:
+    """Both sides are stable, and less than a tenth of the length apart."""
+    column = replace(
+        ARC,
+        load_parameters=2,
+        loads=(LoadSpec(beam="cantilever", end="end", force=(-BUCKLES * 1.0001, 0.0)),),
+        stages=(
+            StageSpec(
+                load_parameters=1,
+                load=(LoadSpec(beam="cantilever", end="end", force=(-BUCKLES * 1e-5, 0.0)),),
+            ),
+        ),
+    )
+    arc = np.linspace(0.0, 1.0, 41)
+    bow = 0.025 * (1.0 - np.cos(np.pi * arc / 2.0))
+    axes = [np.stack([arc, side * bow], axis=1) for side in (0.0, 1.0, -1.0)]
+    straight, left, right = (
+        bent(column, t, {"cantilever": line}) for t, line in zip((0.5, 1.0, 2.0), axes, strict=True)
+    )
+    same = bent(column, 2.0, {"cantilever": axes[1]})
+    assert 0.02 < np.hypot(*(same.ends["cantilever.end"] - right.ends["cantilever.end"])) < 0.1
+    for last, words in ((same, ""), (right, "ends elsewhere")):
+        found = certify(stated(column, [straight, left, last]), column, at=[1, 2])
+        assert found.certified is not bool(words), found.line()
+        assert words in found.line()
