@@ -24,6 +24,10 @@ WRITTEN = ".crossval"
 """Name of the list of a folder: a line for each file, with its digest (SHA-256) and its name."""
 
 
+LONGEST = 500
+"""Most characters of a line whose words are those of a program of others."""
+
+
 class OutputError(ValueError):
     """A file or folder cannot be written; the message is one line."""
 
@@ -35,6 +39,16 @@ def printable(text: object) -> str:
     'red \\x1b[31m'
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def one_line(text: object) -> str:
+    r"""Return the words of a program or file that may be anything: `printable`, in one line of at most `LONGEST` characters.
+
+    >>> one_line("red\n \x1b[31m")
+    'red \\x1b[31m'
+    """
+    line = printable(" ".join(str(text)[:LONGEST].split()))
+    return line if len(line) < LONGEST else f"{line[: LONGEST - 3]}..."
 
 
 def read_regular(path: str, most: int) -> bytes:

@@ -63,8 +63,7 @@ def run(given: "argparse.Namespace") -> int:
         for option in ("model", "elements", "element", "mesh"):
             if getattr(given, option) is not None:
                 raise ModelError(f"--{option}: belongs to a scene, {given.answer} is a response")
-        response = read_response(given.answer)
-        scene = load_scene(given.scene or response.scene)
+        response, scene = read_response(given.answer, given.scene)
     else:
         if given.scene is not None:
             raise ModelError("--scene: belongs to a response in JSON")

@@ -1,21 +1,21 @@
 """The output of another program, read as a response and held against the scene."""
 
 import json
-from collections.abc import Iterator
+import re
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.files import printable
+from comparisons.files import one_line
 from comparisons.models.options import ModelError
 from comparisons.models.outside.status import ProgramError, ProgramStatus
+from comparisons.models.verify import CHECK_FAILED
+from comparisons.referee.certificate import Verdict
 from comparisons.response import ContactHistory, Grid, Response, SupportHistory
 from comparisons.response.axis import SampledAxes
-from comparisons.response.from_json import restated
-from comparisons.response.material import clamped
-from comparisons.response.to_json import as_dict
+from comparisons.response.from_json import KEYS, NotFiniteError, contradictions, once, restated
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
@@ -25,8 +25,10 @@ Array = NDArray[np.float64]
 COMPLETED, REFUSED = "COMPLETED", "REFUSED"
 SHOWN = 60
 """Bytes that are shown of an output that is not JSON."""
-SAME_LOAD = 1e-6
-"""Largest difference between a load parameter of the scene and of the answer, which may be printed with few digits."""
+WORD = re.compile(r"[A-Z][A-Z0-9_]{,39}")
+"""How a program names what stopped it."""
+VERDICTS = {*Verdict.__members__, CHECK_FAILED}
+"""Words that this program alone says of an answer."""
 
 
 def refusal(output: bytes) -> str | None:
@@ -37,7 +39,7 @@ def refusal(output: bytes) -> str | None:
         return None
     if data.get("status") != REFUSED:
         return None
-    return " ".join(str(data.get("message") or "no reason given").split())
+    return one_line(data.get("message") or "no reason given")
 
 
 def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
@@ -68,23 +70,22 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     if reason is not None:
         raise ModelError(reason)
     data = _parsed(output)
-    reported = data.get("status") == COMPLETED
-    if not reported and isinstance(data.get("status"), str) and "load_parameter" not in data:
-        return silent(scene, model, str(data["status"]), str(data.get("message", "as the program reports")))
+    status = data.get("status")
+    reported = status == COMPLETED
     try:
-        known = {*as_dict(silent(scene, model, "", "")), "versions"}
-        for mistake in check_keys(data, known, required=("status",)):
+        for mistake in check_keys(data, KEYS, required=("status",)):
             raise mistake
-        _check_status(data["status"])
+        _check_status(status)
+        if not reported and "load_parameter" not in data:
+            return silent(scene, model, str(status), data.get("message", "as the program reports"))
         response = restated({**_defaults(data, scene, seconds), "model": model})
-        wrong = next(_contradictions(response, scene), "")
+        wrong = next(contradictions(response, scene), "")
+    except NotFiniteError as error:
+        raise ProgramError(ProgramStatus.NOT_FINITE, str(error), reported_success=reported) from None
     except FieldError as error:
         wrong = str(error)
     if wrong:
         raise ProgramError(ProgramStatus.INVALID_RESPONSE, wrong, reported_success=reported)
-    unknown = next(_not_finite(response), "")
-    if unknown:
-        raise ProgramError(ProgramStatus.NOT_FINITE, f"{unknown} is not finite", reported_success=reported)
     axes = response.axis_line
     assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
     return replace(
@@ -97,7 +98,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
 
 
 def silent(
-    scene: Scene, model: str, status: str, message: str, *, reported_success: bool = False
+    scene: Scene, model: str, status: str, message: object, *, reported_success: bool = False
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
@@ -105,7 +106,7 @@ def silent(
         model=model,
         scene=scene.name,
         status=status,
-        message=message,
+        message=one_line(message),
         completed=False,
         outside=True,
         reported_success=reported_success,
@@ -145,9 +146,11 @@ def axis_grid(scene: Scene, axes: SampledAxes, k: int) -> Grid:
 
 def _parsed(output: bytes) -> dict[str, Any]:
     try:
-        data = json.loads(output.decode("utf-8"))
+        data = json.loads(output.decode("utf-8"), object_pairs_hook=once)
+    except FieldError as error:
+        raise ProgramError(ProgramStatus.INVALID_RESPONSE, str(error)) from None
     except (ValueError, RecursionError) as error:
-        begin = printable(" ".join(output[:SHOWN].decode("utf-8", errors="replace").split()))
+        begin = one_line(output[:SHOWN].decode("utf-8", errors="replace"))
         words = f"{len(output)} bytes written" + (f", they begin with: {begin}" if begin else "")
         raise ProgramError(ProgramStatus.INVALID_JSON, f"{error}; {words}") from None
     if not isinstance(data, dict):
@@ -156,10 +159,10 @@ def _parsed(output: bytes) -> dict[str, Any]:
 
 
 def _check_status(status: object) -> None:
-    """Refuse a misspelt success or refusal, which would pass for the name of what stopped the program."""
-    word = str(status).strip().upper()
-    if status != word and word in {COMPLETED, REFUSED}:
-        raise FieldError("status", status, f"must be {word}, in capitals")
+    """Refuse what is no name of a stop, as a misspelt success, and the words that only this program says of an answer."""
+    if not isinstance(status, str) or not WORD.fullmatch(status) or status in VERDICTS:
+        rule = f"must be {COMPLETED}, in capitals, {REFUSED}, or another word in capitals"
+        raise FieldError("status", status, f"{rule} that is no verdict of this program")
 
 
 def _defaults(data: dict[str, Any], scene: Scene, seconds: float) -> dict[str, Any]:
@@ -185,58 +188,6 @@ def _ends(axis: Any, end: int) -> Any:
         return [line[end] for line in axis["position"]]
     except (TypeError, KeyError, IndexError):
         return None
-
-
-def _contradictions(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield differences between the names and numbers of load parameters of an answer and those of the scene."""
-    if response.scene != scene.name:
-        yield f"scene = {response.scene}: the scene was {scene.name}"
-    t = response.load_parameter
-    times = np.array(scene.times[: len(t)])
-    if len(t) > len(scene.times) or not np.all(np.abs(t - times) <= min(SAME_LOAD, scene.times[0] / 4)):
-        yield "load_parameter: must be those of the scene, from the first on"
-    if response.completed and len(t) < len(scene.times):
-        yield f"load_parameter: has {len(t)} of {len(scene.times)} load parameters, and the status is {COMPLETED}"
-    axes = response.axis_line
-    assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
-    beams = {beam.name for beam in scene.beams}
-    driven = response.material_force.keys()
-    for what, own, wanted in (
-        ("contacts", response.contacts.keys(), {spec.pair for spec in scene.contacts}),
-        ("supports", response.supports.keys(), {spec.node for spec in scene.all_supports}),
-        ("tips", response.tips.keys(), beams),
-        ("material_force", driven, driven & clamped(scene).keys()),
-        ("axes", axes.arc_length.keys(), beams),
-    ):
-        if own != wanted:
-            names = ", ".join(sorted(wanted)) or "none"
-            yield f"{what}: must have {names}, has {', '.join(sorted(own)) or 'none'}"
-    for name, arc in axes.arc_length.items():
-        length = scene.beam(name).length
-        if len(arc) and not (
-            abs(arc[0]) <= SAME_LOAD * length and abs(arc[-1] - length) <= SAME_LOAD * length
-        ):
-            yield f"axes.{name}.arc_length: must run from 0 to the length {length:g}"
-
-
-def _not_finite(response: Response) -> Iterator[str]:
-    """Yield the names of items with a number that is not finite; arc position and gap are free where a contact is open."""
-    axes = response.axis_line
-    assert isinstance(axes, SampledAxes), "a response that was read has sampled axes"
-    items: list[tuple[str, Array]] = []
-    for pair, contact in response.contacts.items():
-        closed = contact.force != 0.0
-        items += [(f"the force of {pair}", contact.force)]
-        items += [(f"the arc position of {pair}", contact.arc_position[closed])]
-        items += [(f"the gap of {pair}", contact.gap[closed])]
-        if contact.vector is not None:
-            items += [(f"the force vector of {pair}", contact.vector[closed])]
-    for node, support in response.supports.items():
-        items += [(f"the support force of {node}", support.force)]
-        items += [(f"the support moment of {node}", support.moment)]
-    items += [(f"the tip of {beam}", tip) for beam, tip in response.tips.items()]
-    items += [(f"the axis of {beam}", line) for beam, line in axes.position.items()]
-    yield from (name for name, numbers in items if not np.all(np.isfinite(numbers)))
 
 
 def _penetrating(contact: ContactHistory) -> ContactHistory:

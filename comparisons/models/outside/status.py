@@ -2,6 +2,8 @@
 
 from enum import Enum
 
+from comparisons.files import one_line
+
 
 class ProgramStatus(Enum):
     """How the run of another program failed; the value is the meaning."""
@@ -28,5 +30,5 @@ class ProgramError(Exception):
     """
 
     def __init__(self, status: ProgramStatus, message: str, *, reported_success: bool = False) -> None:
-        super().__init__(" ".join(message.split()))
+        super().__init__(one_line(message))
         self.status, self.reported_success = status, reported_success

@@ -80,6 +80,38 @@ FAILURES = {
         "INVALID_RESPONSE",
         'status = "completed": must be COMPLETED, in capitals',
     ),
+    "a verdict": (
+        "answer['status'] = 'CERTIFIED'",
+        "INVALID_RESPONSE",
+        "another word in capitals that is no verdict",
+    ),
+    "a verdict alone": (
+        "answer = {'status': 'UNSTABLE'}",
+        "INVALID_RESPONSE",
+        'status = "UNSTABLE": must be',
+    ),
+    "a coloured status": (
+        "answer['status'] = '\\x1b[32mCOMPLETED'",
+        "INVALID_RESPONSE",
+        'status = "\\U0000001b[32mCOMPLETED": must be COMPLETED',
+    ),
+    "a misspelt key of a contact": (
+        "contact['vektor'] = contact.pop('vector')",
+        "INVALID_RESPONSE",
+        "contacts.pin->cantilever.vektor = [[",
+    ),
+    "a truth value": ("contact['force'][0] = True", "INVALID_RESPONSE", "must be a list of 5 numbers"),
+    "a number as a text": ("contact['force'][0] = '1'", "INVALID_RESPONSE", "must be a list of 5 numbers"),
+    "a closed contact without a gap": (
+        "contact['gap'][2] = None",
+        "NOT_FINITE",
+        "contacts.pin->cantilever.gap[2] = nan: must be a finite number",
+    ),
+    "a key twice": (
+        'print(json.dumps(answer)[:-1] + \', "status": "COMPLETED"}\'); sys.exit()',
+        "INVALID_RESPONSE",
+        'status = "COMPLETED": must stand once in its table',
+    ),
     "a greeting": ("print('hello there')", "INVALID_JSON", "bytes written, they begin with: hello there {"),
     "a short beam": ("axis['arc_length'][-1] = 0.995", "INVALID_RESPONSE", "must run from 0 to the length 1"),
     "other load parameters": (
@@ -123,12 +155,12 @@ answer["load_parameter"], answer["newton_iterations"] = answer["load_parameter"]
     "an infinite axis": (
         "axis['position'][1][3][0] = math.inf",
         "NOT_FINITE",
-        "the axis of cantilever is not",
+        "axes.cantilever.position[1][3][0] = inf: must be a finite number",
     ),
     "null in a support": (
         "support['moment'][0] = None",
         "NOT_FINITE",
-        "the support moment of cantilever.start is not",
+        "supports.cantilever.start.moment[0] = nan: must be a finite number",
     ),
     "its own failure": ("answer = {'status': 'DIVERGED', 'message': 'at .3'}", "DIVERGED", "at .3"),
 }
@@ -144,6 +176,34 @@ def test_a_failure_has_its_name(failure: str, program: Make) -> None:
     assert "\n" not in response.message
     assert len(response.load_parameter) == 0
     assert response.contacts.keys() == {PAIR}
+
+
+CONTROLS = "\x1b]0;owned\x07\x1b[31m\u202e\r\x9b2J\u2066"
+
+
+@pytest.mark.parametrize("model", ["answers", "refuses", "crashes"])
+def test_control_characters_of_a_program_reach_no_terminal_and_no_file(
+    model: str,
+    program: Make,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = repr(f"ready {CONTROLS} {'x' * 100_000}")
+    lines = {
+        "answers": f"answer = {{'status': 'DIVERGED', 'message': {words}}}",
+        "refuses": f"answer = {{'status': 'REFUSED', 'message': {words}}}",
+        "crashes": f"sys.exit({words})",
+    }
+    file = program(lines[model])
+    status = 2 if model == "refuses" else 3
+    assert main(["solve", "ks.toml", "--model", file, "--json", "a.json", "--quiet"]) == status
+    out, err = capfd.readouterr()
+    said = out + err + (Path("a.json").read_text() if status == 3 else "")
+    assert "ready" in said or model == "crashes"
+    assert {letter for letter in said if not letter.isprintable()} == {"\n"}
+    assert max(map(len, (out + err).splitlines())) < 700
 
 
 def test_a_program_that_ends_early_keeps_what_it_reached(program: Make) -> None:
