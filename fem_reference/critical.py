@@ -26,6 +26,8 @@ _LARGEST_DISPLACEMENT = 0.05
 """Largest root mean square displacement in the search for a limit point, relative to the length."""
 _FIRST_AMPLITUDE = 1e-2
 """First displacement along the mode in the search for a branch, relative to the length."""
+_NOT_SMALL = 0.1
+"""Part of a mode's largest displacement across the strips that decides on its side."""
 _OPENING_STEPS = 20
 """Number of smallest steps within which a contact must open if its opening ends the path."""
 
@@ -264,10 +266,11 @@ def stable_branch(model: Model, located: Located, limit: float, settings: Settin
     """State on a stable branch from a bifurcation, at a load parameter below ``limit``; None without one.
 
     Equilibrium is sought at prescribed amplitudes of the mode, with both signs and successively halved. Of two stable
-    branches the one with lower energy at a common load parameter is returned; with equal energies, the positive sign.
+    branches the one with lower energy at a common load parameter is returned; with equal energies, the one on which the strips
+    turn to the left, see `_side`.
     """
     t, entries = located.point.load_parameter, list[Accepted]()
-    unit = located.vector / np.sqrt(np.mean(located.vector**2))
+    unit = _side(model, located) * located.vector / np.sqrt(np.mean(located.vector**2))
     for sign in (1.0, -1.0):
         amplitude = _FIRST_AMPLITUDE * model.length
         for _ in range(_MAX_ITERATIONS // 4):
@@ -283,6 +286,19 @@ def stable_branch(model: Model, located: Located, limit: float, settings: Settin
         margin = settings.tolerance * max(map(abs, energies))
         return entries[1] if energies[1] < energies[0] - margin else entries[0]
     return entries[0] if entries else None
+
+
+def _side(model: Model, located: Located) -> float:
+    """Sign with which the first displacement across a strip that is not small is to the left, strip by strip from start to end."""
+    left = []
+    for body, part in model.bodies_and_nodes():
+        axis = body.mesh.sections @ (body.mesh.nodes + located.near.state.u[part])
+        moved = body.mesh.sections @ located.vector[part]
+        x, y = np.gradient(axis, axis=0).T
+        left.append((x * moved[:, 1] - y * moved[:, 0]) / np.hypot(x, y))
+    across = np.concatenate(left)
+    first = np.argmax(np.abs(across) > _NOT_SMALL * np.abs(across).max())
+    return 1.0 if across[first] >= 0 else -1.0
 
 
 def _on_branch(model: Model, located: Located, offset: Floats, settings: Settings) -> Accepted | None:
