@@ -59,17 +59,19 @@ def error(scene: Scene) -> float | None:
 @pytest.mark.slow_at("-45.0-12.0", "-90.0-0.3", "-90.0-12.0", "150.0-12.0", "150.0-2.0")
 @pytest.mark.parametrize("force", [0.3, 2.0, 12.0])
 @pytest.mark.parametrize("direction", [-90.0, 0.0, -45.0, 150.0])
-def test_a_load_at_the_tip(force: float, direction: float) -> None:
+def test_a_load_at_the_tip(force: float, direction: float, stated) -> None:
     errors = [error(loaded(force, math.radians(direction), ratio)) for ratio in SHEAR]
     assert errors[0] is not None
     assert all(found is None or found < WITHIN for found in errors)
+    stated("shear.strong", max(found for found in errors if found is not None), part=True)
     assert errors[-1] is None
 
 
 @pytest.mark.parametrize(("depth", "refused"), [(0.05, False), (0.2, True)])
-def test_a_pin(depth: float, refused: bool) -> None:
+def test_a_pin(depth: float, refused: bool, stated) -> None:
     """A small depth strains little, however soft the beam."""
     errors = [error(pressed(depth, stiffness)) for stiffness in np.geomspace(300.0, 0.1, 12).tolist()]
     assert errors[0] is not None
     assert all(found is None or found < WITHIN for found in errors)
+    stated("shear.strong", max(found for found in errors if found is not None), part=True)
     assert (errors[-1] is None) == refused

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -142,7 +143,8 @@ def compared(number: int, folder: Path) -> int:
 
 
 @pytest.mark.slow
-def test_answers_are_the_rods(tmp_path: Path) -> None:
+def test_answers_are_the_rods(tmp_path: Path, stated: Callable[..., None]) -> None:
+    stated("fuzz.exact", EXACT)
     assert compared(20, tmp_path) > 15
 
 

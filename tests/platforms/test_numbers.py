@@ -14,7 +14,8 @@ def test_numbers_are_those_stored() -> None:
     assert max(differences(computed(), stored)) <= (BOUND, "")
 
 
-def test_differences_are_seen() -> None:
+def test_differences_are_seen(stated) -> None:
+    stated("platforms.bound", BOUND)
     stored = json.loads(STORED.read_text())["numbers"]
     assert max(differences(stored, stored))[0] == 0.0
     for change in (lambda value: value * (1 + 1e-9), lambda _: None):
