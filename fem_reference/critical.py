@@ -26,6 +26,8 @@ _LARGEST_DISPLACEMENT = 0.05
 """Largest root mean square displacement in the search for a limit point, relative to the length."""
 _FIRST_AMPLITUDE = 1e-2
 """First displacement along the mode in the search for a branch, relative to the length."""
+_EQUAL = 1e-6
+"""Relative difference of two energies that is round-off: of mirrored branches 4e-8 is measured."""
 _NOT_SMALL = 0.1
 """Part of a mode's largest displacement across the strips that decides on its side."""
 _OPENING_STEPS = 20
@@ -283,7 +285,7 @@ def stable_branch(model: Model, located: Located, limit: float, settings: Settin
         common = max(entry.state.t for entry in entries)
         entries = [accepted_state(model, (entry,), common, settings) or entry for entry in entries]
         energies = [potential(model, entry.state, located.near.state) for entry in entries]
-        margin = settings.tolerance * max(map(abs, energies))
+        margin = _EQUAL * max(map(abs, energies))
         return entries[1] if energies[1] < energies[0] - margin else entries[0]
     return entries[0] if entries else None
 
