@@ -2,7 +2,9 @@
 
 import argparse
 import os
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, suppress
 from pathlib import Path
@@ -76,7 +78,8 @@ def _run(arguments: list[str] | None) -> int:
     status: int
     given = command_parser().parse_args(arguments)
     try:
-        status = given.run(given)
+        with _ended_as_a_whole():
+            status = given.run(given)
         sys.stdout.flush()
     except InputError as error:
         for line in str(error).split("\n"):
@@ -100,6 +103,21 @@ def _run(arguments: list[str] | None) -> int:
     except KeyboardInterrupt:
         status = _told("interrupted", INTERRUPTED)
     return status
+
+
+@contextmanager
+def _ended_as_a_whole() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP end the command by an exception: temporary files and the processes of programs are removed."""
+    main = threading.current_thread() is threading.main_thread()
+    ends = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if main and hasattr(signal, name)]
+    ends = [number for number in ends if signal.getsignal(number) is signal.SIG_DFL]
+    for number in ends:
+        signal.signal(number, lambda number, _: sys.exit(128 + number))
+    try:
+        yield
+    finally:
+        for number in ends:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _told(reason: object, status: int) -> int:

@@ -1,6 +1,5 @@
 """Run ``ccx``, the solver of CalculiX (Debian's ``calculix-ccx``), on an input deck and read its printed tables."""
 
-import os
 import re
 import shutil
 import subprocess
@@ -8,6 +7,8 @@ import tempfile
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
+
+from comparisons.models.outside.child import environment
 
 Rows = list[list[float]]
 
@@ -84,12 +85,11 @@ def parse(text: str) -> Printed:
 
 def _finish(command: list[str], folder: str, seconds: float) -> str:
     """Run a command; return the reason why it did not finish, empty if it did."""
-    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     try:
         done = subprocess.run(  # noqa: S603 the program found on the path, our own deck
             command,
             cwd=folder,
-            env=environment,
+            env={**environment(), "OMP_NUM_THREADS": "1"},
             capture_output=True,
             text=True,
             errors="replace",

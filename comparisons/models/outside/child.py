@@ -1,10 +1,13 @@
-"""A program as a child process with limits on time, memory and output."""
+"""A program as a child process with a short environment and limits on time, memory and output, of which no process is left."""
 
+import ctypes
 import os
 import shutil
 import signal
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -19,6 +22,16 @@ TAIL = 300
 """Characters of a program's messages that are shown."""
 FIRST_LOOK, LAST_LOOK = 0.002, 0.1
 """Shortest and longest time between two looks at a running program [s]."""
+ENVIRONMENT = (
+    "PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPATH", "VIRTUAL_ENV",
+    "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "SYSTEMROOT", "PATHEXT", "TEMP", "TMP", "USERPROFILE",
+)  # fmt: skip
+"""Variables of the environment that every program gets; the last five are those of Windows."""
+LINUX = sys.platform == "linux"
+ADOPT = 36
+"""PR_SET_CHILD_SUBREAPER: a process becomes the parent of its descendants whose own parents have ended."""
+ROUNDS = 20
+"""How often the processes that a program leaves behind are looked for and ended."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,16 +44,24 @@ class Limits:
         Wall time [s].
     memory : float
         Resident memory [byte].
+    environment : tuple of str
+        Variables of the environment that it gets beside those of `ENVIRONMENT`.
     """
 
     seconds: float = 600.0
     memory: float = 4e9
+    environment: tuple[str, ...] = ()
 
 
 def found(program: str, folder: Path) -> str | None:
     """Return the path of a program: a name on the path, or a path relative to `folder`; None if there is none."""
     own = folder / program
     return shutil.which(program if own.name == program else str(own))
+
+
+def environment(more: Iterable[str] = ()) -> dict[str, str]:
+    """Return the environment of a program: the variables of `ENVIRONMENT` and `more`, as far as they are set."""
+    return {name: os.environ[name] for name in (*ENVIRONMENT, *more) if name in os.environ}
 
 
 def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tuple[bytes, float]:
@@ -63,7 +84,14 @@ def run(command: Sequence[str], folder: Path, text: str, limits: Limits) -> tupl
         with given.open("rb") as stdin, out.open("wb") as stdout, err.open("wb") as stderr:
             code = _finished(
                 [program, *command[1:]],
-                {"cwd": folder, "stdin": stdin, "stdout": stdout, "stderr": stderr},
+                {
+                    "cwd": folder,
+                    "stdin": stdin,
+                    "stdout": stdout,
+                    "stderr": stderr,
+                    "env": environment(limits.environment),
+                    "start_new_session": True,
+                },
                 (out, err),
                 limits,
             )
@@ -78,9 +106,12 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
     """Return the exit status of a command that keeps its limits."""
     import psutil
 
+    others = set(psutil.Process().children())
+    _adopt(1)
     try:
         process = psutil.Popen(command, **streams)
     except (OSError, ValueError) as error:
+        _adopt(0)
         reason = getattr(error, "strerror", None) or str(error)
         raise ProgramError(ProgramStatus.NOT_STARTED, f"{command[0]}: {reason}") from None
     began, look, family = perf_counter(), FIRST_LOOK, {process}
@@ -92,7 +123,7 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
                 look = min(2.0 * look, LAST_LOOK)
             if perf_counter() - began > limits.seconds:
                 raise ProgramError(ProgramStatus.TIMED_OUT, f"ran longer than {limits.seconds:g} s")
-            family.update(_descendants(process))
+            family |= _started(process, others)
             if sum(map(_memory, family)) > limits.memory:
                 raise ProgramError(
                     ProgramStatus.OUT_OF_MEMORY, f"took more than {limits.memory / 1e6:g} MB of memory"
@@ -102,17 +133,29 @@ def _finished(command: list[str], streams: dict[str, Any], written: tuple[Path, 
                     ProgramStatus.TOO_MUCH_OUTPUT, f"wrote more than {LARGEST_OUTPUT / 1e6:g} MB"
                 )
     finally:
-        _end(process, family)
+        _end(process, family, others)
+        _adopt(0)
 
 
-def _descendants(process: Any) -> list[Any]:
-    """Return the child processes of a process, and their child processes."""
+def _adopt(adopts: int) -> None:
+    """Make this process the parent of descendants that lose theirs, where the system can (Linux); 0 ends it."""
+    if LINUX:
+        ctypes.CDLL(None).prctl(ADOPT, adopts, 0, 0, 0)
+
+
+def _started(process: Any, others: set[Any]) -> set[Any]:
+    """Return the processes that a program has started, itself among them, and those of them that this process has adopted.
+
+    Only what a program starts is in another session than this process; `others` are children from before.
+    """
     import psutil
 
-    try:
-        return list(process.children(recursive=True))
-    except psutil.Error:
-        return []
+    found = set()
+    for child in psutil.Process().children():
+        with suppress(psutil.Error, ProcessLookupError):
+            if child == process or (LINUX and child not in others and os.getsid(child.pid) != os.getsid(0)):
+                found |= {child, *child.children(recursive=True)}
+    return found
 
 
 def _memory(process: Any) -> int:
@@ -125,17 +168,18 @@ def _memory(process: Any) -> int:
         return 0
 
 
-def _end(process: Any, family: set[Any]) -> None:
-    """End a process and its child processes, and wait for their end."""
+def _end(process: Any, family: set[Any], others: set[Any]) -> None:
+    """End whatever a program has started, and wait for its end. What is seen is ended first, then what that leaves to this process."""
     import psutil
 
-    family = family | set(_descendants(process))
-    for member in family:
-        try:
-            member.kill()
-        except psutil.Error:
-            continue
-    psutil.wait_procs(family, timeout=10.0)
+    for _ in range(ROUNDS):
+        family = {member for member in family | _started(process, others) if member.is_running()}
+        for member in family:
+            with suppress(psutil.Error):
+                member.kill()
+        if not family:
+            return
+        psutil.wait_procs(family, timeout=1.0)
 
 
 def _ending(code: int) -> str:

@@ -18,8 +18,8 @@ def read_program(path: Path) -> Program:
     """Return the program that the TOML file `path` states in its table ``[program]``.
 
     The keys are ``name`` and ``command`` (a list of the program and its arguments), and, if wanted, ``label``, ``seconds`` (limit on
-    time, 600), ``memory`` (limit in MB, 4000), ``elements`` (a list of numbers of elements), ``colour``. The program runs in the
-    folder of the file.
+    time, 600), ``memory`` (limit in MB, 4000), ``environment`` (a list of further variables that it gets), ``elements`` (a list of numbers of
+    elements), ``colour``. The program runs in the folder of the file.
 
     Raises
     ------
@@ -39,7 +39,11 @@ def read_program(path: Path) -> Program:
             label=given.get("label", ""),
             command=given["command"],
             folder=path.resolve().parent,
-            limits=Limits(seconds=given.get("seconds", 600.0), memory=1e6 * given.get("memory", 4000.0)),
+            limits=Limits(
+                seconds=given.get("seconds", 600.0),
+                memory=1e6 * given.get("memory", 4000.0),
+                environment=given.get("environment", ()),
+            ),
             elements=given.get("elements", ()),
             colour=given.get("colour", COLOUR),
         )
@@ -47,10 +51,13 @@ def read_program(path: Path) -> Program:
 
 
 def _words(value: object) -> tuple[str, ...]:
-    items = rules.sequence(value)
-    if not items:
+    if not rules.sequence(value):
         raise RuleError("must have a program")
-    return tuple(rules.text(item) for item in items)
+    return _texts(value)
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    return tuple(rules.text(item) for item in rules.sequence(value))
 
 
 def _counts(value: object) -> tuple[int, ...]:
@@ -70,6 +77,7 @@ RULES: dict[str, Rule] = {
     "label": rules.text,
     "seconds": rules.positive,
     "memory": rules.positive,
+    "environment": _texts,
     "elements": _counts,
     "colour": _colour,
 }

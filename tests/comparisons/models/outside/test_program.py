@@ -1,7 +1,12 @@
 """A program of others in a child process: limits, named failures, its file, and every command that takes a model."""
 
+import contextlib
 import json
 import os
+import re
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +21,7 @@ from comparisons.cases.measure import Measurement
 from comparisons.cli import main
 from comparisons.models import find, solve
 from comparisons.models.options import ModelError, Options
+from comparisons.models.outside.child import ENVIRONMENT
 from comparisons.models.outside.program_file import ProgramFileError, read_program
 from comparisons.response.material import frictions
 from comparisons.scene import load_scene
@@ -382,3 +388,85 @@ def test_a_comparison_has_it(program: Make, tmp_path: Path) -> None:
     rows = {row["label"]: row for row in json.loads((out / "summary.json").read_text())["runs"]}
     assert rows["liar"]["errors"]["path"]["force"] < 1e-8
     assert "liar" in (out / "report.html").read_text()
+
+
+LEAVES = r"""
+import subprocess
+sleep = [sys.executable, "-I", "-c", "import os, time; os.chdir('/'); time.sleep(600)"]
+daemon = (
+    "import os, subprocess, sys\n"
+    "if os.fork(): os._exit(0)\n"
+    "os.setsid()\n"
+    "if os.fork(): os._exit(0)\n"
+    "os.execve(sys.executable, [sys.executable, '-I', '-c', 'import time; time.sleep(600)', 'MARK'], {})\n"
+)
+for k in range(5):
+    subprocess.Popen([*sleep, "MARK"])
+    subprocess.Popen([*sleep, "MARK"], start_new_session=True)
+    subprocess.Popen(["/bin/sh", "-c", 'nohup "$@" >/dev/null 2>&1 & exit', "sh", *sleep, "MARK"])
+    subprocess.Popen([sys.executable, "-I", "-c", daemon])
+time.sleep(0.5)
+"""
+
+
+def running(mark: str) -> list[int]:
+    found = []
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):
+            if mark in process.cmdline() and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process.pid)
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a process can leave its family")
+@pytest.mark.slow_at("killed")
+@pytest.mark.parametrize("ending", ["done", "failed", "killed"])
+def test_a_program_leaves_no_process(ending: str, program: Make, tmp_path: Path) -> None:
+    """Children, children in sessions of their own, orphans, and daemons without an environment: none is left."""
+    mark = f"left-{ending}-{os.getpid()}"
+    more = {"done": "", "failed": "sys.exit(1)", "killed": "time.sleep(600)"}[ending]
+    count = f"Path('count').write_text(os.popen('pgrep -cf {mark}').read())\n"
+    lines = LEAVES.replace("MARK", mark) + count + more
+    other = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], start_new_session=True)
+    try:
+        response = solve(KS, program(lines, seconds=5))
+        assert response.status == {"done": "COMPLETED", "failed": "CRASHED", "killed": "TIMED_OUT"}[ending]
+        assert int((tmp_path / "count").read_text()) >= 20
+        assert not running(mark)
+        assert other.poll() is None, "not one of the program's"
+        assert [child.pid for child in psutil.Process().children()] == [other.pid], "no zombie is left"
+    finally:
+        other.kill()
+        other.wait()
+
+
+def test_a_command_that_is_ended_ends_the_program(program: Make, tmp_path: Path) -> None:
+    file = program("Path('pid').write_text(str(os.getpid())); time.sleep(600)")
+    code = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
+    command = [sys.executable, "-c", code, "solve", str(tmp_path / "ks.toml"), "--model", file]
+    with subprocess.Popen(command, stderr=subprocess.PIPE) as child:
+        pid = tmp_path / "pid"
+        while not (pid.exists() and pid.read_text()):
+            assert child.poll() is None
+            time.sleep(0.05)
+        child.terminate()
+        assert child.wait(60) == 143
+    assert not psutil.pid_exists(int(pid.read_text()))
+
+
+def test_a_program_gets_the_stated_environment_alone(
+    program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No token; and what its file asks for."""
+    monkeypatch.setenv("GITHUB_TOKEN", "secret")
+    monkeypatch.setenv("LICENSE_SERVER", "here")
+    seen = "Path('seen').write_text(json.dumps(dict(os.environ)))"
+    assert solve(KS, program(seen)).completed
+    got = json.loads((tmp_path / "seen").read_text())
+    assert got.keys() - {"LC_CTYPE"} == {name for name in ENVIRONMENT if name in os.environ}
+    assert solve(KS, program(seen, environment=["LICENSE_SERVER", "NOT_THERE"])).completed
+    more = json.loads((tmp_path / "seen").read_text())
+    assert more == {**got, "LICENSE_SERVER": "here"}
+    page = (Path(__file__).parents[4] / "docs" / "how-to" / "program.md").read_text(encoding="utf-8")
+    _, _, said = page.partition("The environment of the program has the variables")
+    assert re.findall(r"`([A-Z_]+)`", said.partition("as far as")[0]) == list(ENVIRONMENT)
