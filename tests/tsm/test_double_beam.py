@@ -50,11 +50,11 @@ def test_coupled_stage_matches_the_coupled_rods(result):
     depths = 0.76 * result.load_parameter
     stage = (depths > 0.15) & (depths < 0.535)
     exact = coupled(SCENE, depths[stage])
-    assert result.contacts[UPPER].force[stage] == pytest.approx(np.hypot(*exact.pin_force.T), rel=1e-4)
-    assert result.contacts[TIP].force[stage] == pytest.approx(np.hypot(*exact.tip_force.T), rel=1e-4)
+    assert result.contacts[UPPER].force[stage] == pytest.approx(np.hypot(*exact.pin_force.T), rel=1e-6)
+    assert result.contacts[TIP].force[stage] == pytest.approx(np.hypot(*exact.tip_force.T), rel=1e-6)
     touch = found(result, tsm.EventKind.TOUCH, TIP)
     slip = found(result, tsm.EventKind.SLIP_OFF, UPPER)
-    assert depth(touch) == pytest.approx(exact.touch_depth, abs=1e-6)
+    assert depth(touch) == pytest.approx(exact.touch_depth, abs=1e-9)
     assert depth(slip) == pytest.approx(exact.end_depth, abs=1e-6)
 
 
@@ -63,10 +63,10 @@ def test_single_stages_match_the_exact_rod(result):
     before, after = depths < 0.149, (depths > 0.54) & (depths < 0.73)
     for stage, pair, offset in ((before, UPPER, 0.0), (after, LOWER, 0.2)):
         exact = single(SCENE, depths[stage] - offset)
-        assert result.contacts[pair].force[stage] == pytest.approx(exact.magnitude[1:], rel=1e-4)
-        assert result.contacts[pair].arc_position[stage] == pytest.approx(exact.arc_position[1:], abs=1e-4)
+        assert result.contacts[pair].force[stage] == pytest.approx(exact.magnitude[1:], rel=1e-6)
+        assert result.contacts[pair].arc_position[stage] == pytest.approx(exact.arc_position[1:], abs=2e-7)
     leave = found(result, tsm.EventKind.SLIP_OFF, LOWER)
-    assert depth(leave) - 0.2 == pytest.approx(0.6 * single(SCENE, [0.6]).slip_off, abs=1e-5)
+    assert depth(leave) - 0.2 == pytest.approx(0.6 * single(SCENE, [0.6]).slip_off, abs=3e-7)
 
 
 def test_free_beams_are_straight_again(result):
@@ -94,10 +94,10 @@ def test_work_of_the_pin_is_the_strain_energy_up_to_each_jump(result):
     ]
     energy = fine.strain_energy[24::25]
     before_jump = work[0] + work[1]
-    assert energy[0] == pytest.approx(work[0], rel=1e-6)
-    assert energy[1] == pytest.approx(before_jump, rel=1e-6)
-    assert energy[2] == pytest.approx(before_jump - first.released + work[2], rel=1e-6)
-    assert second.released == pytest.approx(energy[2], rel=1e-6)
+    assert energy[0] == pytest.approx(work[0], rel=5e-8)
+    assert energy[1] == pytest.approx(before_jump, rel=5e-8)
+    assert energy[2] == pytest.approx(before_jump - first.released + work[2], rel=5e-8)
+    assert second.released == pytest.approx(energy[2], rel=5e-8)
 
 
 @pytest.mark.slow
