@@ -30,15 +30,15 @@ def with_touches(model: Model, state: State, touches: tuple[Touch | None, ...]) 
     return after
 
 
-def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...]) -> State:
-    """State with moved contacts; a contact that left its element is handed over to the neighbour."""
+def handed_over(model: Model, state: State, touches: tuple[Touch | None, ...], past: float = 0.0) -> State:
+    """State with moved contacts; a contact that left its element by a part of its length is handed over to the neighbour."""
     owned: list[Touch | None] = []
     for pair, touch in zip(model.pairs, touches, strict=True):
         if touch is None:
             owned.append(None)
             continue
         first = pair.target.first
-        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, pair.group.past_node)
+        k, xi = slide(pair.target.lengths, touch.element - first, touch.xi, max(past, pair.group.past_node))
         owned.append(touch if first + k == touch.element else replace(touch, element=first + k, xi=xi))
     return with_touches(model, replace(state, touches=touches), tuple(owned))
 

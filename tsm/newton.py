@@ -24,6 +24,11 @@ _RISE, _SHORTEST = 10.0, 0.1
 iterations that would converge."""
 _NEAR = 1.0
 """Residual below which the number of Gauss nodes may be raised."""
+_CARRIED = 16 * float(np.finfo(float).eps)
+"""Round-off of the forces that beams carry. It exceeds the tolerance in slender ones that are taut."""
+_PAST = 0.05
+"""Part of an element's length by which a contact may lie past a node to which the iteration sent it back and forth: the tangents of two
+elements differ there, and between them neither has an equilibrium within its ends."""
 _CRITICAL = 1e-6
 """Largest round-off of the residual at which an equilibrium is accepted. A stiffer contact is in the critical area."""
 
@@ -66,6 +71,8 @@ class _Iteration(NamedTuple):
         Scaled norm before the iteration.
     part : float
         Part of the step that is taken.
+    past : float
+        Part of an element's length by which a contact may lie past its end.
     """
 
     state: State
@@ -74,6 +81,7 @@ class _Iteration(NamedTuple):
     load: float
     residual: float
     part: float = 1.0
+    past: float = 0.0
 
     def to_halve(self, residual: float) -> bool:
         """Whether the residual has risen so much that half of the step is tried instead."""
@@ -86,7 +94,7 @@ class Newton:
     The norm is the largest scaled entry of the residual: forces over ``EI/L^2``, moments over ``EI/L``, positions over L/1000. L is the
     longest beam, so that no scale can vanish. An iteration has converged if its norm is below `tolerance`. It has also converged if the
     last two norms are below the round-off of the residual, ``4 eps (EA L/l0 + EI/l0^2)``, and ``4 eps k_c L`` for a contact of
-    stiffness k_c.
+    stiffness k_c, or the round-off of the forces that the beams carry.
     """
 
     def __init__(self, model: Model, settings: Settings) -> None:
@@ -171,6 +179,7 @@ class Newton:
         residuals: list[float] = []
         owners: list[tuple[int, ...]] = []
         last: _Iteration | None = None
+        past = 0.0
         for iteration in range(self.max_iterations + 1):
             system = self.assembler.linearise(state, drag)
             residual = self.norm(system)
@@ -195,7 +204,8 @@ class Newton:
                     residuals=tuple(residuals),
                     system=system,
                 )
-            taken = _Iteration(state, system, *step, residual)
+            past = _PAST if past or _alternates(owners) else 0.0
+            taken = _Iteration(state, system, *step, residual, past=past)
             state = self._after(taken)
             last = taken if self.assembler.internal else None
         raise AssertionError("the last iteration returns")
@@ -214,7 +224,9 @@ class Newton:
 
     def _after(self, taken: _Iteration) -> State:
         t = taken.state.load_parameter + taken.part * taken.load
-        return self.update(taken.state, taken.step, taken.system, t=t, residual=True, part=taken.part)
+        return self.update(
+            taken.state, taken.step, taken.system, t=t, residual=True, part=taken.part, past=taken.past
+        )
 
     def _status(
         self, system: Linearisation, residuals: list[float], owners: list[tuple[int, ...]], left: int
@@ -250,8 +262,11 @@ class Newton:
 
     def converged(self, residuals: list[float], system: Linearisation) -> bool:
         """Whether the last residual is small enough, or the last two are round-off."""
-        noise = max(self.noise, min(system.noise / self.model.least_force, _CRITICAL))
-        return residuals[-1] <= self.tolerance or (len(residuals) > 1 and max(residuals[-2:]) <= noise)
+        small, left = residuals[-1] <= self.tolerance, max(residuals[-2:])
+        if small or len(residuals) == 1 or left > max(self.noise, _CRITICAL):
+            return small
+        carried = max(float(np.abs(forces.ends[[0, 1, 3, 4]]).max()) for forces in system.groups)
+        return left <= max(self.noise, max(system.noise, _CARRIED * carried) / self.model.least_force)
 
     def prescribed(self, state: State, t: float) -> State:
         """State at a load parameter, its supports where they are prescribed."""
@@ -271,6 +286,7 @@ class Newton:
         t: float | None = None,
         residual: bool = False,
         part: float = 1.0,
+        past: float = 0.0,
     ) -> State:
         """State after a step, shortened so that no node and no contact moves too far at once.
 
@@ -288,6 +304,8 @@ class Newton:
             Whether the step removes the residual.
         part : float
             Fraction of the admissible step that is taken.
+        past : float
+            Part of an element's length by which a contact may lie past its end.
         """
         model = self.model
         dq, dz = step[: model.equations], step[model.equations :]
@@ -320,7 +338,7 @@ class Newton:
             self._moved(k, moved, touch, dz_taken) if touch is not None else None
             for k, touch in enumerate(state.touches)
         )
-        return handed_over(model, moved, touches)
+        return handed_over(model, moved, touches, past)
 
     def _share(self, q: Array) -> None:
         """Give the ends behind hinges the displacements of their joints."""

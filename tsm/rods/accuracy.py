@@ -14,7 +14,7 @@ from tsm.rods.records import Entry, Memo, RodBalance
 from tsm.rods.shape import RodShape, plain_shape
 from tsm.state import State
 
-MOST_NODES = 96
+MOST_NODES = 256
 """Largest number of Gauss nodes of a segment."""
 _AT_ONCE = 4
 """Least number of nodes that are added."""

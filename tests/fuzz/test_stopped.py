@@ -1,0 +1,41 @@
+"""Scenes that were given up, though they have stable equilibria to the end."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from comparisons.models import solve
+from comparisons.models.options import Options
+from comparisons.referee import certify
+from comparisons.scene import load_scene
+
+STOPPED = Path(__file__).parent / "stopped"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 5])
+@pytest.mark.parametrize("name", ["taut", "taut-over-a-pin"])
+def test_a_slender_beam_under_tension(name: str, count: int) -> None:
+    """The round-off of a force of 1e6 EI/L^2 exceeds Newton's tolerance, and boundary layers take more than 96 nodes."""
+    scene = replace(load_scene(str(STOPPED / f"{name}.toml")), load_parameters=count)
+    answer = solve(scene, "tsm", Options(element="exact", elements=1))
+    assert answer.completed, answer.message
+    assert certify(answer, scene).certified
+    many = solve(scene, "tsm", Options(element="exact", elements=8))
+    for node, support in many.supports.items():
+        assert answer.supports[node].force[-1] == pytest.approx(support.force[-1], rel=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("elements", [8])
+def test_a_contact_passes_a_node_where_neither_element_has_an_equilibrium(elements: int) -> None:
+    """Friction on a sharply bent beam: the tangents of two elements differ at their node, and the iteration went back and forth."""
+    scene = load_scene(str(STOPPED / "back-and-forth.toml"))
+    answer, exact = (
+        solve(scene, "tsm", Options(element=element, elements=number))
+        for element, number in (("mixed", elements), ("exact", 1))
+    )
+    assert answer.completed, answer.message
+    for pair, contact in exact.contacts.items():
+        assert answer.contacts[pair].force == pytest.approx(contact.force, rel=0.05)
