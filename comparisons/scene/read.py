@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import MISSING as NO_DEFAULT
 from dataclasses import fields
 from importlib import resources
+from pathlib import Path
 from typing import Any, TypeVar
 
 from comparisons.scene.beam import BeamSpec
@@ -71,8 +72,17 @@ def load_scene(scene: str) -> Scene:
         return read_scene(built_in[scene], scene)
     if not scene:
         raise SceneError('""', "must name a scene")
-    absent = f"no such file or built-in scene ({', '.join(built_in)})"
+    near = "" if Path(scene).exists() else _near(scene, built_in)
+    absent = f"no such file or built-in scene{near}; crossval scenes lists them"
     return read_scene(read_text(scene, absent, SceneError), scene)
+
+
+def _near(scene: str, built_in: Collection[str]) -> str:
+    """Return the question whether another scene is meant; empty if no name is near."""
+    from comparisons.scene.words import meant
+
+    name = meant(scene, built_in)
+    return f" (did you mean {name}?)" if name else ""
 
 
 def read_scene(text: str, source: str) -> Scene:

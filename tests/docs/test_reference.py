@@ -8,12 +8,14 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+import comparisons
 import fem_reference
 import tsm
 from comparisons.cli import main
 from comparisons.models.options import ModelError, Options
 from comparisons.models.outside.request import request
 from comparisons.models.outside.status import ProgramStatus
+from comparisons.referee import Verdict
 from comparisons.scene import SPECIAL, LoadSpec, Scene, built_in_scenes, load_scene, to_toml, unstated
 from comparisons.scene.keys import PROGRAMS, special_keys
 from comparisons.scene.read import LIST_FIELDS, LISTS, STAGE_LISTS
@@ -82,13 +84,25 @@ def test_a_question_has_a_scene_that_says_it() -> None:
     assert len({to_toml(item.scene) for item in questions}) == len(questions) - 1, "two pins answer twice"
 
 
-def test_every_status_is_listed() -> None:
+IN_CODE = (
+    r'^([A-Z_]{4,}) = "\1"',
+    r'\bstatus\b[^\n]*?"([A-Z][A-Z_]{2,})"',
+    r'^ +"([A-Z_]{4,})": "',
+    r'return \(?"([A-Z_]{4,})"',
+    r"^ +\w+State\.([A-Z_]+): \"",
+    r"crossval: .*?\b([A-Z]+_[A-Z_]+): ",
+)
+"""How a status stands in a module, besides as a member of a class of statuses."""
+
+
+def test_every_status_in_the_code_is_on_the_page() -> None:
     page = statuses.page()
-    assert all(
-        f"`{status.name}`" in page
-        for kind in (tsm.Status, fem_reference.Status, ProgramStatus)
-        for status in kind
-    )
+    modules = [Path(package.__path__[0]) for package in (comparisons, tsm, fem_reference)]
+    texts = [path.read_text(encoding="utf-8") for module in modules for path in module.rglob("*.py")]
+    found = {name for text in texts for one in IN_CODE for name in re.findall(one, text, re.MULTILINE)}
+    found |= {one.name for kind in (tsm.Status, fem_reference.Status, ProgramStatus, Verdict) for one in kind}
+    assert not [name for name in sorted(found) if f"`{name}`" not in page]
+    assert set(statuses.CHECKS) | set(statuses.CASES) | {"LOST", "JAMMED", "SLIPPED_OFF"} <= found
 
 
 @pytest.mark.slow_at(
