@@ -80,10 +80,17 @@ def test_no_contact_is_so_stiff_that_a_large_residual_is_round_off():
         Model(cantilever(((0.5, 0.0), (0.5, 0.1)), element="euler-bernoulli-simple")), tsm.Settings()
     )
     scale = newton.model.force_scale
-    stiff = SimpleNamespace(noise=1e3 * scale)
+
+    def noisy(noise: float, carried: float = 0.0) -> SimpleNamespace:
+        groups = (SimpleNamespace(ends=np.full((6, 1), carried * scale)),)
+        return SimpleNamespace(noise=noise * scale, groups=groups)
+
+    stiff = noisy(1e3)
     assert newton.noise < 1e-8
     assert newton.converged([5e-7, 5e-7], stiff)
     assert not newton.converged([2e-6, 2e-6], stiff)
     assert not newton.converged([2e-6, 5e-7], stiff)
     assert not newton.converged([5e-7], stiff)
-    assert not newton.converged([5e-7, 5e-7], SimpleNamespace(noise=1e-8 * scale))
+    assert not newton.converged([5e-7, 5e-7], noisy(1e-8))
+    assert newton.converged([1e-9, 1e-9], noisy(0.0, 1e6))
+    assert not newton.converged([1e-9, 1e-9], noisy(0.0, 1e5))
