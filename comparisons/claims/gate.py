@@ -9,7 +9,7 @@ from comparisons.claims.junit import junit_text
 from comparisons.errors import difference, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.registry import COARSE
+from comparisons.referee.certify import ALLOWED
 from comparisons.response import Response
 from comparisons.response.material import UNDEFINED, clamped
 from comparisons.scene import Scene
@@ -82,7 +82,7 @@ def gate(
     """
     if "friction" in bounds and not clamped(scene):
         raise ModelError(f"friction: {UNDEFINED}")
-    allowance = max(COARSE, *bounds.values())
+    allowance = max(ALLOWED, *bounds.values())
     reference = certified(_reference(scene, against), scene)
     response = certified(solve(scene, model, options), scene, allowance=allowance)
 

@@ -1,7 +1,7 @@
 """The models, by name in a registry. Each model solves a scene and returns its response."""
 
 from comparisons.models.base import Model, Style
-from comparisons.models.registry import MODELS, Certify, certified, find, solve
+from comparisons.models.registry import MODELS, Certify, certified, find, restored, solve
 from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.solid import SOLID
 from comparisons.models.tsm import TSM
@@ -17,6 +17,7 @@ __all__ = [
     "Style",
     "certified",
     "find",
+    "restored",
     "solve",
 ]
 

@@ -70,7 +70,7 @@ class Model(ABC):
     libraries: ClassVar[tuple[str, ...]] = ()
     meshed: ClassVar[bool] = True
     refinable: ClassVar[bool] = False
-    continuum: ClassVar[bool] = False
+    continuum: bool = False
     rod: ClassVar[bool] = True
     keys: ClassVar[frozenset[str]] = frozenset()
 
@@ -84,6 +84,14 @@ class Model(ABC):
         from comparisons.scene import unstated
 
         return unstated(scene, self.label, self.keys)
+
+    def apart(self, scene: Scene) -> float:  # noqa: ARG002 - others have another theory
+        """Return the relative distance from Reissner's rod that the model's theory has, besides that of a continuum."""
+        return 0.0
+
+    def by_referee(self, scene: Scene) -> bool:  # noqa: ARG002 - one model asks the referee
+        """Whether the answer is made of the referee's own equilibria, which the referee does not certify."""
+        return False
 
     @abstractmethod
     def refusal(self, scene: Scene) -> str | None:

@@ -17,10 +17,6 @@ if TYPE_CHECKING:
 
 Certify = Literal["last", "all", "none"]
 """Load parameters to certify: the last one and the neighbours of events, all, or none."""
-COARSE = 5e-2
-"""Largest distance from the exact equilibrium that an answer of a coarse mesh may have; an answer further away is refused."""
-
-
 FILES = ("tsm", "solid", "rod")
 """The modules of this package with a tuple ``MODELS``; a new model adds its module here."""
 MODELS: dict[str, Model] = {
@@ -67,7 +63,7 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
     if unknown is not None:
         raise ModelError(unknown)
     try:
-        response = chosen.solve(scene, given, watch)
+        response = _as_registered(chosen.solve(scene, given, watch), chosen)
         if not response.continuum:
             forces = material_forces(response, scene, strains=chosen.rod)
             response = replace(response, material_force=forces)
@@ -86,31 +82,75 @@ def solve(scene: Scene, model: str, options: Options | None = None, watch: Watch
         raise ModelError(f"{chosen.name}: {error.name} is needed: {install(error.name)}") from error
 
 
+def _as_registered(response: Response, model: Model | None) -> Response:
+    """Return `response` with the kind of its model, whatever it says of itself; another model's answer is that of a program."""
+    return replace(
+        response,
+        continuum=model is not None and model.continuum,
+        outside=response.model not in MODELS,
+    )
+
+
+def restored(response: Response, scene: Scene) -> Response:
+    """Return a response from a file with the kind that its model is registered with, and checked as when it was solved."""
+    from comparisons.models.outside.answer import penetrating
+    from comparisons.models.outside.programs import ADAPTERS
+    from comparisons.models.verify import CHECK_FAILED, verified
+
+    response = _as_registered(response, MODELS.get(response.model) or ADAPTERS.get(response.model))
+    if response.completed and not response.reported_success:
+        contradiction = f"the status is {response.status}, and reported_success is false"
+        return replace(response, status=CHECK_FAILED, message=contradiction, completed=False)
+    if response.outside or response.continuum:
+        contacts = {pair: penetrating(item) for pair, item in response.contacts.items()}
+        response = replace(response, contacts=contacts)
+    return verified(response, scene)
+
+
 def certified(
-    response: Response, scene: Scene, which: Certify = "last", *, allowance: float = COARSE
+    response: Response, scene: Scene, which: Certify = "last", *, allowance: float | None = None
 ) -> Response:
     """Return `response` with its certificate. The verdict becomes the status of a refused answer, which is not completed.
 
     Parameters
     ----------
     response : Response
-        The answer of a model; an answer that stopped keeps its status.
+        The answer of a model. One that stopped keeps its status, and its certificate says no more than how far off it is there. One
+        that is made of the referee's own equilibria is not judged.
     scene : Scene
         The scene that was solved.
     which : {"last", "all", "none"}
-        Load parameters to certify. With ``last`` they are the last one and the neighbours of events; a program of others, which
-        does not state its events, is judged at all.
-    allowance : float
-        Largest relative distance from the exact equilibrium. For a solid, the height over the length is added.
+        Load parameters to certify. With ``last`` they are the last one, the neighbours of events, and the one with the largest
+        contact force; a program of others, which does not state its events, is judged at all.
+    allowance : float, optional
+        Largest relative distance from the exact equilibrium, by default `comparisons.referee.certify.ALLOWED`. What the model's theory
+        has besides is added.
     """
-    from comparisons.referee import Verdict, certify, default_allowance
+    from comparisons.models.verify import CHECK_FAILED
+    from comparisons.referee import Certificate, Verdict, certify, default_allowance
     from comparisons.referee.certify import ALLOWED
 
     if which == "none" or not len(response.load_parameter):
         return response
+    model = MODELS.get(response.model)
     every = range(len(response.load_parameter)) if which == "all" or response.outside else None
-    allowed = allowance + default_allowance(response, scene) - ALLOWED
-    found = certify(response, scene, at=every, allowance=allowed)
+    allowed = default_allowance(response, scene) + (0.0 if model is None else model.apart(scene))
+    allowed += 0.0 if allowance is None else allowance - ALLOWED
+    if model is not None and model.by_referee(scene):
+        reason = f"{model.setting(scene, Options())}, found by the referee itself"
+        found = Certificate(
+            verdict=Verdict.NOT_JUDGED, reason=reason, allowance=allowed, judged=(), path=(), seconds=0.0
+        )
+    else:
+        found = certify(response, scene, at=every, allowance=allowed)
+    if not response.completed and found.certified:
+        refused = response.status == CHECK_FAILED
+        stop = f"{response.status}, {found.reason.partition(',')[0]} where it was judged"
+        found = replace(
+            found,
+            verdict=Verdict.INADMISSIBLE if refused else Verdict.NOT_JUDGED,
+            reason=response.message if refused else f"the answer stopped: {stop}",
+        )
     response = replace(response, certificate=found)
     if not response.completed or found.verdict in {Verdict.CERTIFIED, Verdict.NOT_JUDGED}:
         return response

@@ -29,6 +29,21 @@ class Rod(Model):
         """Default options: the rod has no settings."""
         return Options()
 
+    def by_referee(self, scene: Scene) -> bool:
+        """Whether the scene is not one rod under one pin or with a tied tip."""
+        from comparisons.models.translate import to_rod
+
+        try:
+            to_rod(scene)
+        except ModelError:
+            return True
+        return False
+
+    def setting(self, scene: Scene, options: Options) -> str:
+        """Return where the equilibria of several rods are from; empty for one rod."""
+        del options
+        return "exact equilibria along TSM's path" if self.by_referee(scene) else ""
+
     def refusal(self, scene: Scene) -> str | None:
         """Return why the rods cannot state `scene`; None if they can. Several rods are solved along the path of exact elements."""
         from comparisons.models.translate import beams_refusal
@@ -42,10 +57,9 @@ class Rod(Model):
         from comparisons.models.translate import to_rod
 
         del options
-        try:
-            local = to_rod(scene)
-        except ModelError:
+        if self.by_referee(scene):
             return solve_network(scene, self.name, watch)
+        local = to_rod(scene)
         if any(contact.friction for contact in scene.contacts):
             from comparisons.models.rod_friction import solve_rod_with_friction
 
@@ -64,6 +78,10 @@ class Elastica(Rod):
     label = "elastica"
     rod = False
     keys = ONE_ROD
+
+    def apart(self, scene: Scene) -> float:
+        """Return the part of a cantilever's deflection under a force at its tip that is shear, and as much of stretch."""
+        return max(3.0 * beam.EI / beam.length**2 * (1.0 / beam.EA + 1.0 / beam.GA) for beam in scene.beams)
 
     @property
     def reference(self) -> None:

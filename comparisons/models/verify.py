@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.models.balance import balance_failures
+from comparisons.referee.balance import balance_failures
 from comparisons.referee.passing import passages
 from comparisons.response import Array, Deformation, Response
 from comparisons.scene import ContactSpec, Scene

@@ -1,82 +1,173 @@
-"""Global balance of the forces and moments of an answer."""
+"""The balance of forces and moments on the whole structure, from a response and its scene alone."""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.distance import LAST_PLACES, LEAST, UNRESOLVED, least_force, node_place
-from comparisons.referee.loads import dead_loads, lever
-from comparisons.referee.start import AnswerState
-from comparisons.referee.state import Equilibrium
-from comparisons.scene import ContactSpec, Scene, SpringSpec
+from comparisons.response import Array, ContactHistory, Response
+from comparisons.response.round_off import force_round_off, least_force
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
 
-Array = NDArray[np.float64]
-
-PLACED = 1e-2
-"""Largest relative error of a spring's moment, whose rotation an answer does not state."""
 BALANCE = 1e-6
-"""Largest imbalance over the largest force; the models' tolerances are far smaller."""
+"""Largest unbalanced force of a model of this package, over the largest force that acts. Newton's tolerances are far below."""
+
+_PANELS, _NODES = 20, 4
+"""Panels, and nodes in each, of the quadrature of a load along a beam."""
 
 
-def unbalanced(scene: Scene, answer: AnswerState, exact: Equilibrium) -> str:
-    """Return a sentence if forces or moments do not balance, otherwise an empty string.
+class Action(NamedTuple):
+    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, with any free moment added."""
 
-    ``sum R + sum F + sum P = 0`` and ``sum (M + x_R x R) + sum x_F x F + sum (m + x_P x P) = 0`` with the reactions R and M, the pins'
-    forces F at the pins' centres x_F, the dead loads P and m, and the forces of springs, which follow from the answer's positions.
-    Contacts between beams are internal. The force of a round pin of radius R acts on its circumference; a tangential force F_t adds the
-    moment ``-side R F_t``, side = 1 for a pin on the right. A load along a beam acts at its centre on the answer's axis, and the moment
-    of a spring follows from the rotation in the exact equilibrium, which the answer does not state: both have an error.
+    force: Array
+    moment: Array
+
+
+def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE) -> Iterator[str]:
+    """Yield a sentence for forces that do not balance, and one for moments; contacts between beams are internal forces.
+
+    The largest imbalance over the largest force is `allowed`. The forces of springs follow from the positions; without the moment of a
+    spring that has one, moments are not compared.
+
+    ``sum R + sum F + sum P = 0`` and ``sum (M + x_R x R) + sum x_F x F + sum (m + x_P x P) = 0`` with the supports' and springs' R and M,
+    the pins' forces F at the pins and the dead loads P and m. Where a single pin pushes, the force that balances all other forces
+    is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
+    ``-side (R + g) F_t`` of a stated tangential force about the centre of a pin of radius R at the gap g, side = 1 for a pin on the right.
     """
-    origin = np.array(scene.beams[0].start)
-    acting = [(end, np.array([x, y]), moment) for end, (x, y, moment) in answer.reactions.items()]
-    loads = list(dead_loads(scene, answer.load_parameter))
-    acting += [(load.node, np.array(load.force), load.moment) for load in loads if load.node]
-    pins = [spec for spec in scene.contacts if spec.pair in answer.forces and "." not in spec.node]
-    acting += [(spec.node, np.array(answer.forces[spec.pair]), _roll(scene, answer, spec)) for spec in pins]
-    acting += [(spring.node, *_held(scene, answer, exact, spring)) for spring in scene.springs]
-    places = [_place(scene, answer, node) - origin for node, _, _ in acting]
+    supports, loads = _supports(response, scene), _loads(response, scene)
+    outer = _sum([*supports, *loads], len(response.load_parameter))
+    pushing, magnitude, pins = _pins(response, scene, outer)
+    largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
+    scale = allowed * largest + max(force_round_off(scene, largest), response.round_off)
+    missing = np.hypot(*outer.force.T)
+    off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
     length = max(beam.length for beam in scene.beams)
-    unsure = sum(abs(moment) for (_, _, moment) in acting[len(acting) - len(scene.springs) :]) * PLACED
-    for load in loads:
-        if not load.node:
-            place, error = lever(load, *answer.axes[load.beam])
-            acting.append((load.beam, np.array(load.force), load.moment))
-            places.append(place - origin)
-            unsure += error * float(np.hypot(*load.force))
-    sizes = [max(float(np.hypot(*force)), abs(moment) / length) for _, force, moment in acting]
-    largest = max([*sizes, LEAST * least_force(scene)])
-    allowed = BALANCE * largest + min(
-        LAST_PLACES * max(beam.EA for beam in scene.beams), UNRESOLVED * largest
-    )
-    force = np.sum([force for _, force, _ in acting], axis=0)
-    moment = sum(m + x * f[1] - y * f[0] for (x, y), (_, f, m) in zip(places, acting, strict=True))
-    if not float(np.hypot(*force)) <= allowed:
-        return f"reactions, contact forces and loads do not balance by {float(np.hypot(*force)) / largest:.2g} of the largest"
-    if not abs(moment) <= allowed * length + unsure:
-        return f"the moments do not balance by {abs(moment) / (largest * length):.2g} of the largest force times the length"
-    return ""
+    unknown = any(spring.rotation and spring.node not in response.springs for spring in scene.springs)
+    for what, failed in (
+        ("reactions", ~(off <= scale)),
+        ("moments", (not unknown) & ~(np.abs(outer.moment + pins.moment) <= scale * length)),
+    ):
+        if failed.any():
+            t = response.load_parameter[np.argmax(failed)]
+            yield f"the support {what} do not balance contact forces and loads at load parameter {t:.6g}"
 
 
-def _place(scene: Scene, answer: AnswerState, node: str) -> Array:
-    """Position of a node: prescribed if a support holds it, stated as a tip, or else the end of the stated axis, which is sampled."""
-    if "." in node:
-        if node in scene.prescribed_motions:
-            x, y, _ = scene.prescribed_motions[node].at(answer.load_parameter)
-            if x is not None and y is not None:
-                return np.asarray(np.array(scene.place(node)) + np.array([x, y]))
-        beam, end = node.split(".")
-        if end == scene.tip(beam) and beam in answer.tips:
-            return np.array(answer.tips[beam])
-    return node_place(scene, answer, node)
+def _sum(actions: list[Action], steps: int) -> Action:
+    nothing = Action(np.zeros((steps, 2)), np.zeros(steps))
+    both = [nothing, *actions]
+    return Action(sum(item.force for item in both), sum(item.moment for item in both))  # type: ignore[arg-type]
 
 
-def _held(scene: Scene, answer: AnswerState, exact: Equilibrium, spring: SpringSpec) -> tuple[Array, float]:
-    """Force and moment of a spring on its joint."""
-    moved = _place(scene, answer, spring.node) - np.array(scene.place(spring.node))
-    return -np.array(spring.stiffness) * moved, -spring.rotation * exact.joint_rotation(spring.node)
+def _largest(scene: Scene, actions: list[Action]) -> float:
+    """Largest force, or moment over length. A least value keeps the solvers' residuals within balance where nothing acts."""
+    length = max(beam.length for beam in scene.beams)
+    forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
+    moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
+    return max(*forces, *moments, least_force(scene))
 
 
-def _roll(scene: Scene, answer: AnswerState, spec: ContactSpec) -> float:
-    """Moment of a pin's force about its centre."""
-    if not spec.friction:
+def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.0) -> Action:
+    x, y = (place - np.array(scene.beams[0].start)).T
+    return Action(force, np.asarray(moment + x * force[:, 1] - y * force[:, 0]))
+
+
+def _place(response: Response, scene: Scene, node: str) -> Array:
+    """Deformed position (s, 2) of a beam's end: prescribed if its support holds it, else as the response states it."""
+    beam, end = node.split(".")
+    for support in scene.supports_of(beam):
+        if support.end == end and {"x", "y"}.issubset(support.held):
+            motion = scene.prescribed_motions[node]
+            moved = [motion.at(t)[:2] for t in response.load_parameter.tolist()]
+            return np.asarray(np.array(scene.place(node)) + np.array(moved, dtype=np.float64).reshape(-1, 2))
+    if end == scene.tip(beam):
+        return response.tips[beam]
+    lines = [response.axis_line(beam, k)[1] for k in range(len(response.load_parameter))]
+    return np.array([line[0 if end == "start" else -1] for line in lines]).reshape(-1, 2)
+
+
+def _supports(response: Response, scene: Scene) -> list[Action]:
+    actions = [
+        _action(scene, history.force, _place(response, scene, node), history.moment)
+        for node, history in response.supports.items()
+    ]
+    for spring in scene.springs:
+        place, own = _place(response, scene, spring.node), response.springs.get(spring.node)
+        force = -np.array(spring.stiffness) * (place - np.array(scene.place(spring.node)))
+        actions.append(_action(scene, force, place, 0.0 if own is None else own.moment))
+    return actions
+
+
+def _loads(response: Response, scene: Scene) -> list[Action]:
+    """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
+    times, actions = response.load_parameter.tolist(), []
+    for history in scene.load_histories:
+        load, acting = history.load, np.array([history.at(t) for t in times]).reshape(-1, 3)
+        if load.force_per_length is not None:
+            actions.append(_along(response, scene.beam(load.beam), load.span, acting[:, :2], scene))
+            continue
+        place = _inside(response, scene, load) if load.at is not None else _place(response, scene, load.node)
+        actions.append(_action(scene, acting[:, :2], place, acting[:, 2]))
+    gravity = np.array([scene.gravity_at(t) for t in times]).reshape(-1, 2)
+    heavy = (beam for beam in scene.beams if beam.density is not None)
+    actions += [_along(response, beam, (0.0, 1.0), gravity, scene, beam.mass_per_length) for beam in heavy]
+    return actions
+
+
+def _inside(response: Response, scene: Scene, load: LoadSpec) -> Array:
+    """Deformed position (s, 2) of a point inside a beam."""
+    at = (load.at or 0.0) * scene.beam(load.beam).length
+    return _axis_at(response, load.beam, np.array([at]))[:, 0]
+
+
+def _axis_at(response: Response, beam: str, arcs: Array) -> Array:
+    """Deformed positions (s, m, 2) of a beam's axis, by cubic splines through the points that the response states."""
+    from scipy.interpolate import CubicSpline
+
+    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
+    return np.array([CubicSpline(arc, line)(arcs) for arc, line in lines]).reshape(-1, len(arcs), 2)
+
+
+def _along(
+    response: Response,
+    beam: BeamSpec,
+    span: tuple[float, float],
+    vector: Array,
+    scene: Scene,
+    factor: Callable[[float], float] = lambda _: 1.0,
+) -> Action:
+    """Action of a load per length, a vector (s, 2) times a factor at parts of the length, by Gauss's rule in `_PANELS` panels."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    ends = np.linspace(*span, _PANELS + 1)
+    parts = (ends[:-1, None] + np.diff(ends)[:, None] * (nodes + 1.0) / 2.0).ravel()
+    weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * beam.length / _PANELS
+    weights = weights * [factor(part) for part in parts]
+    arm = _axis_at(response, beam.name, parts * beam.length) - np.array(scene.beams[0].start)
+    x, y = (arm * weights[:, None]).sum(axis=1).T
+    return Action(vector * weights.sum(), x * vector[:, 1] - y * vector[:, 0])
+
+
+def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:
+    """Return the number of pins that push, the sum of their magnitudes, and their action; a single pin balances `outer`."""
+    steps = len(response.load_parameter)
+    pushing, magnitude, actions = np.zeros(steps, dtype=np.int64), np.zeros(steps), [_sum([], steps)]
+    touching = [spec for spec in scene.contacts if "." not in spec.node]
+    for spec in touching:
+        pushing += response.contacts[spec.pair].force > 0.0
+    for spec in touching:
+        history = response.contacts[spec.pair]
+        place = np.array([scene.pin(spec.node).position(float(t)) for t in response.load_parameter])
+        vector = np.full((steps, 2), np.nan) if history.vector is None else history.vector
+        force = np.where((pushing <= 1)[:, None], -outer.force, vector)
+        force = np.where((history.force > 0.0)[:, None], force, 0.0)
+        magnitude += history.force
+        actions.append(_action(scene, force, place, _roll(scene, spec, history)))
+    return pushing, magnitude, _sum(actions, steps)
+
+
+def _roll(scene: Scene, spec: ContactSpec, history: ContactHistory) -> Array | float:
+    """Moment (s,) of the tangential force on the surface about the pin's centre, which is a radius and a gap away."""
+    if history.friction is None:
         return 0.0
-    return (1.0 if spec.side == "left" else -1.0) * scene.radius(spec) * answer.drags[spec.pair]
+    lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
+    return np.asarray((1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential)

@@ -85,7 +85,8 @@ class Certificate:
 
     def line(self) -> str:
         """Return the certificate in one line."""
-        return f"{self.verdict.name}: {self.reason}"
+        within = f" within {100.0 * self.allowance:.3g} %" if self.certified else ""
+        return f"{self.verdict.name}{within}: {self.reason}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the certificate by the names of the JSON file."""

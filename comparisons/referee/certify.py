@@ -8,9 +8,11 @@ from time import perf_counter
 
 import numpy as np
 
+from comparisons.referee.balance import BALANCE, balance_failures
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.distance import scales
+from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.events import misstated
 from comparisons.referee.follow import at_rest, departs
 from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
@@ -18,11 +20,13 @@ from comparisons.referee.passing import changes, passages
 from comparisons.referee.rubbing import rubs_wrongly_on_the_way
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
+from comparisons.response.axis import SampledAxes
+from comparisons.response.material import material_forces
 from comparisons.scene import Scene
 from comparisons.scene.keys import REFEREE, unstated
 
-ALLOWED = 1e-2
-"""Default of the largest difference allowed; smaller differences are not visible in a plot."""
+ALLOWED = 5e-2
+"""Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
 
 
 def certify(
@@ -37,8 +41,9 @@ def certify(
     scene : Scene
         The scene that was solved.
     at : sequence of int, optional
-        Indices of the load parameters to judge; negative ones count from the end. The default are the last one of every stage and the
-        ones next to events. Between neighbours without an event the path is followed too.
+        Indices of the load parameters to judge; negative ones count from the end. The default are the last one of every stage, the
+        ones next to events, and the one with the largest contact force. Between neighbours without an event the path is followed
+        too. The other load parameters are held against what needs no equilibrium: their balance, and the material force.
     allowance : float, optional
         Largest difference allowed; the default is `default_allowance`.
     """
@@ -49,30 +54,45 @@ def certify(
         return Certificate(
             verdict=Verdict.NOT_JUDGED, reason=unknown, allowance=allowed, judged=(), path=(), seconds=0.0
         )
-    response = replace(response, axis_line=cache(response.axis_line))
+    if not isinstance(response.axis_line, SampledAxes):
+        response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance
     steps = len(response.load_parameter)
     numbers = (
-        tuple(sorted({*beside_events(response), *ends_of_stages(response, scene)}))
+        tuple(sorted({*beside_events(response), *ends_of_stages(response, scene), *hardest(response)}))
         if at is None
         else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
     )
     history = _history(response, scene)
-    states = tuple(judged(response, scene, k, allowed, history=history) for k in numbers)
+    states = tuple(_judged(response, scene, numbers, allowed, history))
     states = tuple(_on_the_path(response, scene, numbers, states, allowed, history))
-    path = tuple(_path(response, scene))
+    unsound = tuple(_unsound(response, scene, allowed))
+    path = () if unsound else tuple(_path(response, scene, numbers, states, allowed))
     if history is not None:
         path += tuple(rubs_wrongly_on_the_way(history, numbers, states, allowed))
-    verdict, reason = _worst(states, path, steps)
+    verdict, reason = _worst(states, unsound, path)
+    if verdict is Verdict.CERTIFIED:
+        verdict, reason = _sound(response, scene, numbers, states)
     gone = next(_departures(response, scene, states, numbers), "") if verdict is Verdict.CERTIFIED else ""
     if gone:
         verdict, reason = Verdict.UNSTABLE, gone
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
-        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=path,
+        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=unsound + path,
         seconds=perf_counter() - began,
     )  # fmt: skip
+
+
+def _judged(
+    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: History | None
+) -> Iterator[Judgement]:
+    """Yield the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
+    before, near = -2, None
+    for k in numbers:
+        item = judged(response, scene, k, allowed, history=history, near=near if k == before + 1 else None)
+        before, near = k, None if item.exact is None else item.exact.solution
+        yield item
 
 
 def _on_the_path(
@@ -83,12 +103,12 @@ def _on_the_path(
     allowed: float,
     history: History | None,
 ) -> Iterator[Judgement]:
-    """Yield the judgements; a refused state is judged again with the largest force and moment of all judged load parameters.
+    """Yield the judgements; a refused state is judged again with the largest sizes of all judged load parameters.
 
     A moment that changes its sign is small at one load parameter, and a difference relative to it alone is large.
     """
-    sizes = [scales(scene, item.exact) for item in states if item.exact is not None]
-    largest = tuple(max(column, default=0.0) for column in zip(*sizes, strict=True)) or (0.0, 0.0)
+    sizes = [item.distance.scales for item in states if item.distance is not None]
+    force, moment, moved = (max(column) for column in zip(*sizes, strict=True)) if sizes else (0.0, 0.0, 0.0)
     for k, item in zip(numbers, states, strict=True):
         if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
             yield judged(
@@ -98,7 +118,7 @@ def _on_the_path(
                 allowed,
                 history=history,
                 exact=item.exact,
-                largest=(largest[0], largest[1]),
+                largest=(force, moment, moved),
             )
         else:
             yield item
@@ -113,17 +133,14 @@ _GRAVITY = (
 )
 
 
-def _worst(states: Sequence[Judgement], path: Sequence[str], steps: int) -> tuple[Verdict, str]:
+def _worst(states: Sequence[Judgement], unsound: Sequence[str], path: Sequence[str]) -> tuple[Verdict, str]:
     """Return the most serious verdict and its reason."""
     if not states:
-        what = "asked for" if steps else "reached"
-        return Verdict.NOT_JUDGED, f"no load parameter was {what}"
+        return Verdict.NOT_JUDGED, "no load parameter was reached or asked for"
     worst = max(states, key=lambda item: _GRAVITY.index(item.verdict))
-    if path and worst.verdict is not Verdict.NOT_AN_EQUILIBRIUM:
-        return Verdict.INADMISSIBLE, path[0]
-    if worst.verdict is Verdict.CERTIFIED:
-        return Verdict.CERTIFIED, _certified_reason(states, steps)
-    return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
+    if worst.verdict is Verdict.NOT_AN_EQUILIBRIUM or not (unsound or path):
+        return worst.verdict, f"{worst.reason} at load parameter {worst.load_parameter:.6g}"
+    return (Verdict.NOT_AN_EQUILIBRIUM, unsound[0]) if unsound else (Verdict.INADMISSIBLE, path[0])
 
 
 def default_allowance(response: Response, scene: Scene) -> float:
@@ -152,16 +169,37 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
     return tuple(sorted(numbers))
 
 
+def hardest(response: Response) -> tuple[int, ...]:
+    """Return the index of the load parameter with the largest contact force; none without contact force."""
+    force = np.nan_to_num(sum((np.abs(item.force) for item in response.contacts.values()), np.zeros(1)))
+    most = int(np.argmax(force))
+    return (most,) if force.any() and most < len(response.load_parameter) else ()
+
+
 def ends_of_stages(response: Response, scene: Scene) -> tuple[int, ...]:
     """Return the indices of the load parameters at which a stage ends and another follows."""
     ends = [float(k + 1) for k in range(len(scene.stages))]
     return tuple(k for k, t in enumerate(map(float, response.load_parameter)) if t in ends)
 
 
-def _certified_reason(states: Sequence[Judgement], steps: int) -> str:
+def _sound(
+    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement]
+) -> tuple[Verdict, str]:
+    """Return the verdict on an answer in which nothing is wrong, and its reason."""
+    if max((item.distance.scales[0] for item in states if item.distance), default=0.0) <= LEAST * least_force(
+        scene
+    ):
+        return Verdict.NOT_JUDGED, "nothing to judge: no load, support or contact carries a force"
     worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
-    stable = "index 0" if all(item.index == 0 for item in states) else "stability not judged (friction)"
-    return f"{worst.line()}, {stable}, admissible, at {len(states)} of {steps} load parameters"
+    stable = "stable" if all(item.index == 0 for item in states) else "stability not judged (friction)"
+    count = f"{len(states)} of {len(scene.times)} load parameters"
+    most = next((f"{response.load_parameter[k]:.6g}" for k in hardest(response) if k in numbers), "")
+    loaded = (
+        f", the largest contact force (at {most}) among them"
+        if most and len(states) < len(scene.times)
+        else ""
+    )
+    return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}{loaded}"
 
 
 def _history(response: Response, scene: Scene) -> History | None:
@@ -173,13 +211,39 @@ def _history(response: Response, scene: Scene) -> History | None:
     return History(response, scene)
 
 
-def _path(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield violations between load parameters, if the answer has the load parameters, pairs and supports of the scene."""
+def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
+    """Yield what is wrong with an answer at any load parameter, by its own numbers alone."""
     steps = range(len(response.load_parameter))
+    if response.completed and len(steps) < len(scene.times):
+        yield f"{len(steps)} of {len(scene.times)} load parameters, and the status is {response.status}"
+    yield from (sentence for k in steps for sentence in impossible(response, scene, k))
     if not steps or any(next(impossible(response, scene, k), "") for k in steps):
+        return
+    # the solid is in balance with the pins where they touch it, and its contacts may lie inside it by their penetration
+    yield from balance_failures(response, scene, allowed if response.outside else BALANCE)
+    if response.continuum:
+        return
+    forces = material_forces(response, scene)
+    largest = max(
+        (float(np.max(item.force, initial=0.0)) for item in response.contacts.values()), default=0.0
+    )
+    for beam, force in response.material_force.items():
+        off = np.abs(force - forces[beam]) if beam in forces else np.full(len(steps), np.inf)
+        if not np.all(off <= allowed * max(largest, LEAST * least_force(scene))):
+            t = response.load_parameter[np.argmax(np.nan_to_num(off, nan=np.inf))]
+            yield f"the material force of {beam} is not that of its reactions at load parameter {t:.6g}"
+
+
+def _path(
+    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+) -> Iterator[str]:
+    """Yield violations between load parameters."""
+    if not len(response.load_parameter):
         return
     yield from passages(response, scene)
     yield from changes(response, scene)
+    found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
+    yield from misstated(response, scene, found, allowed)
     for spec in scene.contacts:
         closed = response.contacts[spec.pair].force > 0.0
         dropped = np.logical_or.accumulate(closed) & ~closed

@@ -1,19 +1,21 @@
 """Differences between an answer and the exact equilibrium near it."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.faces import touching_distance
+from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.loads import dead_loads
-from comparisons.referee.start import AnswerState
+from comparisons.referee.start import SHORTEST, AnswerState
 from comparisons.referee.state import Equilibrium
-from comparisons.scene import BeamSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
+Scales = tuple[float, float, float]
+"""Largest force, moment and displacement."""
 
 LEAST = 1e-4
 """Smallest force scale of relative differences, over EI/L^2. Such a force bends a beam by 3e-5 L."""
@@ -23,8 +25,17 @@ LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
 A model computes an axial force from a stretch, and positions resolve a stretch to a few units in the last place.
 """
 
-COMPARED = ("force", "arc_position", "reaction", "tip", "shape")
-"""The differences that are held against the allowance, by their names; `place` has its own limit."""
+RESIDUAL = 1e-10
+"""Error of a position over the length at which the models' iterations end."""
+
+COMPARED = ("force", "arc_position", "reaction", "tip", "shape", "displacement")
+"""The differences that are held against the allowance, by their names."""
+ROUGH = ("gap", "sections", "constraint")
+"""Differences held against it too, which are interpolated and therefore no measure of an answer's accuracy; `place` has its own limit."""
+NONE = 1e-9
+"""Difference below which only its bound is told."""
+_POINTS = 401
+"""Points of an axis between which the feet of an open contact's node are sought."""
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
@@ -39,37 +50,59 @@ class Distance:
         Difference of a contact force as a vector, over the largest contact force.
     arc_position : float
         Difference of an arc position, over the beam's length.
+    gap : float
+        Difference of a gap, over the beam's length.
     reaction : float
-        Difference of a reaction force or moment, over the largest force or moment of supports, contacts and loads.
+        Difference of the force or moment of a support or spring, over the largest force or moment of supports, contacts and loads.
+    sections : float
+        Difference of a section force N, V or M, over the same; zero where the answer states none.
     tip : float
         Distance of a beam's free or less restrained end, over the beam's length.
     shape : float
         Distance of an axis, over the beam's length.
+    displacement : float
+        The largest distance of a tip or an axis, over the largest exact displacement. Distances that are round-off are zero.
+    constraint : float
+        The largest violation `place`, over the largest exact displacement.
     place : float
         Violation of the constraints by the answer itself: distance of its axis from the touching points of the contacts and from the
         prescribed positions of the supports, over the beam's length, less the error of the chords between the points of the axis.
     where : dict of str
         The pair, supported end or beam that has the largest difference, by the names above; none where there is nothing to compare.
+    scales : (float, float, float)
+        Largest force, moment and displacement of the exact equilibrium.
     """
 
     force: float
     arc_position: float
+    gap: float
     reaction: float
+    sections: float
     tip: float
     shape: float
+    displacement: float
+    constraint: float
     place: float
     where: Mapping[str, str] = field(default_factory=dict, repr=False)
+    scales: Scales = (0.0, 0.0, 0.0)
 
     @property
     def largest(self) -> tuple[str, float]:
-        """Name and size of the largest difference without `place`, which has its own limit."""
+        """Name and size of the largest difference that measures the accuracy."""
         name = max(COMPARED, key=lambda name: _size(getattr(self, name)))
         return name.replace("_", " "), float(getattr(self, name))
 
-    def line(self) -> str:
-        """Return the largest difference in words, as ``force off by 0.2 (pin->strip)``."""
-        name, size = self.largest
-        return f"{name} off by {size:.2g}{self.at(name.replace(' ', '_'))}"
+    def line(self, of: tuple[str, float] | None = None) -> str:
+        """Return a difference, the largest one if none is given, in words, as ``force off by 20 % (pin->strip)``."""
+        name, size = of or self.largest
+        if size <= NONE:
+            return f"off by less than {100.0 * NONE:g} %"
+        return f"{name} off by {100.0 * size:.2g} %{self.at(name.replace(' ', '_'))}"
+
+    def rough(self) -> tuple[str, float]:
+        """Name and size of the largest difference that is interpolated."""
+        name = max(ROUGH, key=lambda name: _size(getattr(self, name)))
+        return name, float(getattr(self, name))
 
     def at(self, name: str) -> str:
         """Return where a difference is largest in brackets, as `` (pin->strip)``; nothing where there is nothing to compare."""
@@ -77,7 +110,7 @@ class Distance:
 
     def sizes(self) -> dict[str, float]:
         """Return the differences by name."""
-        return {name: getattr(self, name) for name in (*COMPARED, "place")}
+        return {name: getattr(self, name) for name in (*COMPARED, *ROUGH, "place")}
 
 
 def _size(value: float) -> float:
@@ -86,41 +119,131 @@ def _size(value: float) -> float:
 
 
 def distance(
-    scene: Scene, answer: AnswerState, exact: Equilibrium, largest: tuple[float, float] = (0.0, 0.0)
+    scene: Scene, answer: AnswerState, exact: Equilibrium, largest: Scales = (0.0, 0.0, 0.0)
 ) -> Distance:
     """Return the differences between an answer and the exact equilibrium.
 
-    Forces and moments are relative to the largest at this load parameter, or to `largest` if that is larger.
+    Forces, moments and displacements are relative to the largest at this load parameter, or to `largest` if that is larger.
     """
-    size, moment = map(max, scales(scene, exact), largest)
-    found: dict[str, dict[str, float]] = {name: {} for name in COMPARED}
+    axes = {beam.name: exact.shape(beam.name, answer.axes[beam.name][0]).position for beam in scene.beams}
+    ways = [axes[beam.name] - _undeformed(beam, answer.axes[beam.name][0]) for beam in scene.beams]
+    scales = (*_forces(scene, exact), max(float(np.hypot(*way.T).max()) for way in ways))
+    size, moment, moved = map(max, scales, largest)
+    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH)}
     largest_contact = max(
         [LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
     )
     last = LAST_PLACES * max(beam.EA for beam in scene.beams)
     length = max(beam.length for beam in scene.beams)
-    for pair, contact in exact.contacts.items():
-        touched = next(item.beam for item in scene.contacts if item.pair == pair)
-        off = float(np.hypot(*(contact.force - answer.forces[pair])))
-        found["force"][pair] = _beyond(off, largest_contact, last)
-        apart = abs(contact.arc_position - answer.arcs[pair])
-        found["arc_position"][pair] = apart / scene.beam(touched).length
+    for spec in scene.contacts:
+        pair, own = spec.pair, scene.beam(spec.beam).length
+        contact = exact.contacts.get(pair)
+        if contact is not None:
+            off = float(np.hypot(*(contact.force - answer.forces[pair])))
+            found["force"][pair] = _beyond(off, largest_contact, last)
+            found["arc_position"][pair] = abs(contact.arc_position - answer.arcs[pair]) / own
+        if pair in answer.gaps:
+            found["gap"][pair] = gap_off(scene, exact, spec, answer.gaps[pair]) / own
     found["reaction"] = dict.fromkeys(answer.reactions.keys() - exact.reactions.keys(), math.inf)
-    for end, held in exact.reactions.items():
-        x, y, turn = held - np.array(answer.reactions.get(end, (math.nan,) * 3))
+    held = [(end, total, answer.reactions.get(end)) for end, total in exact.reactions.items()]
+    for end, total, stated in (*held, *_springs(scene, answer, exact)):
+        x, y, turn = total - np.array(stated or (math.nan,) * 3)
         found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
         found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last * length)
+    places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
+    soft = max(beam.length**3 / beam.EI for beam in scene.beams)
+    floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + min(last, UNRESOLVED * size) * soft
+    apart: dict[str, float] = {}
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
-        off = float(np.hypot(*(there - answer.tips.get(beam.name, (math.inf,) * 2))))
-        found["tip"][beam.name] = off / beam.length
-        arcs, line = answer.axes[beam.name]
-        between = exact.shape(beam.name, arcs).position - line
-        found["shape"][beam.name] = float(np.hypot(*between.T).max()) / beam.length
+        tip = float(np.hypot(*(there - answer.tips.get(beam.name, (math.inf,) * 2))))
+        axis = float(np.hypot(*(axes[beam.name] - answer.axes[beam.name][1]).T).max())
+        found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
+        apart[beam.name] = max(_size(tip), _size(axis))
+        for name, off in _section_differences(scene, answer, exact, beam):
+            found["sections"][f"{name} of {beam.name}"] = _beyond(
+                off, moment if name == "M" else size, last * (length if name == "M" else 1.0)
+            )
     found["place"] = _misplaced(scene, answer)
+    touched = {spec.pair: spec.beam for spec in scene.contacts}
+    off_by = {
+        name: off * scene.beam(touched.get(name, name.split(".")[0])).length
+        for name, off in found["place"].items()
+    }
+    for relative, lengths in (("displacement", apart), ("constraint", off_by)):
+        found[relative] = {
+            name: 0.0 if off <= floor else _size(off / moved) if moved else math.inf
+            for name, off in lengths.items()
+        }
     where = {name: max(sizes, key=lambda key: _size(sizes[key])) for name, sizes in found.items() if sizes}
     sizes = {name: _size(found[name][where[name]]) if name in where else 0.0 for name in found}
-    return Distance(**sizes, where=where)
+    return Distance(**sizes, where=where, scales=scales)
+
+
+def _springs(
+    scene: Scene, answer: AnswerState, exact: Equilibrium
+) -> Iterator[tuple[str, Array, tuple[float, float, float]]]:
+    """Yield names of the springs that the answer states, and their exact and stated forces and moments."""
+    for spring in scene.springs:
+        if spring.node in answer.springs:
+            moved = exact.ends[spring.node] - np.array(scene.place(spring.node))
+            turn = spring.rotation * exact.joint_rotation(spring.node)
+            total = -np.append(np.array(spring.stiffness) * moved, turn)
+            yield f"the spring at {spring.node}", total, answer.springs[spring.node]
+
+
+def gap_off(scene: Scene, exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
+    """Difference of a stated gap from the exact one; an open pair may be stated at any foot of its node, or at none."""
+    if spec.pair in exact.contacts:
+        return _size(abs(gap))
+    arcs = np.linspace(0.0, scene.beam(spec.beam).length, _POINTS)
+    there = exact.shape(spec.beam, arcs)
+    node = (
+        exact.ends[spec.node]
+        if "." in spec.node
+        else np.array(scene.pin(spec.node).position(exact.load_parameter))
+    )
+    away = node - there.position
+    ahead = np.einsum("mi,mi->m", away, there.tangent)
+    feet = np.flatnonzero((ahead[:-1] >= 0.0) & (ahead[1:] <= 0.0))
+    across = (there.tangent[:, 0] * away[:, 1] - there.tangent[:, 1] * away[:, 0]) / np.hypot(
+        *there.tangent.T
+    )
+    true = (
+        (across if spec.side == "left" else -across)
+        - touching_distance(scene, spec, 0.0)
+        - face_slope(scene, spec) * arcs
+    )
+    return float(np.min(np.abs(gap - true[feet]), initial=math.inf)) if len(feet) else 0.0
+
+
+def _section_differences(
+    scene: Scene, answer: AnswerState, exact: Equilibrium, beam: BeamSpec
+) -> Iterator[tuple[str, float]]:
+    """Yield the largest differences of the section forces that the answer states, in the middles between its stations.
+
+    Elements with one direction for all of N and V state them to second order there alone. Stations on either side of a jump, and of
+    a solid those where the field is local, are left out.
+    """
+    if beam.name not in answer.sections:
+        return
+    arc, *stated = answer.sections[beam.name]
+    near = answer.local * beam.rectangle_height + SHORTEST * beam.length
+    loads = [load for load in dead_loads(scene, answer.load_parameter) if load.beam == beam.name]
+    jumps = [(load.first * beam.length,) * 2 for load in loads if load.first == load.last and not load.node]
+    jumps += [
+        (exact.contacts[spec.pair].arc_position, answer.arcs[spec.pair])
+        for spec in scene.contacts
+        if spec.beam == beam.name and spec.pair in exact.contacts
+    ]
+    jumps += [(0.0, 0.0), (beam.length, beam.length)] if answer.local else []
+    kept = np.diff(arc) > SHORTEST * beam.length
+    for jump in jumps:
+        kept &= (arc[1:] < min(jump) - near) | (arc[:-1] > max(jump) + near)
+    true = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
+    for name, values, exactly in zip("NVM", stated, (true.N, true.Q, true.moment), strict=True):
+        off = np.abs(((values[1:] + values[:-1]) / 2.0)[kept] - exactly)
+        yield name, float(np.max(np.nan_to_num(off, nan=np.inf), initial=0.0))
 
 
 def _beyond(off: float, size: float, last: float) -> float:
@@ -138,7 +261,7 @@ def least_force(scene: Scene) -> float:
     return min(map(bending_force, scene.beams))
 
 
-def scales(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
+def _forces(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
     t = exact.load_parameter
     acting = list(dead_loads(scene, t))
@@ -151,6 +274,13 @@ def scales(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     size = max(LEAST * least_force(scene), *forces, *(value / length for value in moments), 0.0)
     considerable = max(moments, default=0.0) > 1e-3 * size * length
     return size, max(size * length * LEAST, *moments) if considerable else size * length
+
+
+def _undeformed(beam: BeamSpec, arcs: Array) -> Array:
+    """Undeformed positions of points of a beam's axis."""
+    if beam.turn:
+        return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
+    return np.asarray(np.array(beam.start) + np.outer(arcs, beam.direction))
 
 
 def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:

@@ -7,19 +7,25 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.referee.admissible import inadmissible
-from comparisons.referee.balance import unbalanced
 from comparisons.referee.certificate import Judgement, Verdict
-from comparisons.referee.distance import Distance, bending_force, distance
-from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.distance import Distance, Scales, bending_force, distance
+from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.history import History, UnknownFrictionError
+from comparisons.referee.march import closed_pairs, reach
 from comparisons.referee.rubbing import rubs_wrongly, unlawful, wanders
 from comparisons.referee.start import PULL, AnswerState, answer_state, idle_at_an_end
-from comparisons.referee.state import Equilibrium, equilibrium
+from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 PLACE = 1e-3
 """Largest violation of constraints by an answer's axis, over the length; a larger one means another load parameter."""
+ROUGH = 5e-2
+"""Least allowance of a difference that is interpolated."""
+CLOSE = 1e-3
+"""Largest difference of an answer from an equilibrium that was not sought from the answer itself, so that it is the nearest one."""
+LOCAL = 1.5
+"""Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
 
@@ -32,7 +38,8 @@ def judged(
     *,
     history: History | None = None,
     exact: Equilibrium | None = None,
-    largest: tuple[float, float] = (0.0, 0.0),
+    near: Solution | None = None,
+    largest: Scales = (0.0, 0.0, 0.0),
 ) -> Judgement:
     """Judge one load parameter.
 
@@ -44,8 +51,10 @@ def judged(
         The states of friction in the answer; None for a scene without friction.
     exact : Equilibrium, optional
         The exact equilibrium near the answer, if it is known.
-    largest : (float, float)
-        Largest force and moment of other load parameters; differences are relative to these where they are larger.
+    near : Solution, optional
+        An exact equilibrium at the load parameter before, from which the one here is sought first.
+    largest : (float, float, float)
+        Largest force, moment and displacement of other load parameters; differences are relative to these where they are larger.
     """
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
@@ -61,14 +70,13 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact = exact or equilibrium(scene, answer)
-    if exact.status is not SearchStatus.FOUND:
+    exact, differences = _nearest(response, scene, answer, k, exact or near, min(allowed, CLOSE), largest)
+    if differences is None:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
         return Judgement(load_parameter=t, verdict=verdict, reason=exact.message)
-    answer = _with_vectors(answer, response, exact, k)
-    differences = distance(scene, answer, exact, largest)
-    verdict, reason = _verdict(response, scene, answer, exact, differences, allowed)
+    index = -1 if response.index is None else int(response.index[k])
+    verdict, reason = _verdict(scene, index, exact, differences, allowed)
     if verdict is Verdict.CERTIFIED and history is not None:
         violation = next(rubs_wrongly(history, k, exact, allowed), "")
         verdict, reason = (Verdict.INADMISSIBLE, violation) if violation else (verdict, reason)
@@ -84,28 +92,23 @@ def judged(
 
 
 def _verdict(
-    response: Response,
-    scene: Scene,
-    answer: AnswerState,
-    exact: Equilibrium,
-    differences: Distance,
-    allowed: float,
+    scene: Scene, stated: int, exact: Equilibrium, differences: Distance, allowed: float
 ) -> tuple[Verdict, str]:
-    """Return the verdict on an answer near an exact equilibrium, and its reason."""
+    """Return the verdict on an answer near an exact equilibrium, and its reason; `stated` is the answer's index, -1 without one."""
     if not differences.place <= PLACE:
         words = f"supports and contacts are off by {differences.place:.2g} L{differences.at('place')}"
         return Verdict.NOT_AN_EQUILIBRIUM, words
-    if not differences.largest[1] <= allowed:
-        return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line()}, allowed {allowed:.2g}"
-    imbalance = "" if response.continuum or response.outside else unbalanced(scene, answer, exact)
-    if imbalance:
-        return Verdict.NOT_AN_EQUILIBRIUM, imbalance
+    for item, limit in ((differences.largest, allowed), (differences.rough(), max(allowed, ROUGH))):
+        if not item[1] <= limit:
+            return Verdict.NOT_AN_EQUILIBRIUM, f"{differences.line(item)}, allowed {100.0 * limit:.3g} %"
     violation = next(inadmissible(scene, exact), "")
     if violation:
         return Verdict.INADMISSIBLE, violation
     if exact.index > 0:
         ways = "one direction lowers" if exact.index == 1 else f"{exact.index} directions lower"
         return Verdict.UNSTABLE, f"index {exact.index}: {ways} the energy"
+    if stated not in (-1, exact.index) and exact.index >= 0:
+        return Verdict.NOT_AN_EQUILIBRIUM, f"index {stated} is stated, the equilibrium has {exact.index}"
     return Verdict.CERTIFIED, differences.line()
 
 
@@ -147,8 +150,38 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
             yield f"the force of {spec.pair} and its components differ"
 
 
-def _with_vectors(answer: AnswerState, response: Response, exact: Equilibrium, k: int) -> AnswerState:
-    """Complete contact forces without direction by the exact direction, and tangential forces that are not stated."""
+def _nearest(
+    response: Response,
+    scene: Scene,
+    answer: AnswerState,
+    k: int,
+    given: Equilibrium | Solution | None,
+    close: float,
+    largest: Scales,
+) -> tuple[Equilibrium, Distance | None]:
+    """Return the equilibrium nearest to an answer, and the differences; None without an equilibrium.
+
+    It is the given one, or follows from the given solution at another load parameter if it is `close` to the answer, which has no
+    friction then, or is sought from the answer.
+    """
+    exact = given if isinstance(given, Equilibrium) else None
+    if isinstance(given, Solution) and closed_pairs(given).keys() == answer.arcs.keys() and not answer.grips:
+        found = reach(scene, given, answer.load_parameter, {}, halvings=0)
+        if found.status is SearchStatus.FOUND:
+            there = described(scene, found)
+            differences = distance(scene, _complete(answer, response, scene, there, k), there, largest)
+            if max(differences.largest[1], differences.place) <= close:
+                return there, differences
+    exact = exact or equilibrium(scene, answer)
+    if exact.status is not SearchStatus.FOUND:
+        return exact, None
+    return exact, distance(scene, _complete(answer, response, scene, exact, k), exact, largest)
+
+
+def _complete(
+    answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
+) -> AnswerState:
+    """Add all that the answer states, contact forces without direction by the exact direction, and tangential forces not stated."""
     forces, drags = dict(answer.forces), dict(answer.drags)
     for pair, force in answer.forces.items():
         if pair not in exact.contacts:
@@ -161,4 +194,21 @@ def _with_vectors(answer: AnswerState, response: Response, exact: Equilibrium, k
             size = float(response.contacts[pair].force[k])
             forces[pair] = (size * float(x), size * float(y))
         drags.setdefault(pair, exact.contacts[pair].drag)
-    return replace(answer, forces=forces, drags=drags)
+    gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
+    sections = (
+        {}
+        if response.sections is None
+        else {beam.name: response.sections(beam.name, k) for beam in scene.beams}
+    )
+    return replace(
+        answer,
+        forces=forces,
+        drags=drags,
+        gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
+        springs={
+            end: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
+            for end, item in response.springs.items()
+        },
+        sections={name: (at.arc, at.N, at.V, at.M) for name, at in sections.items()},
+        local=LOCAL if response.continuum else 0.0,
+    )

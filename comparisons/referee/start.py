@@ -46,6 +46,14 @@ class AnswerState:
         How friction holds the closed pairs; pairs without a grip have no friction.
     drags : dict of float
         Tangential force of the closed pairs whose friction the answer states.
+    gaps : dict of float
+        Gap of the pairs for which one is stated.
+    springs : dict of (float, float, float)
+        Force and moment of the springs that the answer states, by the end that they hold.
+    sections : dict of (ndarray, ndarray, ndarray, ndarray)
+        Arc lengths and section forces N, V, M of every beam for which they are stated.
+    local : float
+        Distance from contacts, loads and ends, over the height, within which the section forces of a solid are local.
     """
 
     load_parameter: float
@@ -56,6 +64,10 @@ class AnswerState:
     tips: dict[str, tuple[float, float]]
     grips: dict[str, Grip] = field(default_factory=dict)
     drags: dict[str, float] = field(default_factory=dict)
+    gaps: dict[str, float] = field(default_factory=dict)
+    springs: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
+    local: float = 0.0
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:

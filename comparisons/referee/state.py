@@ -152,13 +152,19 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
             iterations=solution.iterations,
             solution=solution,
         )
+    return described(scene, solution)
+
+
+def described(scene: Scene, solution: Solution) -> Equilibrium:
+    """Return an equilibrium that was found, in the units of the scene."""
+    assert solution.system is not None, "an equilibrium has its equations"
     layout = solution.layout
     contacts = {touch.spec.pair: touching(solution, touch) for touch in layout.touches}
     origin = np.array(scene.beams[0].start)
     return Equilibrium(
         status=solution.status,
         message=solution.status.value,
-        load_parameter=answer.load_parameter,
+        load_parameter=layout.load_parameter,
         contacts=contacts,
         reactions=_reactions(solution, contacts),
         ends={

@@ -111,7 +111,7 @@ def restated(data: Any) -> Response:
         status=_text(data, "status"),
         message=one_line(data.get("message", "read back")),
         completed=data["status"] == "COMPLETED",
-        reported_success=data.get("reported_success") is True,
+        reported_success=data.get("reported_success", data["status"] == "COMPLETED") is True,
         continuum=data.get("continuum") is True,
         outside=data.get("outside") is True,
         load_parameter=load_parameter,

@@ -92,7 +92,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         response,
         outside=True,
         load_parameter=np.array(scene.times[: len(response.load_parameter)]),
-        contacts={pair: _penetrating(item) for pair, item in response.contacts.items()},
+        contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
         grid=lambda k: axis_grid(scene, axes, k),
     )
 
@@ -190,8 +190,9 @@ def _ends(axis: Any, end: int) -> Any:
         return None
 
 
-def _penetrating(contact: ContactHistory) -> ContactHistory:
+def penetrating(contact: ContactHistory) -> ContactHistory:
     """Return a contact whose negative gaps are the penetration of a penalty."""
-    deep = (contact.force > 0.0) & (contact.gap < 0.0)
-    per_force = np.divide(-contact.gap, contact.force, out=np.zeros_like(contact.force), where=deep)
+    pressing = contact.force if contact.friction is None else contact.friction.normal
+    deep = (contact.force > 0.0) & (contact.gap < 0.0) & (pressing > 0.0)
+    per_force = np.divide(-contact.gap, pressing, out=np.zeros_like(contact.force), where=deep)
     return replace(contact, compliance=per_force)

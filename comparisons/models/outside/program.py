@@ -31,6 +31,7 @@ class Program(Model):
     def __init__(self, source: Source) -> None:
         self.source = source
         self.name, self.label = source.name, source.label or source.name
+        self.continuum = source.continuum
         self.options = ("elements",) if source.elements else ()
 
     @property

@@ -19,7 +19,8 @@ def read_program(path: Path) -> Program:
 
     The keys are ``name`` and ``command`` (a list of the program and its arguments), and, if wanted, ``label``, ``seconds`` (limit on
     time, 600), ``memory`` (limit in MB, 4000), ``environment`` (a list of further variables that it gets), ``elements`` (a list of numbers of
-    elements), ``colour``. The program runs in the folder of the file.
+    elements), ``colour``, ``continuum`` (whether it computes a two-dimensional body). The program runs in
+    the folder of the file.
 
     Raises
     ------
@@ -46,6 +47,7 @@ def read_program(path: Path) -> Program:
             ),
             elements=given.get("elements", ()),
             colour=given.get("colour", COLOUR),
+            continuum=given.get("continuum", False),
         )
     )
 
@@ -80,5 +82,6 @@ RULES: dict[str, Rule] = {
     "environment": _texts,
     "elements": _counts,
     "colour": _colour,
+    "continuum": rules.truth,
 }
 """The keys of a program file with the rules of their values."""

@@ -22,6 +22,8 @@ GROUP = "crossval.models"
 """Group of the entry points by which other packages offer their models."""
 SUFFIX = ".toml"
 """Suffix of a program file."""
+SOLIDS = ("calculix", "felupe")
+"""The adapters of programs that compute two-dimensional bodies."""
 ROOT = Path(__file__).parents[3]
 """Folder of this package, from which the adapters are imported."""
 
@@ -34,6 +36,7 @@ def _adapter(name: str, label: str, colour: str, requires: str, needs: str) -> P
         Command(
             name=name, label=label, command=(sys.executable, "-c", run), folder=Path.cwd(),
             elements=(10, 20, 40, 80), colour=colour, requires=requires, needs=needs, module=module,
+            continuum=name in SOLIDS,
         )
     )  # fmt: skip
 

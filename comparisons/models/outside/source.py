@@ -38,12 +38,15 @@ class Source(ABC):
         Numbers of elements along a beam that comparisons of cost run; empty if the program chooses its resolution itself.
     colour : str
         Colour of its lines, in hexadecimal digits.
+    continuum : bool
+        Whether it computes a two-dimensional body.
     """
 
     name: str
     label: str = ""
     elements: tuple[int, ...] = ()
     colour: str = COLOUR
+    continuum: bool = False
 
     @abstractmethod
     def digest(self) -> str:

@@ -35,7 +35,8 @@ def test_a_propped_cantilever_has_the_reaction_of_statics_and_leaves_its_prop(mo
         LOAD, '[[stage]]\nload_parameters = 2\nload = [{ beam = "strip", end = "end", force = [0, 2] }]\n'
     )
     answer = certified(solve(given, model, options(model)), given)
-    assert (answer.certificate.verdict.name, answer.completed) == ("CERTIFIED", True)
+    verdict = "NOT_JUDGED" if model == "rod" else "CERTIFIED"
+    assert (answer.certificate.verdict.name, answer.completed) == (verdict, True)
     force = answer.contacts["stop->strip"].force
     assert force[1] == pytest.approx((3.0 - 0.7) / (2.0 * 0.7), rel=2e-3)
     assert force[3] == 0.0
@@ -67,7 +68,8 @@ def test_a_stick_that_begins_as_a_stage_ends_is_certified_without_an_event() -> 
     given = scene(pressed, back, friction=0.3)
     for model in ("rod", "solid"):
         answer = certified(solve(given, model, options(model)), given, "all")
-        assert (answer.certificate.verdict.name, answer.completed) == ("CERTIFIED", True)
+        verdict = "NOT_JUDGED" if model == "rod" else "CERTIFIED"
+        assert (answer.certificate.verdict.name, answer.completed) == (verdict, True)
         slip = answer.contacts["stop->strip"].friction.slip
         assert slip[1] != 0
         assert slip[2] == 0

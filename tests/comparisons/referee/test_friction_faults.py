@@ -163,9 +163,9 @@ def test_seeded_faults_are_refused(fault: str, every: bool) -> None:
     spoilt = spoil(answer(FAULTY))
     found = all_along(FAULTY, spoilt) if every else certify(spoilt, FAULTY)
     assert found.verdict is verdict, found.line()
-    assert any(reason in words for words in (found.reason, *(item.reason for item in found.judged))), (
-        found.line()
-    )
+    assert any(
+        reason in words for words in (found.reason, *found.path, *(item.reason for item in found.judged))
+    ), found.line()
 
 
 def test_a_slip_against_the_pin_is_refused() -> None:

@@ -116,7 +116,7 @@ UNLOADED = Scene(
 @pytest.mark.parametrize("element", ["mixed", "exact"])
 def test_round_off_of_an_unloaded_beam_is_no_error(element: str) -> None:
     response, found = judged(UNLOADED, element, 1e-6)
-    assert found.certified, found.line()
+    assert found.line().startswith("NOT_JUDGED: nothing to judge"), found.line()
     forged = response.supports["b.start"]
     forged = replace(forged, force=forged.force + np.array([0.0, 0.01]))
     refused = certify(replace(response, supports={"b.start": forged}), UNLOADED)

@@ -169,7 +169,7 @@ def failed(response: Response, scene: Scene) -> str:
 
 
 CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
-    "certify.ALLOWED": (1e-2, lambda x: refused(bulged(answer(KS), x, 0.1, 0.4), KS), "shape off"),
+    "certify.ALLOWED": (5e-2, lambda x: refused(bulged(answer(KS), x, 0.1, 0.4), KS), "shape off"),
     "judge.PLACE": (
         1e-3,
         lambda x: refused(bulged(answer(KS), x, -0.1, 0.1), KS),
@@ -178,9 +178,9 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
     "judge.LAST_PLACES": (1e-9, lambda x: refused(grown(x), KS), "components differ"),
     "balance.BALANCE of forces": (1e-6, lambda x: refused(held(KS, force=x), KS), "balance"),
     "balance.BALANCE of moments": (1e-6, lambda x: refused(held(ARC, moment=x), ARC), "balance"),
-    "balance.PLACED": (
-        1e-2,
-        lambda x: refused(held(SPRUNG, moment=x / 4.0), SPRUNG),
+    "balance.BALANCE with a spring": (
+        1e-6,
+        lambda x: refused(held(SPRUNG, moment=x / 0.8), SPRUNG),
         "moments do not balance",
     ),
     "start.PULL": (1e-9, lambda x: refused(*on_the_arc(force=-x)), "pulls"),

@@ -241,14 +241,15 @@ def test_load_parameters_with_few_digits_are_those_of_the_scene(program: Make) -
 
 
 def test_the_material_force_of_a_rod_is_computed_and_of_a_solid_stated(program: Make) -> None:
-    """A program's own value of a rod does not count; a solid that states none has none."""
+    """A program's own value of a rod does not count; a solid that states none has none, and what it is its file says alone."""
     rods = solve(KS, program("answer['material_force'] = {'cantilever': contact['force']}"))
     assert np.abs(frictions(rods, KS)["cantilever"]).max() < 1e-11
     assert solve(KS, program()).material_force.keys() == {"cantilever"}
-    solid = "answer['continuum'] = True"
-    stated = solve(KS, program(f"{solid}; answer['material_force'] = {{'cantilever': contact['force']}}"))
-    assert frictions(stated, KS)["cantilever"] == pytest.approx(1.0)
-    assert solve(KS, program(solid)).material_force == {}
+    claimed = solve(KS, program("answer['continuum'] = True"))
+    assert (claimed.continuum, claimed.material_force.keys()) == (False, {"cantilever"})
+    stated = program("answer['material_force'] = {'cantilever': contact['force']}", continuum=True)
+    assert frictions(solve(KS, stated), KS)["cantilever"] == pytest.approx(1.0)
+    assert solve(KS, program(continuum=True)).material_force == {}
 
 
 def test_a_penetration_is_that_of_a_penalty(program: Make) -> None:
