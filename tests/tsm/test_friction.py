@@ -358,3 +358,11 @@ def test_a_load_along_a_beam_works_too() -> None:
     result = tsm.solve(replace(structure, line_loads=(load,)), np.ones(1))
     assert result.contacts[PAIR].friction.dissipated[-1] > 0.05 * result.work[-1]
     assert balance(result) <= 1e-10
+
+
+def test_a_slip_of_a_very_stiff_beam_ends_once() -> None:
+    """The round-off of a slip rate, times the stiffness, is a force that leaves the cone: the stick is no slip for a moment."""
+    section = tsm.Section(EA=1e11, GA=1e11, EI=1.0)
+    result = replace(ks(0.2, section), path=((1.0, 0.0), (0.36, 0.64 * LAST[1]))).solve(1, "mixed", 3)
+    assert result.status is tsm.Status.COMPLETED
+    assert [event.kind for event in result.events if event.kind in TURNS] == [EventKind.STICK]
