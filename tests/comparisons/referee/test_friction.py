@@ -77,10 +77,12 @@ def test_the_rod_of_quadrature_is_certified(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
 def test_the_solid_is_certified_all_along(name: str) -> None:
-    """It records no events, so that the referee finds slip and stick itself."""
+    """With its events, and without them, so that the referee finds slip and stick itself."""
     scene = rough(name, 0.3, 20)
     response = solve(scene, "solid", Options(mesh=(50, 2)))
-    assert response.events is None
+    assert [event.kind for event in response.events] == ["touch", "stick", "slip"]
+    assert all_along(scene, response).certified
+    response = replace(response, events=None)
     assert set(response.contacts[PAIR].friction.slip) == {-1, 0, 1}
     found = all_along(scene, response)
     assert found.certified, found.line()
