@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
@@ -11,14 +10,12 @@ import numpy as np
 from comparisons.referee.balance import BALANCE, balance_failures
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.distance import LEAST, least_force
-from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.events import misstated
-from comparisons.referee.follow import at_rest, departs
+from comparisons.referee.follow import departures
 from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
 from comparisons.referee.rubbing import rubs_wrongly_on_the_way
-from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.response.axis import SampledAxes
 from comparisons.response.material import material_forces
@@ -42,8 +39,8 @@ def certify(
         The scene that was solved.
     at : sequence of int, optional
         Indices of the load parameters to judge; negative ones count from the end. The default are the last one of every stage, the
-        ones next to events, and the one with the largest contact force. Between neighbours without an event the path is followed
-        too. The other load parameters are held against what needs no equilibrium: their balance, and the material force.
+        ones next to events, and the one with the largest contact force. The path is followed from the undeformed state to all of
+        them. The other load parameters are held against what needs no equilibrium: their balance, and the material force.
     allowance : float, optional
         Largest difference allowed; the default is `default_allowance`.
     """
@@ -73,7 +70,11 @@ def certify(
     verdict, reason = _worst(states, unsound, path)
     if verdict is Verdict.CERTIFIED:
         verdict, reason = _sound(response, scene, numbers, states)
-    gone = next(_departures(response, scene, states, numbers), "") if verdict is Verdict.CERTIFIED else ""
+    gone = (
+        next(departures(response, scene, numbers, [item.exact for item in states]), "")
+        if verdict is Verdict.CERTIFIED
+        else ""
+    )
     if gone:
         verdict, reason = Verdict.UNSTABLE, gone
     if history is not None and history.taken:
@@ -249,49 +250,3 @@ def _path(
         dropped = np.logical_or.accumulate(closed) & ~closed
         if spec.keep and dropped.any():
             yield f"{spec.pair} must persist and is open at load parameter {response.load_parameter[np.argmax(dropped)]:.6g}"
-
-
-def _event_times(response: Response) -> list[float]:
-    """Load parameters at which contacts open or close."""
-    return [event.load_parameter for event in response.events or () if event.kind != "pass-through"]
-
-
-def _intervals(
-    response: Response, states: Sequence[Judgement], numbers: Sequence[int]
-) -> Iterator[tuple[Equilibrium, Equilibrium]]:
-    """Yield neighbouring equilibria with the same contacts in the same order along the beams and without an event between them.
-
-    The path is not followed where two contacts pass each other, since the part between them has no length.
-    """
-    times = _event_times(response)
-    for (j, a), (k, b) in pairwise(zip(numbers, states, strict=True)):
-        first, last = a.exact, b.exact
-        if first is None or last is None or k != j + 1 or first.contacts.keys() != last.contacts.keys():
-            continue
-        held = _slips(first) == _slips(last) and _order(first) == _order(last)
-        if held and not any(first.load_parameter <= t <= last.load_parameter for t in times):
-            yield first, last
-
-
-def _slips(exact: Equilibrium) -> dict[str, int]:
-    """Signs of the slip rates of the contacts with friction, 0 in stick."""
-    return {pair: grip.slip for pair, grip in exact.solution.layout.grips.items()}
-
-
-def _order(exact: Equilibrium) -> list[tuple[int, ...]]:
-    """Order of the contacts along the beams, as the stations of the parts."""
-    return [(part.beam, part.first, part.last) for part in exact.solution.layout.parts]
-
-
-def _departures(
-    response: Response, scene: Scene, states: Sequence[Judgement], numbers: Sequence[int]
-) -> Iterator[str]:
-    """Yield reasons why an answer is not on the branch from the undeformed state, or changes its branch between neighbours."""
-    start = states[0].exact
-    smooth = not any(t <= states[0].load_parameter for t in _event_times(response))
-    if numbers[0] == 0 and smooth and start is not None and not start.contacts:
-        rest = at_rest(scene)
-        if rest.status is SearchStatus.FOUND:
-            yield from filter(None, [departs(scene, rest, start.solution)])
-    for first, last in _intervals(response, states, numbers):
-        yield from filter(None, [departs(scene, first.solution, last.solution)])

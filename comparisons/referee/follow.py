@@ -1,20 +1,31 @@
 """Whether two equilibria are on one branch: the path is followed between them in steps too short to jump to another branch."""
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import AMPLITUDE, DEGREE
-from comparisons.referee.elements import mesh_for, mesh_of
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct
+from comparisons.referee.basis import DEGREE, shapes
+from comparisons.referee.elements import Mesh, mesh_for, mesh_of, rotations
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
 from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.march import closed_pairs, tangent
+from comparisons.referee.march import closed_pairs, corners, tangent
 from comparisons.referee.stability import index_of
+from comparisons.referee.start import AnswerState
+from comparisons.referee.state import Equilibrium, described
+from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+_Rate = tuple[Array, Array]
 
 _NEAR = 0.2
 """Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
+_SHORT = 0.1
+"""Largest correction of a tangent prediction [rad, L] at which the step is accepted."""
+_AIM = 0.1
+"""Correction over the change for which the next step is chosen; it grows with the step."""
 _ROUND_OFF = 1e-9
 """Changes of rotations [rad] and lengths below this are round-off."""
 _LITTLE = 1e-7
@@ -25,6 +36,106 @@ _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _SAME = 1e-6
 """Largest difference between the end of the followed path and the second equilibrium."""
+_MEET, _MEETING = 1e-4, 0.02
+"""Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there."""
+_PLACES = np.linspace(0.0, 1.0, 33)
+"""Fractions of a part at which rotations are compared."""
+
+
+_SWITCHED = ("touch", "release")
+"""Kinds of events without a jump at which a contact closes or opens."""
+_POINTS = 201
+"""Points of an axis from which an equilibrium with other contacts is sought."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Way:
+    """The end of a followed path, and why it does not lead on."""
+
+    end: Solution
+    stopped: bool = False
+
+    @property
+    def t(self) -> float:
+        return self.end.layout.load_parameter
+
+
+def departures(
+    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Equilibrium | None]
+) -> Iterator[str]:
+    """Yield reasons why the equilibria at the load parameters `numbers` of an answer are not on the path from the undeformed state.
+
+    The path is followed to every equilibrium from the one before, the first one from rest, with the contacts that the events close and
+    open in between. It is not followed where a contact slips off, where friction changes its direction, or where two contacts pass
+    each other on a beam.
+    """
+    closed = [
+        {pair for pair, item in response.contacts.items() if item.force[k] != 0.0}
+        for k in range(len(response.load_parameter))
+    ]
+    now, begin = at_rest(scene), -1
+    for k, there in zip(numbers, states, strict=True):
+        if there is None:
+            continue
+        if now.status is SearchStatus.FOUND:
+            events = _between(response, now.layout.load_parameter, there.load_parameter)
+            same = all(closed[i] == closed_pairs(now).keys() for i in range(max(begin, 0), k + 1))
+            way = now if same and not events else _switched_on_the_way(scene, now, events)
+            if way is not None and _alike(way, there.solution):
+                yield from filter(None, [departs(scene, way, there.solution)])
+        now, begin = there.solution, k
+
+
+def _between(response: Response, after: float, until: float) -> list[ContactEvent]:
+    """Events at which contacts open, close, stick or slip."""
+    events = [event for event in response.events or () if event.kind != "pass-through"]
+    return [event for event in events if after <= event.load_parameter <= until]
+
+
+def _switched_on_the_way(scene: Scene, now: Solution, events: Sequence[ContactEvent]) -> Solution | None:
+    """Follow the path through events and return the equilibrium after the last; None where one jumps, or there is none."""
+    if not events or now.layout.rubs:
+        return None
+    for event in events:
+        way = _followed(scene, now, event.load_parameter)
+        if event.kind not in _SWITCHED or way.stopped:
+            return None
+        now = _switched(scene, way.end, event)
+        if now.status is not SearchStatus.FOUND:
+            return None
+    return now
+
+
+def _switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
+    """Return the equilibrium with the contact of an event closed or open."""
+    exact, arcs = described(scene, now), closed_pairs(now)
+    arcs.pop(event.pair, None)
+    if event.kind == "touch":
+        arcs[event.pair] = event.arc_position
+    lines = {beam.name: np.linspace(0.0, beam.length, _POINTS) for beam in scene.beams}
+    forces = {pair: (float(item.force[0]), float(item.force[1])) for pair, item in exact.contacts.items()}
+    answer = AnswerState(
+        load_parameter=exact.load_parameter,
+        arcs=arcs,
+        forces={pair: forces.get(pair, (0.0, 0.0)) for pair in arcs},
+        axes={name: (arc, exact.shape(name, arc).position) for name, arc in lines.items()},
+        reactions={end: (float(x), float(y), float(m)) for end, (x, y, m) in exact.reactions.items()},
+        tips={},
+    )
+    return solve(scene, answer)
+
+
+def _alike(one: Solution, other: Solution) -> bool:
+    """Whether two equilibria have the same contacts in the same order along the beams, which slip in the same direction or stick."""
+    slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
+    orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
+    found = one.status is SearchStatus.FOUND
+    return (
+        found
+        and closed_pairs(one).keys() == closed_pairs(other).keys()
+        and slips[0] == slips[1]
+        and orders[0] == orders[1]
+    )
 
 
 def at_rest(scene: Scene) -> Solution:
@@ -37,69 +148,99 @@ def at_rest(scene: Scene) -> Solution:
 def departs(scene: Scene, first: Solution, last: Solution) -> str:
     """Return the reason why the path from `first` does not lead to `last` with the same contacts; empty if it does.
 
-    A step is a prediction along the tangent. It is accepted if Newton's correction is small compared with the step and the index
-    is unchanged.
+    Where the path ends at a bifurcation, all stable branches that lead back to it are right.
     """
-    closed, grips = closed_pairs(first), first.layout.grips
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    now, step, index = first, (end - start) / 4.0, index_of(first)
-    ahead = _tangent(scene, now, end)
-    while now.layout.load_parameter < end:
-        here = now.layout.load_parameter
-        t = here + step if here + step < end - _ROUND_OFF * (end - start) else end
-        z, bubbles = now.z + (t - here) * ahead[0], now.bubbles + (t - here) * ahead[1]
+    way = _followed(scene, first, end, last)
+    if not way.stopped:
+        off = _apart(_state(way.end), _state(last))
+        return (
+            ""
+            if off < _SAME
+            else f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+        )
+    back = _followed(scene, last, start)
+    apart = abs(back.t - way.t) if back.stopped else np.inf
+    if apart < _MEET * (end - start) and _apart(_state(way.end), _state(back.end)) < _MEETING:
+        return ""
+    index = index_of(first)
+    kind = "" if index < 0 else f" of index {index}"
+    return f"no continuous path{kind} leads on beyond load parameter {way.t:.6g}"
+
+
+def _followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> _Way:
+    """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
+
+    A step is accepted if the tangents at both its ends explain it, and the index is unchanged. Displacements and rotations along all
+    parts are compared, so that nothing depends on the elements.
+    """
+    closed, grips, index = closed_pairs(first), first.layout.grips, index_of(first)
+    start = first.layout.load_parameter
+    ways, sign = abs(end - start), 1.0 if end > start else -1.0
+    stops = sorted(sign * t for t in {*corners(scene), end} if 0.0 < sign * (t - start) <= ways)
+    now, step, rate = first, ways, None
+    while (here := now.layout.load_parameter) != end:
+        stop = sign * next(t for t in stops if t > sign * here)
+        left = abs(stop - here)
+        rate = rate or tangent(scene, now, sign * _LITTLE * left)
+        t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         layout = lay_out(scene, t, closed, grips)
-        corrected = correct(layout, mesh_for(layout, now.mesh), z, bubbles, _ITERATIONS)
-        if corrected.status is SearchStatus.FOUND and index_of(corrected) == index:
-            off = _apart(corrected, z, bubbles) / (_apart(corrected, now.z, now.bubbles) + _ROUND_OFF)
-            if off < _NEAR:
-                step *= 2.0 if off < _NEAR / 3.0 else 1.0
-                now, ahead = corrected, _tangent(scene, corrected, end)
-                continue
-        step /= 2.0
-        if step < _SMALLEST * max(here - start, _SMALLEST * (end - start)):
-            kind = "" if index < 0 else f" of index {index}"
-            return f"no continuous path{kind} leads on beyond load parameter {here:.6g}"
-    off = _difference(now, last)
-    return (
-        ""
-        if off < _SAME
-        else f"the path from load parameter {start:.6g} ends elsewhere at {end:.6g}, {off:.2g} L away"
-    )
+        mesh, z, bubbles = (
+            mesh_for(layout, now.mesh),
+            now.z + (t - here) * rate[0],
+            now.bubbles + (t - here) * rate[1],
+        )
+        there, off, behind = last or now, np.inf, None
+        if last and t == end:
+            off, behind = _unexplained(scene, now, rate, last, index)
+        if off >= _NEAR:
+            there = correct(layout, mesh, z, bubbles, _ITERATIONS)
+            off, behind = _unexplained(scene, now, rate, there, index)
+        step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
+        if off < _NEAR:
+            now, rate = there, None if t == stop else behind
+        elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
+            return _Way(end=now, stopped=True)
+    return _Way(end=now)
 
 
-def _tangent(scene: Scene, now: Solution, end: float) -> tuple[Array, Array]:
-    """Rates of the unknowns, by a difference over a small fraction of the remaining path."""
-    return tangent(scene, now, _LITTLE * (end - now.layout.load_parameter))
+def _unexplained(
+    scene: Scene, now: Solution, rate: _Rate, there: Solution, index: int
+) -> tuple[float, _Rate | None]:
+    """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
+    if there.status is not SearchStatus.FOUND or index_of(there) != index:
+        return np.inf, None
+    off = _off(now, rate, there)
+    if off >= _NEAR:
+        return off, None
+    behind = tangent(scene, there, _LITTLE * (now.layout.load_parameter - there.layout.load_parameter))
+    return max(off, _off(there, behind, now)), behind
 
 
-def _apart(corrected: Solution, z: Array, bubbles: Array) -> float:
-    """Largest correction of rotations and lengths."""
-    forces = [k for part in corrected.layout.parts for k in (part.force, part.force + 1)]
-    count = corrected.layout.unknowns
-    change = float(np.abs(np.delete(corrected.z[:count] - z[:count], forces)).max(initial=0.0))
-    if len(corrected.z) != len(z):
-        return change
-    return max(
-        change,
-        float(np.abs(corrected.z[count:] - z[count:]).max(initial=0.0)),
-        float((np.abs(corrected.bubbles - bubbles) * AMPLITUDE).max()),
-    )
+def _off(now: Solution, rate: _Rate, there: Solution) -> float:
+    """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
+    way = there.layout.load_parameter - now.layout.load_parameter
+    mesh = mesh_for(there.layout, now.mesh)
+    guess = _shape(there.layout, mesh, now.z + way * rate[0], now.bubbles + way * rate[1])
+    off = _apart(guess, _state(there))
+    return off / (_apart(_state(now), _state(there)) + _ROUND_OFF) if off < _SHORT else np.inf
 
 
-def _difference(one: Solution, other: Solution) -> float:
-    """Largest distance between the stations of two equilibria with the same contacts, and of the arc positions."""
-    stations: Layout = one.layout
-    apart = [
-        float(np.abs(stations.position(one.z, k) - other.layout.position(other.z, k)).max())
-        for k in range(len(stations.stations))
-    ]
-    turned = [
-        abs(stations.rotation(one.z, k) - other.layout.rotation(other.z, k))
-        for k in range(len(stations.stations))
-    ]
-    arcs = [
-        abs(float(one.z[a.arc] - other.z[b.arc]))
-        for a, b in zip(stations.touches, other.layout.touches, strict=True)
-    ]
-    return max([*apart, *turned, *arcs])
+def _apart(one: Array, other: Array) -> float:
+    return float(np.abs(one - other).max())
+
+
+def _state(solution: Solution) -> Array:
+    return _shape(solution.layout, solution.mesh, solution.z, solution.bubbles)
+
+
+def _shape(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
+    """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
+    forces = [k for part in layout.parts for k in (part.force, part.force + 1)]
+    coefficients, rows = rotations(mesh, z, bubbles), [np.delete(z[: layout.unknowns], forces)]
+    for k in range(len(layout.parts)):
+        elements = np.flatnonzero(mesh.part == k)
+        inside = elements[np.searchsorted(mesh.start[elements], _PLACES, side="right") - 1]
+        xi = 2.0 * (_PLACES - mesh.start[inside]) / mesh.share[inside] - 1.0
+        rows.append((shapes(xi)[0] * coefficients[inside]).sum(axis=1))
+    return np.concatenate(rows)
