@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,9 +19,13 @@ from tsm.friction import grips, traction
 from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.rods.shape import Stations
+from tsm.state import State
 from tsm.status import Status
 from tsm.step import Step
 from tsm.system import Assembler
+
+_AT_NODE = 1e-6
+"""Part of an element's length from a node within which a contact lies on it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,6 +241,17 @@ class Result:
         return out
 
 
+def _at_node(model: Model, state: State) -> Iterator[str]:
+    """Contacts on nodes of the paper's elements, which are rigid there, and what to try."""
+    for pair, touch in zip(model.pairs, state.touches, strict=True):
+        if touch is not None and pair.slot < 0 and min(touch.xi, 1 - touch.xi) < _AT_NODE:
+            beam = pair.target.beam
+            yield (
+                f'; {pair.pair.name}: the contact lies on a node, where elements "{beam.element}" are rigid: '
+                f"try {beam.elements + 1} elements"
+            )
+
+
 def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> Result:
     """Result of the accepted steps."""
     requested = [step for step in steps if step.requested]
@@ -249,6 +265,8 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         if status is Status.COMPLETED
         else f"; stopped at load parameter {stopped:.6g}, last reported {reached:.6g}"
     )
+    if status is Status.CUTBACK_FLOOR:
+        where += "".join(_at_node(model, steps[-1].equilibrium.state))
     return Result(
         status=status,
         message=status.value + where,

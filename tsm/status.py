@@ -13,12 +13,12 @@ class Status(Enum):
     ITERATION_LIMIT = "Newton's iteration did not converge within its limit"
     NOT_FINITE = "a residual or an update was not finite"
     SINGULAR_TANGENT = "the tangent is singular"
-    MECHANISM = "the structure is a mechanism: its hinges let it move without strain"
+    MECHANISM = "the structure is a mechanism: it can move without strain"
     CUTBACK_FLOOR = "the load step was cut back to its floor"
     STEP_LIMIT = (
         "the load steps stayed so short that the next load parameter was not reached within their limit"
     )
-    INACCURATE = "the integration inside an element does not reach its accuracy"
+    INACCURATE = "the integration inside an element does not reach its accuracy: more elements do"
     PING_PONG = "the contact went back and forth between two elements"
     TWO_CONTACTS = "two nodes touch one element whose matrix knows a single contact"
     LIMIT_POINT = "the load has a limit point: no equilibrium lies beyond it on this branch"

@@ -71,6 +71,8 @@ def test_a_stop_has_its_name_and_status_3(
     err = capsys.readouterr().err
     assert err.startswith(f"crossval: {name}: ")
     assert err.endswith(f"{reached} of 10 load parameters reached\n")
+    rigid = 'the contact lies on a node, where elements "timoshenko" are rigid: try '
+    assert (rigid in err) == (case == "pin on a node of the paper's elements")
 
 
 @pytest.mark.parametrize("path", [UP, BACK, OFF])
