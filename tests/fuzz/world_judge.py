@@ -15,6 +15,7 @@ from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.verify import penetration
 from comparisons.referee import Judgement, Verdict, certify
+from comparisons.referee.distance import ROUGH
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
 from tests.fuzz.judge import LIMIT, Hang, time_limit
@@ -167,7 +168,9 @@ def _off(scene: Scene, item: Judgement) -> float:
         ),
         default=0.0,
     )
-    left_out = {"place"} if size > NOTHING * least_force(scene) else {"place", "force", "reaction"}
+    # what is interpolated between stated points has an error of its own
+    left_out = {"place", "displacement", *ROUGH}
+    left_out |= set() if size > NOTHING * least_force(scene) else {"force", "reaction"}
     return max(value for name, value in item.distance.sizes().items() if name not in left_out)
 
 
