@@ -240,7 +240,7 @@ def test_the_path_to_the_other_side_of_a_column_is_not_followed() -> None:
     )
     same = bent(column, 2.0, {"cantilever": axes[1]})
     assert 0.02 < np.hypot(*(same.ends["cantilever.end"] - right.ends["cantilever.end"])) < 0.1
-    for last, words in ((same, ""), (right, "ends elsewhere")):
+    for last, words in ((same, ""), (right, "ends on another branch")):
         found = certify(forged.stated(column, [straight, left, last]), column, at=[1, 2])
         assert found.certified is not bool(words), found.line()
         assert words in found.line()
