@@ -80,8 +80,8 @@ def crowded(model: Model, state: State) -> bool:
     return len(set(owners)) < len(owners)
 
 
-def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Status | None:
-    """Status that ends the march where a contact may not open."""
+def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float, *, alone: bool) -> Status | None:
+    """Status that ends the march where a contact may not open; `alone` if no other contact takes over."""
     if kind is EventKind.LINE_CONTACT:
         return Status.LINE_CONTACT
     if kind is EventKind.SLIP_OFF:
@@ -89,7 +89,10 @@ def forbidden(model: Model, kind: EventKind, pair: PairModel, arc: float) -> Sta
         node = model.end_node(f"{pair.target.beam.name}.{end}")
         if any(3 * node + c in model.prescribed for c in range(3)):
             return Status.FOLDED
-        return Status.SLIPPED_OFF if pair.pair.keep else None
+        if pair.pair.keep:
+            return Status.SLIPPED_OFF
+        corner = alone and pair.pair.radius > 0 and (node, end == "end") in model.free_ends[pair.pair.beam]
+        return Status.END_CONTACT if corner else None
     return Status.LOST_CONTACT if pair.pair.keep else None
 
 

@@ -1,10 +1,16 @@
-"""Crossings: within one step, a node goes through a beam and on past the beam's end.
+"""Crossings: within one step, a node goes through a beam and on past the beam's end, or a round pin through an end and on.
 
-After such a step the node no longer projects onto the beam, so the gap at the end of the step does not show the missed contact.
+After such a step the node no longer projects onto the beam, or is clear of its end, so that the end of the step does not show the missed
+contact.
 """
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
+from tsm.ends import clearance
 from tsm.events import ROUND_OFF
 from tsm.model import Model
 from tsm.pairs import PairModel
@@ -15,6 +21,9 @@ from tsm.state import State
 
 _CROSSED = 1e-14
 """Tolerance of a crossing: its gap over the longest beam, and the width of the bracket of its load parameter."""
+
+_SAMPLES, _NARROWED = 33, 5
+"""States of a step at which a clearance is measured, and how often as many are measured about the least of them."""
 
 
 def crossing(model: Model, before: State, after: State) -> tuple[float, int] | None:
@@ -42,6 +51,35 @@ def crossing(model: Model, before: State, after: State) -> tuple[float, int] | N
             if t is not None:
                 crossings.append((t, k))
     return min(crossings, default=None)
+
+
+def through_end(model: Model, before: State, after: State) -> float | None:
+    """Load parameter at which a pin or node, clear of its beam's ends at two configurations, is deepest in an end between them."""
+    small, t0, t1 = ROUND_OFF * model.length, before.load_parameter, after.load_parameter
+    moved, dips = np.abs((after.q - before.q).reshape(-1, 3)[: len(model.coordinates), :2]).max(), []
+    for k, pair in enumerate(model.pairs):
+        if pair.pair.offset == 0 or before.touches[k] or after.touches[k]:
+            continue
+        nodes = [model.node_position(pair, state.q, state.load_parameter) for state in (before, after)]
+        way = 2.0 * math.dist(*nodes) + 3.0 * moved
+        if not -small <= clearance(model, after, k).distance <= way:
+            continue
+        over = before.armed[k] and _over(model, pair.group.project(pair, before))
+
+        def depth(t: float, k: int = k, over: bool = over) -> float:
+            here = clearance(model, extrapolate(model, [before, after], t), k)
+            return math.inf if over and not here.beyond else here.distance
+
+        low, high = t0, t1
+        for _ in range(_NARROWED):
+            step = (high - low) / (_SAMPLES - 1)
+            least, deepest = min((depth(low + n * step), low + n * step) for n in range(1, _SAMPLES - 1))
+            low, high = max(t0, deepest - step), min(t1, deepest + step)
+            if not -small <= least <= way * step / (t1 - t0):
+                break
+        if least < -small:
+            dips.append(deepest)
+    return min(dips, default=None)
 
 
 def _over(model: Model, seen: Projection) -> bool:

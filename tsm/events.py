@@ -7,6 +7,7 @@ slip-off      the position of a closed pair leaves the beam past an end
 pass-through  the owner of a closed pair changes from an element to its neighbour
 slip          the force of a pair that sticks reaches the edge of its cone ``|F_t| <= mu F_n``
 stick         the slip rate of a pair that slips falls to zero
+end-contact   a node or a round pin meets an end of its beam, or the side that its contact does not have
 line-contact  the curvature of the beam at a closed pair reaches the contact surface's
 limit-point   the load parameter is stationary along the path
 bifurcation   another branch crosses the path, which goes on unstable
@@ -26,6 +27,7 @@ from enum import Enum
 
 import numpy as np
 
+from tsm.ends import clearance
 from tsm.friction import cone, traction
 from tsm.line_contact import curvature
 from tsm.model import Model
@@ -56,6 +58,7 @@ class EventKind(Enum):
     SLIP = "slip"
     STICK = "stick"
     LINE_CONTACT = "line-contact"
+    END_CONTACT = "end-contact"
     LIMIT_POINT = "limit-point"
     BIFURCATION = "bifurcation"
 
@@ -199,6 +202,9 @@ def margins(
     state = equilibrium.state
     upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
+        if pair.pair.offset > 0:
+            room = clearance(model, state, k).distance / model.length
+            upcoming.append(Margin(kind=EventKind.END_CONTACT, pair=k, value=room))
         if touch is not None:
             arc = pair.arc_position(touch)
             inside = min(arc, pair.target.beam.length - arc) / model.length
@@ -226,8 +232,10 @@ def margins(
 
 
 def broken(before: list[Margin], after: list[Margin]) -> list[tuple[Margin, Margin]]:
-    """Pairs of margins, before and after, of the events whose margin became negative."""
-    return [(a, b) for a, b in zip(before, after, strict=True) if b.value < -ROUND_OFF]
+    """Pairs of margins, before and after, of the events whose margin became negative; a node over the beam touches its surface first."""
+    past = [(a, b) for a, b in zip(before, after, strict=True) if b.value < -ROUND_OFF]
+    over = {a.pair for a, _ in past if a.kind is EventKind.TOUCH and a.value < 1.0}
+    return [(a, b) for a, b in past if a.kind is not EventKind.END_CONTACT or a.pair not in over]
 
 
 def below(values: list[float], times: list[float]) -> float | None:

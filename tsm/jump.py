@@ -8,16 +8,12 @@ from tsm.contact_set import changed
 from tsm.events import ROUND_OFF, EventKind, normal_force
 from tsm.fall import Fall, descends, met
 from tsm.friction import grips
-from tsm.model import Model
 from tsm.newton import Equilibrium
 from tsm.state import State
 from tsm.status import Status
 from tsm.step import StepLog
 from tsm.step_control import StepControl
 from tsm.track import FAR
-
-_DEEP = 1e-3
-"""Depth of a rest inside a round pin, over the longest beam, that counts as one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +47,7 @@ class Jump:
         Returns
         -------
         Equilibrium or Status
-            FALLING if the structure finds no rest, or only one inside a round pin. LOST_CONTACT if a contact opens that must persist.
+            FALLING if the structure finds no rest. LOST_CONTACT if a contact opens that must persist.
             REST_UNKNOWN if contacts with friction are closed at the rest.
         """
         newton, model = self.fall.newton, self.fall.newton.model
@@ -79,8 +75,6 @@ class Jump:
                 return Status.LOST_CONTACT
             state = changed(model, state, k, None, armed=True)
         self.log.note_release(began - energy)
-        if any(_lies_in(model, state, k) for k in range(len(model.pairs))):
-            return Status.FALLING
         return Status.REST_UNKNOWN if grips(state) else equilibrium
 
     def _next(self, state: State, energy: float) -> Equilibrium | None:
@@ -98,12 +92,3 @@ class Jump:
         rest = self.fall.rest(state, energy)
         self.log.iterations += self.fall.iterations
         return rest
-
-
-def _lies_in(model: Model, state: State, k: int) -> bool:
-    """Whether the beam of an open pair lies inside its round pin, or its node inside the beam, away from the beam's ends."""
-    pair, deep = model.pairs[k], _DEEP * model.length
-    if state.touches[k] is not None or pair.pair.offset <= deep:
-        return False
-    seen = pair.group.project(pair, state)
-    return seen.overshoot <= ROUND_OFF * model.length and deep < -seen.gap < 2.0 * pair.pair.offset - deep

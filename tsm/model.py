@@ -6,6 +6,7 @@ unknowns that couple across it (a contacting beam end, a contact force with its 
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cached_property
 from itertools import pairwise
 
@@ -254,6 +255,20 @@ class Model:
         for k, pair in enumerate(self.pairs):
             on.setdefault(pair.pair.beam, []).append(k)
         return on
+
+    @cached_property
+    def free_ends(self) -> dict[str, list[tuple[int, bool]]]:
+        """By beam, the node of every end that no other beam shares, and whether it is the beam's end or its start."""
+        ends = [
+            (name, last, self.end_node(f"{name}.{'end' if last else 'start'}"))
+            for name in self.beams
+            for last in (False, True)
+        ]
+        shared = Counter(node for *_, node in ends)
+        return {
+            name: [(node, last) for owner, last, node in ends if owner == name and shared[node] == 1]
+            for name in self.beams
+        }
 
     def pairs_of(self, group: ElementGroup) -> list[tuple[int, PairModel]]:
         """Contact pairs on a group's elements, with their numbers."""

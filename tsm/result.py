@@ -267,6 +267,8 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
     )
     if status is Status.CUTBACK_FLOOR:
         where += "".join(_at_node(model, steps[-1].equilibrium.state))
+    if status is Status.END_CONTACT:
+        where = f": {_meeting(model, steps[-1].events[-1])}{where}"
     return Result(
         status=status,
         message=status.value + where,
@@ -290,6 +292,14 @@ def collect(model: Model, steps: list[Step], status: Status, seconds: float) -> 
         model=model,
         equilibria=equilibria,
     )
+
+
+def _meeting(model: Model, event: Event) -> str:
+    """Who meets which end of which beam at an end contact, and when."""
+    pair = next(pair for pair in model.pairs if pair.pair.name == event.pair)
+    ends = {0.0: "the start", pair.target.beam.length: "the end"}
+    what = ends.get(event.arc_position, "the other side")
+    return f"{pair.pair.node} meets {what} of {pair.pair.beam} at load parameter {event.load_parameter:.9g}"
 
 
 def _position(model: Model, equilibrium: Equilibrium, node: int) -> Array:

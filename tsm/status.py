@@ -32,6 +32,9 @@ class Status(Enum):
     REST_UNKNOWN = "a structure fell onto contacts with friction: where it rests depends on its motion"
     LOST_CONTACT = "a contact that must persist was released"
     SLIPPED_OFF = "a contact that must persist slipped off the beam"
+    END_CONTACT = (
+        "contact with the end of a beam, or with a side that a contact does not have, is not modelled"
+    )
     FOLDED = "a contact reached the held end of its beam"
     CONTACT_CHANGED = (
         "a contact opened or closed under arc-length control, which follows a fixed set of contacts"

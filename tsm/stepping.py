@@ -16,8 +16,9 @@ import numpy as np
 
 from tsm.contact_set import changed, closed_at, crowded, forbidden, initial_state, rearm
 from tsm.critical import CriticalKind, critical_point, locate_bifurcation
-from tsm.crossing import crossing
+from tsm.crossing import crossing, through_end
 from tsm.elements.properties import Array
+from tsm.ends import clearance
 from tsm.energy import spent
 from tsm.events import (
     GRIPS,
@@ -93,6 +94,8 @@ class Stepper:
         self.target, self.turned = 0.0, -1.0
         self.margins = self._measure(start) if start.status is Status.CONVERGED else []
         self.chatter: Counter[tuple[int, float]] = Counter()
+        for k in self._overlapping(start.state) if self.margins else ():
+            self.track.accepted = replace(start, status=self._meet_end(start.state, k))
 
     @property
     def accepted(self) -> Equilibrium:
@@ -219,12 +222,13 @@ class Stepper:
         if crossed is not None:
             touch = next(m for m in self.margins if (m.kind, m.pair) == (EventKind.TOUCH, crossed[1]))
             return self._switch(self.accepted, [touch])
+        deep = through_end(self.model, self.accepted.state, reached.state)
+        if deep is not None:
+            return self._reach(deep)
         events = broken(self.margins, self._measure(reached))
         if events:
             return self._stop_at_first(events, goal)
-        if not self.newton.balanced(reached):
-            return Status.UNBALANCED
-        return self._advance(reached)
+        return self._advance(reached) if self.newton.balanced(reached) else Status.UNBALANCED
 
     def _advance(self, reached: Equilibrium) -> Status:
         """Accept an equilibrium if the step has no event, has followed the path and has passed no critical point."""
@@ -287,6 +291,8 @@ class Stepper:
         if isinstance(found, Status):
             return found
         rest, released = found
+        for k in self._overlapping(rest.state):
+            return self._meet_end(critical.state, k)
         self.log.events[-1] = replace(self.log.events[-1], released=released)
         self.track.history = []
         self._accept(rest)
@@ -351,33 +357,52 @@ class Stepper:
             status = self._advance(event)
             if status is not Status.CONVERGED or self.accepted.system is not event.system:
                 return status
-        model, state, jump = self.model, event.state, False
-        noted = len(self.log.events)
+        state = event.state
+        noted, kinds = len(self.log.events), {margin.kind for margin in changes}
         for margin in changes:
-            k, pair = margin.pair, model.pairs[margin.pair]
-            self.chatter[k, state.load_parameter] += 1
-            if self.chatter[k, state.load_parameter] > self.settings.max_chatter:
-                return Status.CHATTER
-            if margin.kind is EventKind.TOUCH:
-                state = self._close(state, margin)
-                continue
-            touch = state.touches[k]
-            assert touch is not None, "only a closed contact opens, slips or sticks"
-            self.log.note(margin.kind, state.load_parameter, pair, touch, normal_force(model, event, k))
-            if margin.kind in GRIPS:
-                state = turned(model, state, event.system, k)
-                continue
-            refused = forbidden(model, margin.kind, pair, pair.arc_position(touch))
-            if refused is not None:
-                return refused
-            jump |= margin.kind is EventKind.SLIP_OFF
-            state = changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
-        if crowded(model, state):
+            after = self._change(event, state, margin, alone=len(kinds) == 1)
+            if isinstance(after, Status):
+                return after
+            state = after
+        if crowded(self.model, state):
             return Status.TWO_CONTACTS
-        status = self._resume(event, state, jump=jump)
+        status = self._resume(event, state, jump=EventKind.SLIP_OFF in kinds)
         if status is not Status.CONVERGED and status is self.control.failure:
             del self.log.events[noted:]
         return status
+
+    def _change(self, event: Equilibrium, state: State, margin: Margin, *, alone: bool) -> State | Status:
+        """State with a contact opened or closed, slipping or sticking; `alone` if no contact takes over."""
+        k, model, pair = margin.pair, self.model, self.model.pairs[margin.pair]
+        self.chatter[k, state.load_parameter] += 1
+        if self.chatter[k, state.load_parameter] > self.settings.max_chatter:
+            return Status.CHATTER
+        if margin.kind is EventKind.TOUCH:
+            return self._close(state, margin)
+        if margin.kind is EventKind.END_CONTACT:
+            return self._meet_end(state, k)
+        touch = state.touches[k]
+        assert touch is not None, "only a closed contact opens, slips or sticks"
+        self.log.note(margin.kind, state.load_parameter, pair, touch, normal_force(model, event, k))
+        if margin.kind in GRIPS:
+            return turned(model, state, event.system, k)
+        refused = forbidden(model, margin.kind, pair, pair.arc_position(touch), alone=alone)
+        if refused is not None:
+            return self._meet_end(state, k) if refused is Status.END_CONTACT else refused
+        return changed(model, state, k, None, armed=margin.kind is EventKind.RELEASE)
+
+    def _overlapping(self, state: State) -> list[int]:
+        """Pairs whose pin or node overlaps an end of its beam, or a side that it does not touch."""
+        model, deep = self.model, -ROUND_OFF * self.model.length
+        thick = [k for k, pair in enumerate(model.pairs) if pair.pair.offset > 0]
+        return [k for k in thick if clearance(model, state, k).distance < deep]
+
+    def _meet_end(self, state: State, k: int) -> Status:
+        """End the path where pair k meets an end, or the side that it does not touch."""
+        pair, arc = self.model.pairs[k], clearance(self.model, state, k).arc
+        t, kind = state.load_parameter, EventKind.END_CONTACT
+        self.log.events.append(Event(kind=kind, load_parameter=t, pair=pair.pair.name, arc_position=arc))
+        return Status.END_CONTACT
 
     def _close(self, state: State, margin: Margin) -> State:
         """State with an open pair closed without force. A pair whose node is on the far side stays open and may not close (not armed)."""
@@ -394,6 +419,8 @@ class Stepper:
         found = self._jump(event, state) if jump else self._settled(state)
         if isinstance(found, Status):
             return found
+        for k in self._overlapping(found.state):
+            return self._meet_end(event.state, k)
         gripped = self._gripped(found, event.state)
         if isinstance(gripped, Status):
             return gripped

@@ -9,6 +9,7 @@ from comparisons.cli.options import add_others
 from comparisons.cli.outcome import DONE
 from comparisons.files import OutputError, result_file, writable_file, write_text
 from comparisons.scene import built_in_scenes, load_scene
+from comparisons.scene.ends import near_ends
 from comparisons.scene.rules import RuleError, name
 from comparisons.scene.tables import InputError
 
@@ -71,6 +72,8 @@ def run_check(given: "argparse.Namespace") -> int:
     from comparisons.show.sketch import draw, stated
 
     for line in stated(scene, given.others):
+        print(line)
+    for line in near_ends(scene):
         print(line)
     if file is not None:
         write_text(file, request(scene, Options(), scene.times))

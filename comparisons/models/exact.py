@@ -1,8 +1,10 @@
 """Responses of the two exact models: Reissner's rod and the elastica."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from time import perf_counter
 
 import numpy as np
@@ -18,6 +20,7 @@ from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.translate import RodScene, to_rod
 from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
 from comparisons.scene import Scene, unstated
+from comparisons.scene.ends import BeamEnd
 from comparisons.scene.keys import ONE_ROD
 
 POINTS = 401
@@ -46,6 +49,7 @@ STOPS = {
     "LOST": "no stable equilibrium is connected with the straight beam",
     "LOST_CONTACT": "a contact that must persist was released",
     "SLIPPED_OFF": "a contact that must persist slipped off the beam",
+    "END_CONTACT": "contact with the end of a beam is not modelled",
 }
 """Reasons why an exact solution stops."""
 
@@ -136,6 +140,13 @@ def local_response(
     name, length = local.beam.name, local.beam.length
     times = np.array(scene.times)
     stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
+    met = _end_contact(scene, local, states)
+    if times[:reached].max(initial=0.0) >= met or (stop == "LOST" and met <= times[reached]):
+        stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
+    when = f" at load parameter {times[reached]:.6g}" if stop else ""
+    if stop == "END_CONTACT" and local.contact is not None:
+        end = "start" if local.from_end else "end"
+        when = f": {local.contact.node} meets the {end} of {name} at load parameter {met:.9g}"
 
     @cache
     def axis_line(_: str, k: int) -> tuple[Array, Array]:
@@ -160,11 +171,7 @@ def local_response(
         model=model,
         scene=scene.name,
         status=stop or "COMPLETED",
-        message=(
-            f"{STOPS[stop]} at load parameter {times[reached]:.6g}"
-            if stop
-            else "all load parameters were reached"
-        ),
+        message=(f"{STOPS[stop]}{when}" if stop else "all load parameters were reached"),
         completed=stop is None,
         load_parameter=times[:reached],
         contacts=_contacts(scene, local, states, reached),
@@ -193,6 +200,25 @@ def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, 
             return "LOST_CONTACT", before
         closed = closed or state is Outcome.CONTACT
     return ("SLIPPED_OFF", int(slipped)) if slipped < len(times) else (None, len(times))
+
+
+def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
+    """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
+    if local.contact is None or not local.offset:
+        return math.inf
+    radius, path = scene.radius(local.contact), local.path - [local.beam.length, 0.0]
+    tip = BeamEnd("", np.zeros(2), np.array([-1.0, 0.0]), local.offset - radius, radius)
+    reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    corner = states.slip_off if radius and not np.isnan(states.slip_off) else math.inf
+    for k, (start, end) in enumerate(pairwise(path)):
+        if states.visited[k] is Outcome.CONTACT or reached[k] >= corner * reached[-1]:
+            continue
+        part = tip.meeting(start, end)
+        x, y = start + part * (end - start)
+        up = (-local.offset - start[1]) / (y - start[1]) if start[1] <= -local.offset < y else 1.0
+        if start[0] + up * (x - start[0]) > -1e-12 * local.beam.length:
+            return min(corner, float((1.0 - part) * reached[k] + part * reached[k + 1]) / float(reached[-1]))
+    return corner
 
 
 def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:

@@ -11,6 +11,7 @@ from comparisons.referee.balance import balance_failures
 from comparisons.referee.passing import passages
 from comparisons.response import Array, Deformation, Response
 from comparisons.scene import ContactSpec, Scene
+from comparisons.scene.ends import BeamEnd, free_ends
 
 CHECK_FAILED = "CHECK_FAILED"
 UNSTABLE = "UNSTABLE"
@@ -69,7 +70,7 @@ def failures(response: Response, scene: Scene) -> Iterator[str]:
     - contact forces push, and closed contacts have no gap;
     - open nodes are on the stated side of the beam unless they slipped off;
     - contacts that must persist stay closed;
-    - round pins are outside the beam along the whole axis;
+    - round pins are outside the beam along the whole axis, and nodes and pins clear of its ends;
     - the forces and moments of supports, pins and loads on the whole structure balance, for a model of this package.
     """
     if not np.array_equal(response.load_parameter, scene.times):
@@ -152,6 +153,31 @@ def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> It
             f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact {_first(inside, response)}: "
             "one contact of a pair is modelled"
         )
+    for end in free_ends(scene, spec):
+        over = np.array([_depth(response, scene, spec, end, k) > INSIDE * length for k in range(len(closed))])
+        if over.any():
+            where = f"the {end.name} of beam {spec.beam} {_first(over, response)}"
+            yield f"{spec.node} overlaps {where}, where no contact is modelled"
+
+
+def _depth(response: Response, scene: Scene, spec: ContactSpec, end: BeamEnd, k: int) -> float:
+    """Depth of a node or round pin in an end at load parameter k; a closed contact is clear of the end that it is beside."""
+    arc, place = response.axis_line(spec.beam, k)
+    at = 0 if end.name == "start" else -1
+    if abs(response.contacts[spec.pair].arc_position[k] - arc[at]) < end.half + end.radius:
+        return -math.inf
+    inward = (1 + 2 * at) * np.gradient(place, arc, axis=0, edge_order=2)[at]
+    return -end._replace(place=place[at], inward=inward).room(_node(response, scene, spec, k))
+
+
+def _node(response: Response, scene: Scene, spec: ContactSpec, k: int) -> Array:
+    """Position of the contact's node at load parameter k."""
+    owner, dot, _ = spec.node.partition(".")
+    return (
+        response.tips[owner][k]
+        if dot
+        else np.array(scene.pin(owner).position(float(response.load_parameter[k])))
+    )
 
 
 def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float = math.inf) -> Array:
@@ -168,9 +194,8 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
     radius, face = scene.radius(spec), spec.surface == "face"
     half = beam.height_at(0.5) / 2.0 if face else 0.0
     steep = (beam.height_at(1.0) - beam.height_at(0.0)) / (2.0 * beam.length) if face else 0.0
-    for k, t in enumerate(response.load_parameter):
-        owner, dot, _ = spec.node.partition(".")
-        node = response.tips[owner][k] if dot else np.array(scene.pin(owner).position(float(t)))
+    for k in range(len(depth)):
+        node = _node(response, scene, spec, k)
         arc, place = response.axis_line(spec.beam, k)
         # a tapered face is the envelope of circles about the points of the axis
         offset = radius + (half + steep * (arc - beam.length / 2.0)) / math.hypot(1.0, steep)

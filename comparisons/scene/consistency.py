@@ -10,7 +10,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from comparisons.scene.contact import ContactSpec
+from comparisons.scene.ends import free_ends
 from comparisons.scene.joints import joint_rules
 from comparisons.scene.names import Names, listed
 from comparisons.scene.record import Unjudged, right
@@ -102,6 +105,7 @@ def _contacts(scene: Scene, names: Names) -> Iterator[FieldError]:
             _apart(contact, names, key),
             _has_face(contact, names, key),
             _on_side(contact, names),
+            _clear_of_ends(contact, names),
         )
 
 
@@ -147,6 +151,15 @@ def _on_side(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
     if 0.0 <= fraction <= 1.0 and gap < -1e-12 * beam.length:
         where = f'on the {contact.side} of beam "{beam.name}"'
         yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
+
+
+def _clear_of_ends(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
+    key, position = _position(contact, names)
+    for end in free_ends(names.scene, contact):
+        over = -end.room(np.array(position))
+        if over > 1e-12 * names.beam(contact.beam).length:
+            where = f'the {end.name} of beam "{contact.beam}"'
+            yield FieldError(key, position, f"must lie clear of {where}, overlap {over:.6g}")
 
 
 def _position(contact: ContactSpec, names: Names) -> tuple[str, Point]:

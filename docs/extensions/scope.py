@@ -176,7 +176,7 @@ GROUPS = {
         Question(
             wish="a round pin on the surface",
             keys='`radius`, `surface = "face"`',
-            limits="one point of contact for a pin and a beam",
+            limits="one point of contact for a pin and a beam; contact with the end of a beam is named and not modelled",
             changes=(("start = [0.4, -0.005]", "start = [0.4, -0.007]\nradius = 0.002"),),
         ),
         Question(

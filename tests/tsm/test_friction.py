@@ -317,7 +317,8 @@ def test_drawn_cantilevers_with_friction(first: int) -> None:
     """The command ``python -m tests.fuzz.run_friction 500`` judges more."""
     found = [verdict(seed) for seed in range(first, first + 10)]
     assert not [item for item in found if item.wrong]
-    assert sum(item.ended != tsm.Status.COMPLETED.name for item in found) <= 2
+    right = {tsm.Status.COMPLETED.name, tsm.Status.END_CONTACT.name}
+    assert sum(item.ended not in right for item in found) <= 2
 
 
 MENDED = {

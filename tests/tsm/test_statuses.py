@@ -149,8 +149,9 @@ def test_a_fall_into_a_round_pin():
         contacts=(tsm.ContactPair(node="p", beam="b", side="left", offset=0.3),),
         loads=(tsm.Load(beam="b", end="end", force=(0.0, 6.0)),),
     )
-    result = ends_in(Status.FALLING, pushed)
+    result = ends_in(Status.END_CONTACT, pushed)
     assert len(result.load_parameter) == 3
+    assert "p meets the end of b at load parameter 0.333" in result.message
 
 
 def test_two_contacts_on_an_element_of_the_paper():

@@ -184,6 +184,10 @@ class ElementGroup(ABC):
         """Closest point of the deflected axis to the pair's node, with the dents of the contacts that are closed."""
 
     @abstractmethod
+    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
+        """Vector from a pair's node to the start of its beam, or to its end if `last`, and a tangent there."""
+
+    @abstractmethod
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
         """Direction of the beam at a contact, to which its force is normal; of any length."""
 

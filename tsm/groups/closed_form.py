@@ -253,6 +253,12 @@ class ClosedFormGroup(ElementGroup):
         beyond = overshoot(target, arc_position(target, element, xi))
         return Projection(element, xi, pair.side * height - pair.pair.offset, beyond)
 
+    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
+        """The ends of the first or last element's curve."""
+        p, x, lever = self._lever(pair, pair.target.last if last else pair.target.first, state)
+        _, apart, tangent = Curve(p, x).approach(float(last), *lever)
+        return np.array(apart), np.array(tangent)
+
     def direction(self, touch: Touch, q: Array) -> tuple[float, float]:
         """Chord of the touched element."""
         i, j = self.model.element_nodes[touch.element]

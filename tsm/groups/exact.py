@@ -193,6 +193,14 @@ class ExactGroup(ElementGroup):
         gap = pair.side * height - pair.side * pair.reach_at(arc)
         return Projection(target.first + e, place, gap, overshoot(target, arc))
 
+    def end(self, pair: PairModel, state: State, *, last: bool) -> tuple[Array, Array]:
+        """The ends of the deflected axis."""
+        element, arc = (pair.target.last, pair.target.lengths[-1]) if last else (pair.target.first, 0.0)
+        place = int(self.model.place[element])
+        at = deflected(self.rods, state).at(place, np.array([arc]))
+        tangent, _ = tangent_at(self.rods, place, arc, at)
+        return at.position[0] - self.model.node_position(pair, state.q, state.load_parameter), tangent
+
     def direction(self, touch: Touch, _q: Array) -> tuple[float, float]:
         """Direction of the section's normal at the contact."""
         return math.cos(touch.angle), math.sin(touch.angle)
