@@ -62,7 +62,7 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
             break
         states.append(item.exact)
     friction = _frictions(scene, followed, states)
-    sound = found.verdict is Verdict.CERTIFIED or not found.judged
+    sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
     return replace(
         followed,
         model=model,

@@ -17,6 +17,8 @@ KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
 """Kinds of contact events."""
 CRITICAL = ("limit-point", "bifurcation")
 """Kinds of events without a contact."""
+ENDING = ("line-contact", "end-contact")
+"""Kinds of events at which a contact ends the solution."""
 
 
 def misstated(
@@ -38,7 +40,9 @@ def misstated(
     specs, times = {spec.pair: spec for spec in scene.contacts}, response.load_parameter
     for event in response.events or ():
         t = event.load_parameter
-        if event.kind in CRITICAL:
+        if event.kind in CRITICAL or (
+            event.kind in ENDING and event.pair in specs and not response.completed
+        ):
             continue
         last = times[-1] if response.completed else scene.times[-1]
         if event.kind not in KINDS or event.pair not in specs or not 0.0 <= t <= last:
@@ -62,7 +66,7 @@ def misstated(
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
     """Yield an event that closes a closed contact, or that opens or moves an open one."""
-    own = [event for event in response.events or () if event.pair == spec.pair]
+    own = [event for event in response.events or () if event.pair == spec.pair and event.kind in KINDS]
     force, times = response.contacts[spec.pair].force, response.load_parameter
     closed = bool(own) and own[0].kind not in CLOSES
     for event in own:
