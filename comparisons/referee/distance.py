@@ -220,10 +220,10 @@ def gap_off(scene: Scene, exact: Equilibrium, spec: ContactSpec, gap: float) -> 
 def _section_differences(
     scene: Scene, answer: AnswerState, exact: Equilibrium, beam: BeamSpec
 ) -> Iterator[tuple[str, float]]:
-    """Yield the largest differences of the section forces that the answer states, in the middles between its stations.
+    """Yield the largest differences of the section forces that the answer states, at its stations or in the middles between them.
 
-    Elements with one direction for all of N and V state them to second order there alone. Stations on either side of a jump, and of
-    a solid those where the field is local, are left out.
+    Elements with one direction for all of N and V state them to second order in the middles alone, and others have few stations: the
+    smaller one counts. Stations on either side of a jump, and of a solid those where the field is local, are left out.
     """
     if beam.name not in answer.sections:
         return
@@ -240,10 +240,17 @@ def _section_differences(
     kept = np.diff(arc) > SHORTEST * beam.length
     for jump in jumps:
         kept &= (arc[1:] < min(jump) - near) | (arc[:-1] > max(jump) + near)
-    true = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
-    for name, values, exactly in zip("NVM", stated, (true.N, true.Q, true.moment), strict=True):
-        off = np.abs(((values[1:] + values[:-1]) / 2.0)[kept] - exactly)
-        yield name, float(np.max(np.nan_to_num(off, nan=np.inf), initial=0.0))
+    at, station = np.flatnonzero(kept), exact.shape(beam.name, arc)
+    middle = exact.shape(beam.name, ((arc[1:] + arc[:-1]) / 2.0)[kept])
+    for name, values, ends, middles in zip(
+        "NVM",
+        stated,
+        (station.N, station.Q, station.moment),
+        (middle.N, middle.Q, middle.moment),
+        strict=True,
+    ):
+        offs = (values - ends)[np.unique([at, at + 1])], ((values[1:] + values[:-1]) / 2.0)[kept] - middles
+        yield name, min(float(np.max(np.nan_to_num(np.abs(off), nan=np.inf), initial=0.0)) for off in offs)
 
 
 def _beyond(off: float, size: float, last: float) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from comparisons.referee.distance import LEAST, gap_off, least_force
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.march import reach
-from comparisons.referee.phases import PASSES, SAME
+from comparisons.referee.phases import PASSES
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
@@ -49,19 +49,28 @@ def misstated(
             yield f"no contact of the scene has the event {event.kind} of {event.pair} at load parameter {t:.6g}"
             continue
         after = int(np.searchsorted(times, t))
-        # behind an event that opens a contact, and before one at the same place, the structure may jump
         # the load parameter of a pass-through is interpolated
         if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
             continue
-        jumps = any(one.kind in OPENS and abs(one.load_parameter - t) < SAME for one in response.events or ())
-        before, behind = event.kind in OPENS or not jumps, event.kind not in OPENS
-        for k in [after - 1] * before + [after] * behind:
-            there = _at(scene, found.get(k), t)
+        for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
+            there = _at(scene, found.get(k), t) if _alone(response, event, k) else None
             wrong = "" if there is None else _wrong(scene, specs[event.pair], event, there, allowed)
             if wrong:
                 yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
     for spec in scene.contacts:
         yield from _disorder(response, spec)
+
+
+def _alone(response: Response, event: ContactEvent, k: int) -> bool:
+    """Whether nothing else changes between an event and a load parameter beside it."""
+    if not 0 <= k < len(response.load_parameter):
+        return False
+    low, high = sorted((event.load_parameter, float(response.load_parameter[k])))
+    return not any(
+        low <= one.load_parameter <= high
+        for one in response.events or ()
+        if one is not event and one.kind != PASSES
+    )
 
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
