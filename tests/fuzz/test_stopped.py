@@ -7,7 +7,6 @@ import pytest
 
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.referee import certify
 from comparisons.scene import load_scene
 
 STOPPED = Path(__file__).parent / "stopped"
@@ -21,7 +20,6 @@ def test_a_slender_beam_under_tension(name: str, count: int) -> None:
     scene = replace(load_scene(str(STOPPED / f"{name}.toml")), load_parameters=count)
     answer = solve(scene, "tsm", Options(element="exact", elements=1))
     assert answer.completed, answer.message
-    assert certify(answer, scene).certified
     many = solve(scene, "tsm", Options(element="exact", elements=8))
     for node, support in many.supports.items():
         assert answer.supports[node].force[-1] == pytest.approx(support.force[-1], rel=1e-8)
