@@ -35,10 +35,30 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
         if gap < -INSIDE * beam.length:
             what = "the round pin" if scene.radius(spec) else "the node"
             yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
+        for end, room in _rooms(scene, exact, spec):
+            if room < -INSIDE * beam.length:
+                yield f"the round pin of {spec.pair} overlaps the {end} of the beam by {-room / beam.length:.2g} L"
+
+
+def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
+    """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
+    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), _node(scene, exact, spec)
+    for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
+        half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
+        if any(
+            f"{spec.beam}.{end}" in item.joint and len(item.joint) > 1
+            for item in exact.solution.layout.stations
+        ):
+            continue
+        there = exact.shape(spec.beam, np.array([arc]))
+        (x, y), (tx, ty) = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
+        along, across = x * tx + y * ty, abs(y * tx - x * ty)
+        if along > 0.0:
+            yield end, math.hypot(along, max(across - half, 0.0)) - radius
 
 
 def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
-    """Return the smallest gap of a pair on its side of the beam, and its arc position; infinite without a closest point.
+    """Return the smallest gap of a pair, if it is closed on its side of the beam, and its arc position; infinite without a closest point.
 
     Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
     shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
@@ -63,7 +83,7 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
         gap = math.hypot(out_x, out_y) - offset - steep * arc
         if contact is not None:
             gap += half * abs(arc - contact.arc_position)
-        if side * (x * out_y - y * out_x) > 0.0 and gap < best:
+        if (contact is None or side * (x * out_y - y * out_x) > 0.0) and gap < best:
             best, place = gap, arc
     return best, place
 
