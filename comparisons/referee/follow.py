@@ -184,6 +184,8 @@ def _followed(scene: Scene, first: Solution, end: float, last: Solution | None =
         left = abs(stop - here)
         rate = rate or tangent(scene, now, sign * _LITTLE * left)
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
+        if t == here:
+            return _Way(end=now, stopped=True)
         layout = lay_out(scene, t, closed, grips)
         mesh, z, bubbles = (
             mesh_for(layout, now.mesh),
