@@ -17,7 +17,7 @@ LEAST = 2e-3
 """Smallest allowance: of a force over the largest, of a place over the beam's length, of a load parameter."""
 EARLY = 1e-6
 """Load parameter up to which contacts that touch from the beginning close."""
-FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(100, 180, 20)
+FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(120, 200, 20)
 """Seeds of the fast tests, of the one whose answer is forged, and the first of every twenty of the slow ones."""
 COMPARED = ("touch", "release", "slip-off")
 
