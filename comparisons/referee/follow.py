@@ -81,7 +81,10 @@ def departures(
             events = _between(response, now.layout.load_parameter, there.load_parameter)
             same = all(closed[i] == closed_pairs(now).keys() for i in range(max(begin, 0), k + 1))
             way = now if same and not events else _switched_on_the_way(scene, now, events)
-            if way is not None and _alike(way, there.solution):
+            if way is None or not _alike(way, there.solution):
+                pass
+            elif way is now or not _followed(scene, way, there.load_parameter, there.solution).stopped:
+                # beyond an event that is stated within an allowance only, a path that is not found tells nothing
                 yield from filter(None, [departs(scene, way, there.solution)])
         now, begin = there.solution, k
 
