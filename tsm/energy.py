@@ -14,6 +14,7 @@ from tsm.elements.properties import Array
 from tsm.friction import grips, rates, slip_rate, traction
 from tsm.newton import Equilibrium, Newton
 from tsm.predictor import extrapolate
+from tsm.rolling import rolled
 from tsm.state import State
 from tsm.status import Status
 from tsm.system import Drive
@@ -114,7 +115,8 @@ def spent(
 
     def at(t: float) -> Array | None:
         near = [*trail, *(inner.state for inner in between[-3:])]
-        reached = newton.solve(newton.prescribed(extrapolate(newton.model, near, t), t))
+        start = newton.prescribed(extrapolate(newton.model, near, t), t)
+        reached = rolled(newton, near[-1], newton.solve(start))
         if reached.status is not Status.CONVERGED:
             return None
         between.append(reached)

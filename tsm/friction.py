@@ -119,12 +119,12 @@ def regripped(newton: Newton, state: State, drive: Drive, last: State) -> State 
     for least in (flat, flat + _STILL * stiff):
         leaving = {k: flat + _STILL * stiff if k in ended else least for k in here}
         for chosen in islice(product(*choices), _MOST):
-            if not _admissible(newton, _with(state, chosen), drive, here, leaving):
+            if not _admissible(newton, with_grips(state, chosen), drive, here, leaving):
                 continue
             for other in _reversed(newton.model, chosen, here):
-                if _admissible(newton, _with(state, other), drive, here, leaving):
+                if _admissible(newton, with_grips(state, other), drive, here, leaving):
                     return Status.TWO_SLIPS
-            return _with(state, chosen)
+            return with_grips(state, chosen)
     return Status.JAMMED
 
 
@@ -134,7 +134,7 @@ def turned(model: Model, state: State, system: Linearisation, k: int) -> State:
     assert touch is not None, "only a closed contact slips or sticks"
     here = traction(model, state, system, k)
     slips = touch.grip is not None and touch.grip.slip
-    return _with(state, ((k, Grip(0, here.place) if slips else Grip(here.way, None)),))
+    return with_grips(state, ((k, Grip(0, here.place) if slips else Grip(here.way, None)),))
 
 
 def same(before: Grip, after: Grip) -> bool:
@@ -151,7 +151,8 @@ def grips(state: State) -> list[tuple[int, Grip]]:
     ]
 
 
-def _with(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
+def with_grips(state: State, grips: tuple[tuple[int, Grip], ...]) -> State:
+    """State whose contacts slip or stick otherwise."""
     touches = list(state.touches)
     for k, grip in grips:
         touch = touches[k]
@@ -199,7 +200,7 @@ def _admissible(
             if grip.slip * slip_rate(newton, state, by, k) <= _STILL * model.length:
                 return False
         elif not _idle(model, here[k]) and cone(model, state, by.system, k) <= _EDGE * model.force_scale:
-            slipping = _with(state, ((k, Grip(here[k].way, None)),))
+            slipping = with_grips(state, ((k, Grip(here[k].way, None)),))
             if here[k].way * _row_rate(newton, slipping, by, k) > leaving[k]:
                 return False
     return True

@@ -61,7 +61,7 @@ class Grip(NamedTuple):
     slip : int
         Sign of the slip rate, 0 in stick.
     held : Place or None
-        Where the stick began, None in slip.
+        Place at which the row of stick is zero, see `tsm.rolling`; None in slip.
     """
 
     slip: int

@@ -40,6 +40,7 @@ from tsm.mechanism import mechanism
 from tsm.model import Model
 from tsm.newton import Equilibrium, Newton
 from tsm.path import FOLLOWED, PathTangent
+from tsm.rolling import rolled
 from tsm.settings import Settings
 from tsm.stages import stage_of
 from tsm.state import State
@@ -302,7 +303,7 @@ class Stepper:
     def _solve(self, t: float) -> Equilibrium | None:
         """Equilibrium at t from the predicted state, if the tangent leads to it."""
         start = self.track.predicted(t)
-        equilibrium = self.newton.solve(start)
+        equilibrium = rolled(self.newton, self.accepted.state, self.newton.solve(start))
         self.log.iterations += equilibrium.iterations
         if equilibrium.status is not Status.CONVERGED:
             self.control.fail(equilibrium.status)

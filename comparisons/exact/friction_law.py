@@ -8,17 +8,19 @@ of the stored energy is `F_t v` with the slip rate
 
     v = A ds/dt + d(roll)/dt,   A = a + side h (theta'_- + theta'_+)/2,   roll = side (h (phi - theta) + R phi)
 
-In slip `F_t = sigma mu F_n`, where sigma is the sign of v. In stick
+In slip `F_t = sigma mu F_n`, where sigma is the sign of v. In stick v = 0 all along, and v is the rate of no quantity: with the
+values `*` at an earlier place of the stick
 
-    (A + A*)/2 (s - s*) + roll - roll* = 0
+    (A + A*)/2 (s - s*) + roll - roll* = c,   dc/dt = (A'(s - s*) - (A - A*) s')/2
 
-with the values `*` where the stick began: the trapezium of `v = 0`, exact where A is constant or roll is.
+The trapezium on the left is exact, c = 0, where A is constant or roll is.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.exact.reissner import COMPLEX_STEP
@@ -80,11 +82,18 @@ class Equations(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Phase:
-    """Slip of a sense, or stick, whose sense is 0, with the contact where it began, and the load parameter there."""
+    """Slip of a sense, or stick, whose sense is 0, since a load parameter, with an earlier place of a stick and c from there on."""
 
     sense: int
     since: float
     start: Contact | None = None
+    area: Polynomial = field(default_factory=lambda: Polynomial([0.0]))
+
+    def at(self, t: float) -> "Phase":
+        """Phase whose row has the value of c at a load parameter."""
+        if self.start is None:
+            return self
+        return replace(self, start=self.start._replace(roll=self.start.roll + self.area(t)))
 
 
 class Linear(NamedTuple):

@@ -129,6 +129,7 @@ class _Walk:
                 standing,
                 t=found.node.t,
                 z=found.node.z,
+                phase=found.phase,
                 work=standing.work + found.work,
                 dissipated=standing.dissipated + found.dissipated,
             )

@@ -1,14 +1,15 @@
 """Steps of a contact with friction along a straight piece of the pin's path, and the first event in a step."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
-from comparisons.exact.friction_law import Equations, Linear, Phase, Real, linearise, margins
+from comparisons.exact.friction_law import Contact, Equations, Linear, Phase, Real, linearise, margins
 
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _GAUSS, _WEIGHTS = (_GAUSS + 1.0) / 2.0, _WEIGHTS / 2.0
@@ -17,6 +18,8 @@ _DIFFERENCE = _WEIGHTS.copy()
 _DIFFERENCE[[0, 1, 3, 4, 6, 7]] -= _FEWER
 """Weights of the difference between eight points, of degree 15, and six of them, of degree 5."""
 _ALLOWED_DIFFERENCE = 1e-6
+_ALLOWED_AREA, _SAME_AREA, _SWEEPS = 1e-11, 1e-15, 20
+"""Differences of c in a stick: of the two rules, and of two corrections, of which there are so many at most."""
 _LARGEST_CORRECTION, _CONVERGED = 0.1, 3e-8
 _ROUND_OFF, _NOISE = 1e-14, 1e-5
 """A residual at round-off, and the correction that it may leave where the equations are stiff."""
@@ -75,7 +78,7 @@ class Problem:
 
 
 class Node(NamedTuple):
-    """Equilibrium at a load parameter: unknowns (n,), their rates (n,), margins (3,), power of the pin and dissipation."""
+    """Equilibrium at a load parameter: unknowns (n,), rates (n,), margins (3,), power of the pin, dissipation, contact, and dc/dt of a stick."""
 
     t: float
     z: Real
@@ -83,26 +86,32 @@ class Node(NamedTuple):
     margins: Real
     power: float
     dissipation: float
+    contact: Contact
+    creep: float
 
 
 class Step(NamedTuple):
-    """Equilibrium at the end of a step, work and dissipation in it, and why the phase ends there, or None."""
+    """Equilibrium at the end of a step, work and dissipation in it, why the phase ends there, or None, and the phase from there on."""
 
     node: Node
     work: float
     dissipated: float
     ending: Ending | None
+    phase: Phase
 
 
 def node_at(problem: Problem, piece: Piece, phase: Phase, t: float, guess: Real) -> Node | None:
     """Equilibrium at a load parameter from nearby unknowns; None without convergence."""
     pin = piece.pin(t)
-    solution = problem.solve(guess, pin, phase)
+    solution = problem.solve(guess, pin, phase.at(t))
     if solution is None:
         return None
     z, linear = solution
+    contact, row = linear.contact, linear.tangent[-1]
+    if not phase.sense:
+        here = replace(phase, start=contact)
+        linear = linearise(problem.equations, z, pin, here, problem.friction)
     rates = linear.rates(piece.velocity)
-    contact = linear.contact
     dissipation = float(contact.tangential * (linear.slip @ rates)) if phase.sense else 0.0
     return Node(
         t,
@@ -111,20 +120,41 @@ def node_at(problem: Problem, piece: Piece, phase: Phase, t: float, guess: Real)
         margins(linear, rates, phase, problem.friction),
         float(contact.force @ piece.velocity),
         dissipation,
+        contact,
+        0.0 if phase.sense else float(row @ rates),
     )
 
 
 def take(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) -> Step | None:
     """Take a step up to a load parameter or the first event before it; None where the step must be shorter."""
-    nodes = _nodes(problem, piece, phase, start, end)
-    if nodes is None:
+    rolled = _rolled(problem, piece, phase, start, end)
+    if rolled is None:
         return None
+    phase, nodes = rolled
     before = start
     for node in nodes:
         if np.any(node.margins < -EDGE):
             return _up_to_event(problem, piece, phase, start, (before, node))
         before = node
-    return _integrate(start, nodes, None)
+    return _integrate(start, nodes, None, phase)
+
+
+def _rolled(
+    problem: Problem, piece: Piece, phase: Phase, start: Node, end: float
+) -> tuple[Phase, list[Node]] | None:
+    """Return the phase with c of its stick in a step, and the nodes of the step; None where the step must be shorter."""
+    for _ in range(_SWEEPS):
+        nodes = _nodes(problem, piece, phase, start, end)
+        if nodes is None:
+            return None
+        times, creep = np.array([node.t for node in nodes]), np.array([node.creep for node in nodes[:-1]])
+        if abs(_DIFFERENCE @ creep) * (end - start.t) > _ALLOWED_AREA:
+            return None
+        area = Polynomial.fit(times[:-1], creep, len(creep) - 1).integ(lbnd=start.t)
+        if np.max(np.abs(area(times) - phase.area(times))) < _SAME_AREA:
+            return phase, nodes
+        phase = replace(phase, area=area)
+    return None
 
 
 def _nodes(problem: Problem, piece: Piece, phase: Phase, start: Node, end: float) -> list[Node] | None:
@@ -152,14 +182,19 @@ def _extrapolate(nodes: list[Node], t: float) -> Real:
     )
 
 
-def _integrate(start: Node, nodes: list[Node], ending: Ending | None) -> Step | None:
+def _integrate(start: Node, nodes: list[Node], ending: Ending | None, phase: Phase) -> Step | None:
     """Work and dissipation of a step; None where the step is too long for them."""
     length = nodes[-1].t - start.t
     values = np.array([[node.power, node.dissipation] for node in nodes[:-1]])
     if np.max(np.abs(_DIFFERENCE @ values)) * length > _ALLOWED_DIFFERENCE:
         return None
     work, dissipated = length * (_WEIGHTS @ values)
-    return Step(nodes[-1], float(work), float(dissipated), ending)
+    return Step(nodes[-1], float(work), float(dissipated), ending, _held(phase, nodes[-1]))
+
+
+def _held(phase: Phase, node: Node) -> Phase:
+    """Phase whose stick is held in its place at a node."""
+    return phase if phase.sense else Phase(sense=0, since=phase.since, start=node.contact)
 
 
 def _up_to_event(
@@ -179,7 +214,7 @@ def _up_to_event(
             continue
         goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF
         if before is start and start.margins[k] <= EDGE and goes_on:
-            return Step(start, 0.0, 0.0, ending)
+            return Step(start, 0.0, 0.0, ending, _held(phase, start))
         if before.margins[k] <= 0.0:
             return None
         root = _root(at, k, bracket)
@@ -189,9 +224,9 @@ def _up_to_event(
     first = min(t for t, _ in roots)
     t, ending = max((item for item in roots if item[0] <= first + _TOGETHER), key=lambda item: item[1].value)
     if t - start.t < AT_ONCE:
-        return Step(start, 0.0, 0.0, ending)
+        return Step(start, 0.0, 0.0, ending, _held(phase, start))
     nodes = _nodes(problem, piece, phase, start, t)
-    return None if nodes is None else _integrate(start, nodes, ending)
+    return None if nodes is None else _integrate(start, nodes, ending, phase)
 
 
 def _root(at: Callable[[float], Node | None], k: int, bracket: tuple[Node, Node]) -> float | None:

@@ -8,9 +8,10 @@ section's rotation theta from its undeformed direction, the natural curvature ka
     m_- - m_+ = C = lever F_t                couple on the section, since F acts on the face
     v = A s' + lever psi' + roll phi'        slip rate, A = a + lever k and psi = phi - theta - kappa0 s
     slip:   F_t = sigma mu F_n,  sigma = sign v
-    stick:  (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = 0
+    stick:  v = 0,  or (A + A*)/2 (s - s*) + lever (psi - psi*) + roll (phi - phi*) = c
 
-The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began; where the height tapers
+The power of the node is the rate of the strain energy and ``F_t v``. Starred values are those where the stick began, and c is the error of the
+trapezium of v, which `rolling` finds along the path; where the height tapers
 the lever in stick is the mean of the two. Without a taper t is along the mean tangent. The couple, and the row ``n . (r'_- + r'_+)/2 =
 -offset'`` of phi, take the place of the two conditions of stationarity in arc position and phi, which hold without friction only.
 """
@@ -20,6 +21,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
@@ -46,6 +48,8 @@ class Hold:
         A*.
     shear, direction : float
         The angles psi* and phi*.
+    areas : tuple of (float, Polynomial)
+        c as a function of the load parameter, each from a load parameter on.
     """
 
     load_parameter: float
@@ -53,6 +57,11 @@ class Hold:
     stretch: float
     shear: float
     direction: float
+    areas: tuple[tuple[float, Polynomial], ...] = ()
+
+    def area(self, t: float) -> float:
+        """Return c at a load parameter."""
+        return next((float(area(t)) for begin, area in reversed(self.areas) if begin <= t), 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +145,7 @@ def _local(layout: "Layout", touch: "Touch", parts: "tuple[Part, Part]", given: 
     if hold is None:
         return Local(drag - touch.grip.slip * touch.grip.friction * push, couple, aligned, stretch)
     row = (stretch + hold.stretch) / 2.0 * (s - hold.arc_position / layout.length)
+    row = row - hold.area(layout.load_parameter) / layout.length
     if touch.angle >= 0:
         turned = theta + rod.curvature * s
         if touch.slope:

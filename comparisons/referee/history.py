@@ -6,6 +6,7 @@ A slip has no memory. A stick holds the place at which it began: where the refer
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.friction import LOOSE, Grip, Hold
 from comparisons.referee.march import closed_pairs, corners, place, rates, reach, slip_rate, speed
 from comparisons.referee.phases import OPEN, PASSES, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.rolling import roll
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import Response
@@ -73,6 +75,13 @@ class History:
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
         self._begins: dict[tuple[str, int], Begin] = {}
+        self._holds: dict[tuple[str, int], Hold] = {}
+        self._reached: dict[tuple[str, int], Hold] = {}
+        self._followed: set[tuple[str, int, float]] = set()
+        """Where sticks began, the places up to which they were followed, and from where they were."""
+        changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
+        times = sorted([0.0, *changes, *corners(scene), float(response.load_parameter[-1])])
+        self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
         self._sought: set[tuple[str, int]] = set()
 
     def grips(self, k: int) -> dict[str, Grip]:
@@ -87,7 +96,7 @@ class History:
         for pair, spec in self.specs.items():
             number = self.numbers[pair][k]
             if spec.friction and self.phases[pair][number].slip != OPEN:
-                held[pair] = self.grip(spec, number)
+                held[pair] = self.grip(spec, number, float(self.response.load_parameter[k]))
         return held
 
     def around(self, t: float) -> dict[str, Grip]:
@@ -128,23 +137,51 @@ class History:
                 self._sought.discard((pair, number))
         return self._begins[pair, number]
 
-    def grip(self, spec: ContactSpec, number: int) -> Grip:
-        """Return how friction holds a contact in a closed phase.
+    def grip(self, spec: ContactSpec, number: int, until: float) -> Grip:
+        """Return how friction holds a contact in a closed phase, up to a load parameter in it.
 
         Raises
         ------
         UnknownFrictionError
-            If no equilibrium is found where a stick begins, or a slip has no known sign.
+            If no equilibrium is found where a stick begins, or in it, or a slip has no known sign.
         """
         slip = self.phases[spec.pair][number].slip
         if slip == UNKNOWN:
             slip = self._sign(spec, number)
         if slip:
             return Grip(friction=spec.friction, slip=slip)
-        if number == 0:
-            return Grip(friction=spec.friction, slip=0, hold=at_rest(self.scene, spec))
-        solution = self.begin(spec.pair, number).solution
-        return Grip(friction=spec.friction, slip=0, hold=place(solution, solution.layout.touch(spec.pair)))
+        own = spec.pair, number
+        if own not in self._holds:
+            if number == 0:
+                begin = at_rest(self.scene, spec)
+            else:
+                solution = self.begin(*own).solution
+                begin = place(solution, solution.layout.touch(spec.pair))
+            self._holds[own] = self._reached[own] = begin
+        if spec.surface == "face" or self.scene.radius(spec):
+            for first, last in pairwise(self._cuts):
+                if self.phases[spec.pair][number].begin <= first + SAME and first < until - SAME:
+                    self._roll(own, first, last)
+        return Grip(friction=spec.friction, slip=0, hold=self._holds[own])
+
+    def _roll(self, own: tuple[str, int], first: float, last: float) -> None:
+        """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
+        if (*own, first) in self._followed:
+            return
+        middle = (first + last) / 2.0
+        grips = self._around(None, middle, until=first)
+        sticking = {pair: (pair, self._number(pair, middle)) for pair, grip in grips.items() if not grip.slip}
+        begins = {pair: self._reached[item] for pair, item in sticking.items()}
+        begin = max(item.load_parameter for item in begins.values())
+        if begin >= last:
+            return
+        near = self.near(middle, self.closed(middle), grips)
+        rolled = roll(self.scene, near, (begin, last), grips, begins)
+        if rolled is None:
+            raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
+        for pair, item in sticking.items():
+            self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
+            self._followed.add((*item, first))
 
     def _sign(self, spec: ContactSpec, number: int) -> int:
         """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
@@ -168,7 +205,7 @@ class History:
                 f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
         if before.slip != UNKNOWN or (number > 1 and self.phases[spec.pair][number - 2].slip == 0):
-            return self._root(spec, number, self.grip(spec, number - 1))
+            return self._root(spec, number, self.grip(spec, number - 1, phase.begin))
         found, reasons = [], []
         for sign in (1, -1):
             own = Grip(friction=spec.friction, slip=sign)
@@ -264,21 +301,23 @@ class History:
         others = [phase.stated for pair, own in self.phases.items() if pair != spec.pair for phase in own[1:]]
         return any(abs(t - other) <= SAME for other in (*corners(self.scene), *others))
 
-    def _around(self, spec: ContactSpec | None, t: float) -> dict[str, Grip]:
-        """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there."""
-        held = {}
+    def _number(self, pair: str, t: float) -> int:
+        """Number of the phase of a contact at a load parameter; the later one where it changes."""
+        return max((n for n, phase in enumerate(self.phases[pair]) if phase.begin <= t + SAME), default=0)
+
+    def _around(self, spec: ContactSpec | None, t: float, until: float | None = None) -> dict[str, Grip]:
+        """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there. Sticks are followed `until` there."""
+        held, until = {}, t if until is None else until
         for pair, other in self.specs.items():
             if other is spec or not other.friction:
                 continue
-            number = max(
-                (n for n, phase in enumerate(self.phases[pair]) if phase.begin <= t + SAME), default=0
-            )
+            number = self._number(pair, t)
             now = self.phases[pair][number]
             if number and abs(now.begin - t) <= SAME and now.slip != OPEN:
                 before = self.phases[pair][number - 1]
-                held[pair] = LOOSE if before.slip == OPEN else self.grip(other, number - 1)
+                held[pair] = LOOSE if before.slip == OPEN else self.grip(other, number - 1, until)
             elif now.slip != OPEN:
-                held[pair] = self.grip(other, number)
+                held[pair] = self.grip(other, number, until)
         return held
 
     def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:

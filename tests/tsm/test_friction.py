@@ -134,33 +134,12 @@ def test_work_is_stored_or_dissipated(steps: int) -> None:
 
 
 @pytest.mark.slow
-def test_rolling_in_stick_keeps_the_work_but_for_the_mean_stretch_of_the_face() -> None:
-    assert balance(ks(0.3, face=0.01, radius=0.04).solve(10)) <= 1e-7
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("seed", "stated", "defect"),
-    [
-        (32, (3976, 1478, 0.32, 0, 0.048), 4.0e-8),
-        (8, (1523, 755, 0.79, 0, 0.022), 1.7e-5),
-        (26, (590, 160, 0.71, 0.027, 0.032), 7.9e-5),
-        (9, (67, 19, 0.78, 0, 0.043), 8.6e-4),
-    ],
-)
-def test_a_long_roll_of_a_thick_rod_shows_in_the_work(
-    seed: int, stated: tuple[float, ...], defect: float
-) -> None:
-    """The stick row is the trapezium of a slip rate that vanishes. The exact rod has the same row and the same defect."""
-    scene = drawn(seed)
-    section = scene.section
-    assert (section.EA, section.GA, scene.friction, scene.face, scene.radius) == pytest.approx(
-        stated, rel=0.02
-    )
-    exact, at = scene.exact(10)
-    lost = exact.work - exact.stored - exact.dissipated - exact.released
-    assert np.abs(lost[at]).max() / exact.work[at].max() == pytest.approx(defect, rel=0.05)
-    assert balance(scene.solve(10)) == pytest.approx(defect, rel=0.05)
+@pytest.mark.parametrize("seed", [None, 8, 32])
+def test_rolling_in_stick_keeps_the_work(seed: int | None) -> None:
+    """The trapezium of the slip rate lost 1.7e-5 of the work of seed 8. The arc position turns within a step of seed 8."""
+    scene = ks(0.3, face=0.01, radius=0.04) if seed is None else drawn(seed)
+    lost = max(balance(scene.solve(steps)) for steps in ((10,) if seed is None else (1, 10)))
+    assert lost <= 1e-12
 
 
 @pytest.mark.slow

@@ -43,7 +43,7 @@ class Rub(NamedTuple):
     radius : float
         Radius of a round pin, which does not turn.
     path, shear, slope : float
-        Where the stick began: length of the face per arc position, shear angle and slope angle, see `Friction.hold`. Without face and
+        Where the contact is held: length of the face per arc position, shear angle and slope angle, see `Friction.hold`. Without face and
         radius they do not matter.
     tilt : tuple of 2 floats
         Change of the mean tangent by other contacts on the element, the sum of `Friction.tilt` times their forces. Only `Friction.split`
