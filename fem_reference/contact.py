@@ -84,6 +84,8 @@ class Pair:
         Contact stiffness eps [N/m].
     strips
         Indices of the touched strip and, if the node is an end, of the strip with this end.
+    ends
+        Corners of the free ends of the touched strip, ordered upwards, if the node or the strip is not a point or a line there.
     origin
         Origin of all positions ``(2,)`` [m], at the first strip, so that a distant scene loses no digits.
     """
@@ -94,6 +96,7 @@ class Pair:
     node: Pin | Carrier
     penalty: float
     strips: tuple[int, ...]
+    ends: dict[str, Carrier]
     origin: Floats
 
     @property

@@ -20,6 +20,7 @@ from fem_reference.critical import (
     opening_limit,
     stable_branch,
 )
+from fem_reference.ends import end_contact
 from fem_reference.events import SLIP_OFF, ContactEvent, changes, contact_event
 from fem_reference.line_contact import least_clearance, line_contact
 from fem_reference.model import Model
@@ -176,6 +177,9 @@ def _advance(model: Model, target: float, progress: _Progress, settings: Setting
             if attempt.status is Status.CONVERGED
             else None
         )
+        met = None if candidate is None else end_contact(model, progress.last, candidate, settings)
+        if met is not None:
+            return _end_at(progress, Status.END_CONTACT, met)
         ended = _accept_or_shorten(model, progress, candidate, goal, settings)
         if ended is None and progress.failures:
             ended = _find_obstacle(model, progress, attempt, goal, target, settings)
@@ -273,10 +277,7 @@ def _find_obstacle(
     at_floor = progress.trial < settings.min_step
     line = line_contact(model, progress.track, settings)
     if line is not None and line[0] <= target:
-        progress.ended_at, progress.pair, last = line
-        progress.track = (*progress.track, last)
-        progress.cause = Status.LINE_CONTACT
-        return Status.LINE_CONTACT
+        return _end_at(progress, Status.LINE_CONTACT, line)
     if not at_floor and progress.failures % _SEARCH_INTERVAL and not _approaches_fold(progress.track):
         return None
     located = limit_point(model, progress.last, max(progress.trial, settings.min_step), settings)
@@ -286,6 +287,14 @@ def _find_obstacle(
         progress.cause = Status.LIMIT_POINT
         return Status.LIMIT_POINT
     return _at_smallest_step(model, progress, attempt, goal, settings) if at_floor else None
+
+
+def _end_at(progress: _Progress, status: Status, found: tuple[float, int, Accepted]) -> Status:
+    """End the path at a load parameter, for a pair, with the state before."""
+    progress.ended_at, progress.pair, last = found
+    progress.track = (*progress.track, last)
+    progress.cause = status
+    return status
 
 
 def _at_smallest_step(
@@ -298,6 +307,9 @@ def _at_smallest_step(
         progress.cause, progress.pair = Status.LIMIT_POINT, None
         return Status.LIMIT_POINT
     lost = _slipped_off(progress.last.state, attempt)
+    if lost is not None and model.pairs[lost].radius > 0 and model.pairs[lost].ends:
+        # the pin pushes on, now at the corner
+        return _end_at(progress, Status.END_CONTACT, (progress.last.state.t, lost, progress.last))
     after = _after_slip(model, progress.last.state, goal, lost, settings) if lost is not None else None
     released = None
     if after is not None and after.status is Status.CONVERGED:

@@ -1,11 +1,12 @@
 """The discrete model: bodies with consecutive node numbers, and the contact pairs and ties that couple them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import block_diag, csr_matrix
+from scipy.sparse import block_diag, csr_matrix, identity
 
 from fem_reference.arrays import Array, Floats
 from fem_reference.body import ANCHORED, Body, build_body
@@ -311,8 +312,23 @@ def _pair(
         node=node,
         penalty=problem.penalty(contact),
         strips=strips,
+        ends=_free_ends(problem, bodies[touched], contact, carrier),
         origin=origin,
     )
+
+
+def _free_ends(
+    problem: SolidProblem, body: Body, contact: Contact, carrier: Callable[[int, csr_matrix], Carrier]
+) -> dict[str, Carrier]:
+    """Corners of the ends that no other strip shares; none for a point in contact with an axis."""
+    radius = next((pin.radius for pin in problem.pins if pin.name == contact.node), 0.0)
+    if contact.surface == "axis" and not radius:
+        return {}
+    joined = {end for joint in problem.joints for end in joint.ends}
+    number = [strip.name for strip in problem.strips].index(contact.strip)
+    weights = identity(len(body.mesh.nodes), format="csr")
+    free = (end for end in ENDS if f"{contact.strip}.{end}" not in joined)
+    return {end: carrier(number, weights[body.mesh.edges[end][[0, -1]]]) for end in free}
 
 
 def _carrier(body: Body, part: slice, nodes: int, rows: csr_matrix, origin: Floats) -> Carrier:

@@ -166,7 +166,7 @@ def _root(
             break
         share = v_low / (v_low - v_high) if isfinite(v_high) else 0.5
         t = end if _ == 0 else low.state.t + min(max(share, 1e-6), 1 - 1e-6) * width
-        at = _same_set(model, low, t, settings)
+        at = same_set(model, low, t, settings)
         v = -inf if at is None else value(at)
         if at is not None and v > 0:
             if t == end:
@@ -183,7 +183,7 @@ def _root(
     return low
 
 
-def _same_set(model: Model, last: Accepted, t: float, settings: Settings) -> Accepted | None:
+def same_set(model: Model, last: Accepted, t: float, settings: Settings) -> Accepted | None:
     """Equilibrium at ``t`` with the contact set of a state before; None if it does not converge."""
     attempt = equilibrium(model, predict(model, (last,), t, 1), settings, keep_set=True)
     return accept(model, attempt.state, settings, last) if attempt.status is Status.CONVERGED else None

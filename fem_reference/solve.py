@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from fem_reference.arrays import Floats, Ints
+from fem_reference.ends import nearest_end
 from fem_reference.events import SLIP_OFF, ContactEvent
 from fem_reference.march import Step, march
 from fem_reference.model import Model, build
@@ -16,7 +17,7 @@ from fem_reference.settings import Settings
 from fem_reference.state import Reaction, State, contact_force, reactions, spring_forces
 from fem_reference.status import Status
 
-EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT)
+EVENTS = (Status.LIMIT_POINT, Status.BIFURCATION, Status.LINE_CONTACT, Status.END_CONTACT)
 _SMALL_STRAIN = 0.8
 """Part of an element's area below which a limit point may be the mesh's."""
 CELL_TYPES = {"Q1": "quad", "Q2": "quad9", "Q2-full": "quad9"}
@@ -125,14 +126,20 @@ def _outcome(model: Model, last: Step) -> tuple[Status, str]:
     if last.status is Status.CONVERGED:
         return Status.COMPLETED, Status.COMPLETED.value
     pair = "" if last.pair is None else f" ({model.pairs[last.pair].name})"
+    if last.status is Status.END_CONTACT and last.pair is not None:
+        contact = model.pairs[last.pair].contact
+        pair = (
+            f": {contact.node} meets the {nearest_end(model.pairs[last.pair], last.state)} of {contact.strip}"
+        )
     cause = "" if last.cause is last.status else f" because {last.cause.value}"
     preposition = "at" if last.status in EVENTS else "after"
     squeezed = min(body.least_volume(last.state.u[part]) for body, part in model.bodies_and_nodes())
     if last.status is Status.LIMIT_POINT and squeezed < _SMALL_STRAIN:
         cause += f"; an element is compressed to {squeezed:.2g} of its area: refine the mesh, or the strain is beyond the comparison"
+    comma = "" if last.status is Status.END_CONTACT else ","
     return (
         last.status,
-        f"{last.status.value}{cause}{pair}, {preposition} load parameter {last.load_parameter:.9g}",
+        f"{last.status.value}{cause}{pair}{comma} {preposition} load parameter {last.load_parameter:.9g}",
     )
 
 

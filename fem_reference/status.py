@@ -25,4 +25,5 @@ class Status(Enum):
     ANOTHER_BRANCH = "the converged state is not on the branch of the previous state"
     LIMIT_POINT = "the load parameter has a limit on this branch of the discrete solid: beyond it there is no equilibrium nearby"
     BIFURCATION = "the path bifurcates: beyond this load parameter the followed branch is unstable"
+    END_CONTACT = "contact with the end of a strip is not modelled"
     LINE_CONTACT = "the strip is as curved as the round pin: beyond this point they touch along a line"

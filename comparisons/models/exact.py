@@ -207,13 +207,13 @@ def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
     if local.contact is None or not local.offset:
         return math.inf
     radius, path = scene.radius(local.contact), local.path - [local.beam.length, 0.0]
-    tip = BeamEnd("", np.zeros(2), np.array([-1.0, 0.0]), local.offset - radius, radius)
+    tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
     reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     corner = states.slip_off if radius and not np.isnan(states.slip_off) else math.inf
     for k, (start, end) in enumerate(pairwise(path)):
         if states.visited[k] is Outcome.CONTACT or reached[k] >= corner * reached[-1]:
             continue
-        part = tip.meeting(start, end)
+        part = tip.meeting((start[0], start[1]), (end[0], end[1]))
         x, y = start + part * (end - start)
         up = (-local.offset - start[1]) / (y - start[1]) if start[1] <= -local.offset < y else 1.0
         if start[0] + up * (x - start[0]) > -1e-12 * local.beam.length:

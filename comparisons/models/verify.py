@@ -167,7 +167,9 @@ def _depth(response: Response, scene: Scene, spec: ContactSpec, end: BeamEnd, k:
     if abs(response.contacts[spec.pair].arc_position[k] - arc[at]) < end.half + end.radius:
         return -math.inf
     inward = (1 + 2 * at) * np.gradient(place, arc, axis=0, edge_order=2)[at]
-    return -end._replace(place=place[at], inward=inward).room(_node(response, scene, spec, k))
+    (x, y), (dx, dy) = place[at].tolist(), inward.tolist()
+    node = _node(response, scene, spec, k).tolist()
+    return -end._replace(place=(x, y), inward=(dx, dy)).room((node[0], node[1]))
 
 
 def _node(response: Response, scene: Scene, spec: ContactSpec, k: int) -> Array:

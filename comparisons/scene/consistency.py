@@ -10,8 +10,6 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from comparisons.scene.contact import ContactSpec
 from comparisons.scene.ends import free_ends
 from comparisons.scene.joints import joint_rules
@@ -156,7 +154,7 @@ def _on_side(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
 def _clear_of_ends(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
     key, position = _position(contact, names)
     for end in free_ends(names.scene, contact):
-        over = -end.room(np.array(position))
+        over = -end.room(position)
         if over > 1e-12 * names.beam(contact.beam).length:
             where = f'the {end.name} of beam "{contact.beam}"'
             yield FieldError(key, position, f"must lie clear of {where}, overlap {over:.6g}")
