@@ -31,7 +31,7 @@ def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
     inside
         Whether a point of the contact curve is closest to the node.
     """
-    beyond, behind = [np.inf], [np.inf]
+    beyond, behind = list[float](), list[float]()
     for end, corners in pair.ends.items():
         first, last = corners.points(u)
         across = (last - first) / np.hypot(*(last - first))
@@ -43,7 +43,7 @@ def room(pair: Pair, u: Floats, node: Floats, *, inside: bool) -> float:
             beyond.append(float(np.hypot(ahead, max(aside, 0.0))) - pair.radius)
         elif aside < -_BESIDE * half:
             behind.append(ahead)
-    return min(beyond) if len(beyond) > 1 else -min(map(abs, behind))
+    return min(beyond, default=-min(map(abs, behind), default=-np.inf))
 
 
 def nearest_end(pair: Pair, state: State) -> str:
@@ -126,8 +126,8 @@ def _overlap(pair: Pair, number: int, last: Accepted, candidate: Accepted) -> fl
         if part == 0 or room(pair, u, node, inside=False) >= 0:
             continue
         at = pair.project(u, t)
-        if at.inside and not was_ahead:
-            return None  # it has touched the face before
+        if at.inside and not was_ahead and pair.gap(at) < 0:
+            return None  # it has touched between the ends before
         if room(pair, u, node, inside=at.inside) < 0:
             return float(t)
     return None
