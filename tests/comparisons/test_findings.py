@@ -160,7 +160,9 @@ def test_strips_that_are_thin_or_far_beyond_small_strain_are_named(name, mesh, s
 @pytest.mark.slow_at("thick-roll-axis-5", "thick-roll-5", "thick-roll-50", "thick-roll-axis-50")
 @pytest.mark.parametrize("count", [5, 20, 50])
 @pytest.mark.parametrize(
-    ("name", "begins", "face"), [("thick-roll", 0.6492235334, 7.5), ("thick-roll-axis", 0.3357007256, 0.0)]
+    ("name", "begins", "face"),
+    [("thick-roll", 0.6492235334, 7.5), ("thick-roll-axis", 0.3357007256, 0.0)],
+    ids=["thick-roll", "thick-roll-axis"],
 )
 def test_a_thick_beam_rolls_without_slip(name, begins, face, count):
     """The trapezium of the slip rate over the whole stick had errors of 7.3e-3 in the force, and slip began 1.2e-3 later."""
