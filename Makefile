@@ -26,7 +26,7 @@ results: setup
 
 # branches of elements, contact, stepping and exact answers, by the tests of both tiers; the modules and the bar are in pyproject.toml
 coverage: setup
-	$(PYTEST) --cov --ignore tests/tsm/test_batch.py tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
+	$(PYTEST) --cov tests/tsm tests/verification tests/comparisons/exact tsm comparisons/exact
 
 # a random sample of mutants of the modules in pyproject.toml; a mutant may collect without end, so memory has a limit
 mutation: setup

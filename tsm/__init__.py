@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from tsm.arc_length import trace
-from tsm.batch import BatchResult, solve_batch
 from tsm.elements import ELEMENTS
 from tsm.events import Event, EventKind
 from tsm.result import ContactHistory, FrictionHistory, Result, SupportHistory
@@ -25,7 +24,6 @@ from tsm.structure import (
 
 __all__ = [
     "ELEMENTS",
-    "BatchResult",
     "Beam",
     "ContactHistory",
     "ContactPair",
@@ -47,7 +45,6 @@ __all__ = [
     "SupportHistory",
     "march",
     "solve",
-    "solve_batch",
     "trace",
 ]
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -145,7 +145,7 @@ class Assembler:
             noise=4 * _EPS * contacts.stiffest * model.length,
             crowded=contacts.crowded,
             groups=groups,
-            assemble=lambda: self._tangent(state, groups, contacts, drag),
+            assemble=partial(self._tangent, state, groups, contacts, drag),
         )
 
     def _tangent(

@@ -1,4 +1,4 @@
-"""Ratios of beams: against the solid, elements against each other, cost of an iteration, many beams, batches."""
+"""Ratios of beams: against the solid, elements against each other, cost of an iteration, many beams."""
 
 from __future__ import annotations
 
@@ -187,44 +187,3 @@ def variants(count: int) -> list[tsm.Structure]:
             )
         )
     return found
-
-
-def apart(batch: tsm.BatchResult, alone: list[tsm.Result]) -> float:
-    """Largest difference of a batch from results one by one, forces over the largest force, positions over the length."""
-    largest = 0.0
-    for n, one in zip(range(0, len(batch), len(batch) // len(alone)), alone, strict=True):
-        (contact,), (held,), (tip,) = one.contacts.items(), one.supports.items(), one.tips.items()
-        F, L = contact[1].force.max(), one.model.length
-        assert batch.status[n] is one.status
-        for batched, single, scale in (
-            (batch.force[contact[0]], contact[1].force, F),
-            (batch.arc_position[contact[0]], contact[1].arc_position, L),
-            (batch.supports[held[0]].moment, held[1].moment, F * L),
-            (batch.tips[tip[0]], tip[1], L),
-        ):
-            reached = batched[n, : len(single)]
-            largest = max(largest, float(np.abs(reached - single).max()) / scale)
-    return largest
-
-
-def batches(gates: list[Gate], times: dict[str, float]) -> None:
-    """A batch of 1,000 variants of KS against every tenth of them one by one; equal where the tolerance is sharp."""
-    structures, t = variants(1000), np.arange(1, 51) / 50
-    some = structures[::10]
-    found: dict[str, Any] = {}
-    for name, settings, bar in (
-        ("default tolerance", tsm.Settings(), 1e-10),
-        ("tolerance 1e-12", tsm.Settings(tolerance=1e-12), 1e-12),
-    ):
-
-        def together(settings: tsm.Settings = settings) -> None:
-            found["batch"] = tsm.solve_batch(structures, t, settings)
-
-        def alone(settings: tsm.Settings = settings) -> None:
-            found["alone"] = [tsm.solve(structure, t, settings, throw=False) for structure in some]
-
-        batch, one_by_one = seconds(together, alone, repeats=3)
-        times |= {f"1,000 KS at once, {name}": batch, f"100 KS one by one, {name}": one_by_one}
-        gates.append(Gate(f"1,000 KS one by one over at once, {name}", 10 * one_by_one / batch, 20, True))
-        difference = apart(found["batch"], found["alone"])
-        gates.append(Gate(f"largest difference at once from one by one, {name}", difference, bar, False))

@@ -56,7 +56,6 @@ def main() -> int:
         solid.index_and_certificate,
         beams.many_beams,
         beams.exact_element,
-        beams.batches,
         solid.solution,
         solid.assembly,
         solid.memory,

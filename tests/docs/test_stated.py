@@ -16,8 +16,6 @@ RESULTS = [ROOT / "README.md", *sorted((ROOT / "docs" / "results").glob("*.md"))
 
 COMPUTED = {
     "accuracy.{}": "free mixed",
-    "batch.{}": "extremes trade",
-    "bench.1-000-ks-one-by-one-over-at-once-{}": "default-tolerance",
     "bench.assembly-over-factorisation-{}": "200x4",
     "bench.bilinearform-over-batched-products-{}": "50x2 200x4 1000x20",
     "bench.iteration-of-the-solid-over-superlu-with-four-solutions-{}": "50x2 200x4",

@@ -272,15 +272,6 @@ def test_a_wrong_coefficient_is_refused(friction: float) -> None:
 
 
 @pytest.mark.slow
-def test_a_batch_with_friction_is_solved_one_by_one() -> None:
-    scenes = [ks(0.0).structure("mixed", 8), ks(0.3).structure("mixed", 8)]
-    batch = tsm.solve_batch(scenes, np.array([0.5, 1.0]))
-    for n, scene in enumerate(scenes):
-        alone = tsm.solve(scene, np.array([0.5, 1.0])).contacts[PAIR].force
-        assert batch.force[PAIR][n] == pytest.approx(alone, rel=1e-12)
-
-
-@pytest.mark.slow
 def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
     structure = ks(0.3).structure()
     traced = tsm.trace(structure, arc_length=0.02, steps=400, throw=False)

@@ -222,10 +222,3 @@ def test_a_hinge_or_spring_that_cannot_be_is_refused() -> None:
         tsm.Hinge(beam="b", end="end", stiffness=-1.0)
     with pytest.raises(ValueError, match="y = -2"):
         tsm.Spring(beam="b", end="end", y=-2.0)
-
-
-def test_a_batch_of_hinged_structures_is_solved_one_by_one() -> None:
-    structures = [truss("mixed", height, 0.5) for height in (0.4, 0.5)]
-    batch = tsm.solve_batch(structures, T)
-    for n, structure in enumerate(structures):
-        assert batch[n].tips["left"] == pytest.approx(tsm.solve(structure, T).tips["left"], abs=0.0)

@@ -295,11 +295,3 @@ def test_point_force_inside_a_beam():
     assert np.abs(whole.shape("b", 0)[1] - alone.shape("b", 0)[1]).max() <= 1e-13
     with pytest.raises(ValueError, match="must be a node, see Beam"):
         hook(loads=(tsm.Load(beam="b", arc=0.4),))
-
-
-def test_batch_solves_them_one_by_one():
-    plain = replace(pushed(), line_loads=())
-    structures = [plain, replace(plain, beams=(replace(plain.beams[0], end_section=replace(THIN, EI=0.25)),))]
-    batch = tsm.solve_batch(structures, np.array([0.5, 1.0]))
-    alone = tsm.solve(structures[1], np.array([0.5, 1.0]))
-    assert batch.force["p->b"][1].tolist() == alone.contacts["p->b"].force.tolist()

@@ -1,4 +1,4 @@
-"""The contract of an element type. Solver, batch, accuracy, extremes and pictures use an element through it alone."""
+"""The contract of an element type. Solver, accuracy, extremes and pictures use an element through it alone."""
 
 from __future__ import annotations
 
