@@ -1,4 +1,4 @@
-"""Mechanisms: structures with hinges, or with few supports, that can move without strain."""
+"""Mechanisms: structures with hinges that can move without strain."""
 
 from __future__ import annotations
 

@@ -238,17 +238,6 @@ class Model:
         return len(self.block) == len(self.beams) and not len(self.closed)
 
     @cached_property
-    def hung(self) -> bool:
-        """Whether hinges, or fewer than three supports and springs, may let joined beams move without strain where no contact holds them."""
-        part = np.arange(len(self.coordinates))
-        for _ in self.beams:
-            for beam in self.beams.values():
-                part[beam.nodes] = part[beam.nodes].min()
-        held = [self.fixed, *([] if self.springs is None else [self.springs.dofs[0].ravel()])]
-        count = np.bincount(part[np.concatenate(held) // 3], minlength=len(part))
-        return bool(self.joints) or any(count[part[beam.nodes[0]]] < 3 for beam in self.beams.values())
-
-    @cached_property
     def pairs_on(self) -> dict[str, list[int]]:
         """Numbers of the contact pairs on every beam that is touched."""
         on: dict[str, list[int]] = {}

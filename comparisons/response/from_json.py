@@ -337,7 +337,7 @@ def _events(data: dict[str, Any]) -> tuple[ContactEvent, ...] | None:
 def _event(data: Any) -> ContactEvent:
     event = _table({"events": data}, "events")
     numbers = {
-        key: float(_numbers(event, key, (), "events."))
+        key: float(_numbers(event, key, (), "events.", gaps=key == "arc_position" and not event.get("pair")))
         for key in ("load_parameter", "arc_position", "force", "released")
     }
     return ContactEvent(

@@ -38,6 +38,7 @@ def _on_start(app: Sphinx) -> None:
     if up_to_date(page):
         return
     log = getLogger(__name__)
+    page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
     manual = write_manual(page.parent, lambda line: log.info("manual: %s", line), named(None))
     if not manual.passed:
         log.warning("manual: an answer lies beyond its tolerance")
