@@ -51,6 +51,8 @@ def of_a_file(first: int) -> Scene:
 KINDS = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "file": of_a_file}
 
 
+# the limit of time may ring inside a callback of the garbage collector, where it is ignored with a warning
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_completed_answers_of_the_day_are_right(
