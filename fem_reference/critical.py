@@ -22,6 +22,8 @@ _PRECISION = 1e-10
 """Largest relative change of a load parameter or amplitude at the end of a search."""
 _LOCATED = 1e-9
 """Relative error of a bifurcation's load parameter."""
+_VANISHING = 1e-5
+"""Part of the eigenvalue at the ends of a search that counts as zero at its root."""
 _LARGEST_DISPLACEMENT = 0.05
 """Largest root mean square displacement in the search for a limit point, relative to the length."""
 _FIRST_AMPLITUDE = 1e-2
@@ -67,7 +69,8 @@ class Located:
 def bifurcation(model: Model, a: Accepted, b: Accepted, settings: Settings) -> Located | None:
     """Locate a bifurcation between two states with different indices; None if they are on different branches.
 
-    The root of the eigenvalue nearest to zero by Brent's method. Where it has one sign at both states, no eigenvalue passes zero between them.
+    The root of the eigenvalue nearest to zero by Brent's method. Where it has one sign at both states, no eigenvalue passes zero between them,
+    and where it does not vanish at the root, the branch changes there.
     """
     met: dict[float, Accepted] = {a.state.t: a, b.state.t: b}
 
@@ -80,14 +83,17 @@ def bifurcation(model: Model, a: Accepted, b: Accepted, settings: Settings) -> L
         return smallest_eigenpair(model, met[t].tangent)[0]
 
     low, high = a.state.t, b.state.t
-    if value(low) * value(high) >= 0:
+    ends = value(low), value(high)
+    if ends[0] * ends[1] >= 0:
         return None
     try:
         root = float(brentq(value, low, high, rtol=_LOCATED))
     except _ElsewhereError:
         return None
     near = met[min(met, key=lambda t: abs(t - root))]
-    _, vector = smallest_eigenpair(model, near.tangent)
+    least, vector = smallest_eigenpair(model, near.tangent)
+    if abs(least) > _VANISHING * max(map(abs, ends)):
+        return None
     return Located(point=_point(model, BIFURCATION, root, vector), near=near, vector=vector)
 
 

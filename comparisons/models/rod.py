@@ -83,6 +83,11 @@ class Elastica(Rod):
         """Return the part of a cantilever's deflection under a force at its tip that is shear, and as much of stretch."""
         return max(3.0 * beam.EI / beam.length**2 * (1.0 / beam.EA + 1.0 / beam.GA) for beam in scene.beams)
 
+    def by_referee(self, scene: Scene) -> bool:
+        """Never: other scenes are refused."""
+        del scene
+        return False
+
     @property
     def reference(self) -> None:
         """None: without stretch and shear, the elastica is no reference."""

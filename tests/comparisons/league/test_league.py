@@ -57,7 +57,9 @@ def test_programs_are_measured_and_a_false_success_is_named(
     printed = capsys.readouterr().out
     rows = list(csv.DictReader((out / "league.csv").read_text().splitlines()))
     by = {(row["scene"], row["setting"]): row for row in rows}
-    assert [row["outcome"] for row in rows if row["program"].startswith("TSM")] == ["certified"] * 12
+    ours = {key: row["outcome"] for key, row in by.items() if row["program"].startswith("TSM")}
+    assert ours.pop(("ks-cantilever", "tsm timoshenko 5")) == "wrong", "a reaction off by more than 5 %"
+    assert list(ours.values()) == ["certified"] * 11
     liar = by["ks-cantilever", "liar"]
     assert (liar["outcome"], liar["said_success_and_was_wrong"]) == ("wrong", "True")
     exact, coarse = by["ks-cantilever", "tsm exact 1"], by["ks-cantilever", "tsm timoshenko 5"]

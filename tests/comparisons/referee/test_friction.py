@@ -299,7 +299,11 @@ def test_a_pin_that_sticks_where_it_touches_is_certified(
     for given in (response, replace(response, events=None)):
         found = all_along(scene, given)
         assert found.certified, found.line()
-        assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-11
+        # where a pin rolls, both integrate its place to 3e-14 L, which EA turns into a force
+        rolls = radius is not None and surface == "axis"
+        assert max(item.distance.largest[1] for item in found.judged if item.distance) < (
+            4e-10 if rolls else 1e-11
+        )
 
 
 def drawn(seed: int) -> Scene:

@@ -116,7 +116,7 @@ FAULTS: dict[str, tuple[Callable[[Response], Response], Verdict, str]] = {
             held_elsewhere(r),
             events=tuple(replace(e, arc_position=e.arc_position + 1e-3) if e.kind == "stick" else e for e in r.events or ()),
         ),
-        Verdict.NOT_AN_EQUILIBRIUM, "force off by 0.1",
+        Verdict.NOT_AN_EQUILIBRIUM, "force off by 10 %",
     ),
     "stick outside the cone": (stuck_outside, Verdict.INADMISSIBLE, "outside its cone"),
     "frictionless": (frictionless, Verdict.NOT_AN_EQUILIBRIUM, "off by"),

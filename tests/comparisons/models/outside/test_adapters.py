@@ -121,12 +121,13 @@ def test_calculix_under_a_pin_on_the_face_up_to_a_tenth(tmp_path: Path) -> None:
 
 
 SCENES = {
-    "opensees": {"tip": 5e-3, "roll": 5e-3, "portal": 5e-3},
+    "opensees": {"tip": 5e-3, "roll": 5e-3, "portal": 3e-2},
     "exudyn": {"tip": 1e-3, "roll": 1e-3},
     "felupe": {"tip": 2e-2},
     "calculix": {"tip": 5e-3},
 }
-"""Largest distance from the exact equilibrium with 10 elements, by program and scene."""
+"""Largest distance from the exact equilibrium with 10 elements, by program and scene. In the portal it is the displacement, by .022, from the shear
+that OpenSees's elements leave out, with any number of them."""
 STATED = {
     "tip": TIP,
     "roll": ROLL,
