@@ -11,7 +11,7 @@ from comparisons.referee.elements import Mesh, mesh_for, mesh_of, rotations
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.march import closed_pairs, corners, tangent
-from comparisons.referee.stability import index_of
+from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
@@ -174,10 +174,10 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
 def _followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> _Way:
     """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
 
-    A step is accepted if the tangents at both its ends explain it, and the index is unchanged. Displacements and rotations along all
+    A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the determinant. Displacements and rotations along all
     parts are compared, so that nothing depends on the elements.
     """
-    closed, grips, index = closed_pairs(first), first.layout.grips, index_of(first)
+    closed, grips, index = closed_pairs(first), first.layout.grips, _kind(first)
     start = first.layout.load_parameter
     ways, sign = abs(end - start), 1.0 if end > start else -1.0
     stops = sorted(sign * t for t in {*corners(scene), end} if 0.0 < sign * (t - start) <= ways)
@@ -213,13 +213,18 @@ def _unexplained(
     scene: Scene, now: Solution, rate: _Rate, there: Solution, index: int
 ) -> tuple[float, _Rate | None]:
     """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
-    if there.status is not SearchStatus.FOUND or index_of(there) != index:
+    if there.status is not SearchStatus.FOUND or _kind(there) != index:
         return np.inf, None
     off = _off(now, rate, there)
     if off >= _NEAR:
         return off, None
     behind = tangent(scene, there, _LITTLE * (now.layout.load_parameter - there.layout.load_parameter))
     return max(off, _off(there, behind, now)), behind
+
+
+def _kind(solution: Solution) -> int:
+    """What changes at a critical point: the index, or the sign of the determinant where there is none."""
+    return orientation_of(solution) if solution.layout.rubs else index_of(solution)
 
 
 def _off(now: Solution, rate: _Rate, there: Solution) -> float:

@@ -32,6 +32,13 @@ def index_of(solution: Solution) -> int:
     return negatives - 2 * len(solution.layout.parts)
 
 
+def orientation_of(solution: Solution) -> int:
+    """Return the sign of the determinant of the equations, with friction too; where it changes, a path passes a critical point."""
+    system = solution.system
+    assert system is not None, "an equilibrium has its equations"
+    return round(np.linalg.slogdet(system.hessian)[0] * np.prod(np.linalg.slogdet(system.blocks)[0]))
+
+
 def _directions(solution: Solution) -> Array:
     """Admissible variations as columns; the angles phi follow with ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
     layout, z = solution.layout, solution.z
