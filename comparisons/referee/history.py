@@ -175,7 +175,15 @@ class History:
         begin = max(item.load_parameter for item in begins.values())
         if begin >= last:
             return
-        near = self.near(middle, self.closed(middle), grips)
+        closed = self.closed(middle)
+        began = [self._begins[item].solution for item in sticking.values() if item in self._begins]
+        began = [item for item in began if closed_pairs(item).keys() == closed]
+        # from where a stick begins, if anything does not change; its cone may be empty at the answer's load parameters
+        near = (
+            max(began, key=lambda item: item.layout.load_parameter)
+            if began
+            else self.near(middle, closed, grips)
+        )
         rolled = roll(self.scene, near, (begin, last), grips, begins)
         if rolled is None:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
