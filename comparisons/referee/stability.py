@@ -36,7 +36,8 @@ def orientation_of(solution: Solution) -> int:
     """Return the sign of the determinant of the equations, with friction too; where it changes, a path passes a critical point."""
     system = solution.system
     assert system is not None, "an equilibrium has its equations"
-    return round(np.linalg.slogdet(system.hessian)[0] * np.prod(np.linalg.slogdet(system.blocks)[0]))
+    signs = [np.linalg.slogdet(system.hessian)[0], *np.linalg.slogdet(system.blocks)[0]]
+    return int(np.prod(np.sign(signs)))
 
 
 def _directions(solution: Solution) -> Array:
