@@ -152,7 +152,7 @@ class _Path:
         drive = self.newton.assembler.drive(equilibrium.state.load_parameter)
         rates = slip_rates(self.newton, equilibrium, drive)
         ahead = {k: math.copysign(rate, rate * direction.load) for k, rate in rates.items()}
-        return margins(self.model, equilibrium, self.newton.tolerance, ahead)
+        return margins(self.newton, equilibrium, ahead)
 
     def _start(self) -> Equilibrium:
         """Undeformed equilibrium whose contacts with friction slip or stick as the load grows."""

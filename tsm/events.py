@@ -31,7 +31,7 @@ from tsm.ends import clearance
 from tsm.friction import cone, traction
 from tsm.line_contact import curvature
 from tsm.model import Model
-from tsm.newton import Equilibrium
+from tsm.newton import Equilibrium, Newton
 from tsm.projection import arc_position
 from tsm.root import find_root
 
@@ -185,21 +185,24 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]
     return events
 
 
-def margins(
-    model: Model, equilibrium: Equilibrium, tolerance: float, slip_rates: Mapping[int, float]
-) -> list[Margin]:
+def least_push(newton: Newton, k: int) -> float:
+    """Contact force below which a pair is open: round-off of the touched beam, which may be far softer than others, or of the forces."""
+    beam = newton.model.pairs[k].target.beam
+    own = max(ROUND_OFF, newton.tolerance) * beam.section.EI / beam.length**2
+    return max(own, newton.noise * newton.model.least_force)
+
+
+def margins(newton: Newton, equilibrium: Equilibrium, slip_rates: Mapping[int, float]) -> list[Margin]:
     """Margins of the events that may come next.
 
     Parameters
     ----------
-    model, equilibrium
-        The structure and its equilibrium.
-    tolerance : float
-        Tolerance of the solution, by which forces are measured.
+    newton, equilibrium
+        The solution, by whose tolerance forces are measured, and an equilibrium.
     slip_rates : mapping
         Rates of the pairs that slip, positive the way they slip; a pair without a rate is taken to slip on.
     """
-    state = equilibrium.state
+    model, state = newton.model, equilibrium.state
     upcoming: list[Margin] = []
     for k, (pair, touch) in enumerate(zip(model.pairs, state.touches, strict=True)):
         if pair.pair.offset > 0:
@@ -208,11 +211,9 @@ def margins(
         if touch is not None:
             arc = pair.arc_position(touch)
             inside = min(arc, pair.target.beam.length - arc) / model.length
-            force = normal_force(model, equilibrium, k) / model.force_scale
             upcoming.append(Margin(kind=EventKind.SLIP_OFF, pair=k, value=inside))
-            upcoming.append(
-                Margin(kind=EventKind.RELEASE, pair=k, value=force * min(1.0, ROUND_OFF / tolerance))
-            )
+            push = normal_force(model, equilibrium, k) * ROUND_OFF / least_push(newton, k)
+            upcoming.append(Margin(kind=EventKind.RELEASE, pair=k, value=push))
             if touch.grip is not None and touch.grip.slip:
                 value = slip_rates.get(k, model.length) / model.length
                 upcoming.append(Margin(kind=EventKind.STICK, pair=k, value=value))

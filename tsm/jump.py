@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tsm.contact_set import changed
-from tsm.events import ROUND_OFF, EventKind, normal_force
+from tsm.events import EventKind, least_push, normal_force
 from tsm.fall import Fall, descends, met
 from tsm.friction import grips
 from tsm.newton import Equilibrium
@@ -59,12 +59,12 @@ class Jump:
             state = equilibrium.state
             energy = newton.potential(state)
             forces = [
-                (normal_force(model, equilibrium, k), k)
+                (normal_force(model, equilibrium, k) / least_push(newton, k), k)
                 for k, touch in enumerate(state.touches)
                 if touch is not None
             ]
             least, k = min(forces, default=(0.0, -1))
-            if least >= -ROUND_OFF * model.force_scale:
+            if least >= -1.0:
                 break
             touch = state.touches[k]
             assert touch is not None, "a pulling contact is closed"

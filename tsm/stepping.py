@@ -119,7 +119,7 @@ class Stepper:
 
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         rates = slip_rates(self.newton, equilibrium, self._drive(equilibrium.state.load_parameter))
-        return margins(self.model, equilibrium, max(self.newton.tolerance, self.newton.noise), rates)
+        return margins(self.newton, equilibrium, rates)
 
     def _drive(self, t: float) -> Drive:
         """What changes on the way to t; at the last equilibrium, on the way ahead."""
