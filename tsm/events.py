@@ -27,6 +27,7 @@ from enum import Enum
 
 import numpy as np
 
+from tsm import scaling
 from tsm.ends import clearance
 from tsm.friction import cone, traction
 from tsm.line_contact import curvature
@@ -186,10 +187,12 @@ def passes(model: Model, before: Equilibrium, after: Equilibrium) -> list[Event]
 
 
 def least_push(newton: Newton, k: int) -> float:
-    """Contact force below which a pair is open: round-off of the touched beam, which may be far softer than others, or of the forces."""
-    beam = newton.model.pairs[k].target.beam
-    own = max(ROUND_OFF, newton.tolerance) * beam.section.EI / beam.length**2
-    return max(own, newton.noise * newton.model.least_force)
+    """Tensile contact force that is round-off: of the touched beam, which may be far softer than others, unless a beam's end touches it."""
+    pair = newton.model.pairs[k]
+    beam, section = pair.target.beam, pair.target.beam.section
+    own = max(ROUND_OFF, newton.tolerance) * section.EI / beam.length**2
+    noise = scaling.ROUND_OFF * section.EA * beam.elements
+    return max(own, noise if pair.node < 0 else newton.noise * newton.model.least_force)
 
 
 def margins(newton: Newton, equilibrium: Equilibrium, slip_rates: Mapping[int, float]) -> list[Margin]:

@@ -42,14 +42,14 @@ _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 
 
-_SWITCHED = ("touch", "release")
+SWITCHED = ("touch", "release")
 """Kinds of events without a jump at which a contact closes or opens."""
 _POINTS = 201
 """Points of an axis from which an equilibrium with other contacts is sought."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Way:
+class Way:
     """The end of a followed path, and why it does not lead on."""
 
     end: Solution
@@ -57,6 +57,7 @@ class _Way:
 
     @property
     def t(self) -> float:
+        """Load parameter of the end."""
         return self.end.layout.load_parameter
 
 
@@ -78,18 +79,18 @@ def departures(
         if there is None:
             continue
         if now.status is SearchStatus.FOUND:
-            events = _between(response, now.layout.load_parameter, there.load_parameter)
+            events = events_between(response, now.layout.load_parameter, there.load_parameter)
             same = all(closed[i] == closed_pairs(now).keys() for i in range(max(begin, 0), k + 1))
             way = now if same and not events else _switched_on_the_way(scene, now, events)
             if way is None or not _alike(way, there.solution):
                 pass
-            elif way is now or not _followed(scene, way, there.load_parameter, there.solution).stopped:
+            elif way is now or not followed(scene, way, there.load_parameter, there.solution).stopped:
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
                 yield from filter(None, [departs(scene, way, there.solution)])
         now, begin = there.solution, k
 
 
-def _between(response: Response, after: float, until: float) -> list[ContactEvent]:
+def events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
     """Events at which contacts open, close, stick or slip."""
     events = [event for event in response.events or () if event.kind != "pass-through"]
     return [event for event in events if after <= event.load_parameter <= until]
@@ -100,16 +101,16 @@ def _switched_on_the_way(scene: Scene, now: Solution, events: Sequence[ContactEv
     if not events or now.layout.rubs:
         return None
     for event in events:
-        way = _followed(scene, now, event.load_parameter)
-        if event.kind not in _SWITCHED or way.stopped:
+        way = followed(scene, now, event.load_parameter)
+        if event.kind not in SWITCHED or way.stopped:
             return None
-        now = _switched(scene, way.end, event)
+        now = switched(scene, way.end, event)
         if now.status is not SearchStatus.FOUND:
             return None
     return now
 
 
-def _switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
+def switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
     """Return the equilibrium with the contact of an event closed or open."""
     exact, arcs = described(scene, now), closed_pairs(now)
     arcs.pop(event.pair, None)
@@ -154,7 +155,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     Where the path ends at a bifurcation, all stable branches that lead back to it are right.
     """
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    way = _followed(scene, first, end, last)
+    way = followed(scene, first, end, last)
     if not way.stopped:
         off = _apart(_state(way.end), _state(last))
         return (
@@ -162,7 +163,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
             if off < _SAME
             else f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
         )
-    back = _followed(scene, last, start)
+    back = followed(scene, last, start)
     apart = abs(back.t - way.t) if back.stopped else np.inf
     if apart < _MEET * (end - start) and _apart(_state(way.end), _state(back.end)) < _MEETING:
         return ""
@@ -171,7 +172,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     return f"no continuous path{kind} leads on beyond load parameter {way.t:.6g}"
 
 
-def _followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> _Way:
+def followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> Way:
     """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
 
     A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the determinant. Displacements and rotations along all
@@ -188,7 +189,7 @@ def _followed(scene: Scene, first: Solution, end: float, last: Solution | None =
         rate = rate or tangent(scene, now, sign * _LITTLE * left)
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
-            return _Way(end=now, stopped=True)
+            return Way(end=now, stopped=True)
         layout = lay_out(scene, t, closed, grips)
         mesh, z, bubbles = (
             mesh_for(layout, now.mesh),
@@ -205,8 +206,8 @@ def _followed(scene: Scene, first: Solution, end: float, last: Solution | None =
         if off < _NEAR:
             now, rate = there, None if t == stop else behind
         elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
-            return _Way(end=now, stopped=True)
-    return _Way(end=now)
+            return Way(end=now, stopped=True)
+    return Way(end=now)
 
 
 def _unexplained(

@@ -1,12 +1,17 @@
 """Checks between the load parameters of an answer: no node passes through a beam, and contacts change at events only."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.equilibrium import SearchStatus, solve
 from comparisons.referee.faces import face_slope, touching_distance
+from comparisons.referee.follow import SWITCHED, at_rest, events_between, followed, switched
+from comparisons.referee.start import answer_state
+from comparisons.referee.state import described
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -16,8 +21,19 @@ SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
 _CLOSED = ("pass-through", "slip", "stick")
 """Kinds of events at which a contact stays closed."""
+_STEPS, _SAME = 32, 1e-2
+"""Steps in which a path is followed where chords cross, and largest distance of its end from the answer, over the length."""
 _AROUND = 0.2
 """Distance from touching an end, over the node's path, within which a node may have passed around the end."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Moment:
+    """A load parameter, with the axis of a beam and the place of a node."""
+
+    t: float
+    line: Array
+    node: Array
 
 
 def passages(response: Response, scene: Scene) -> Iterator[str]:
@@ -53,43 +69,75 @@ def _passed_through(
 ) -> float | None:
     """Load parameter by which the node of an open pair has passed through the deflected axis; None if it has not.
 
-    Between two load parameters the axis and the ends of beams are assumed to move in straight lines. After a closed contact the
-    node is followed only if it ends behind the axis, and after a slip-off it is not followed.
+    Between two load parameters the axis and the ends of beams move in straight lines; where these cross, along the path that is followed.
+    After a closed contact the node is followed only if it ends behind the axis, and after a slip-off it is not followed.
     """
     closed = contact.force > 0.0
-    where = _whereabouts(
-        _line(response, scene, spec.beam, -1), _node(response, scene, spec.node, -1, 0.0), scene, spec
-    )
+    now = _moment(response, scene, spec, -1)
+    where = _whereabouts(now.line, now.node, scene, spec)
     for k, t in enumerate(map(float, response.load_parameter)):
         if t >= contact.slip_off:
             return None
         if closed[k]:
             where = "before"
             continue
-        line, node = _line(response, scene, spec.beam, k), _node(response, scene, spec.node, k, t)
-        last, where = where, _whereabouts(line, node, scene, spec)
+        now = _moment(response, scene, spec, k)
+        last, where = where, _whereabouts(now.line, now.node, scene, spec)
         if where == "before" or (k > 0 and closed[k - 1] and where != "behind"):
             continue
-        if _goes_through(response, scene, spec, k, last):
-            return t
+        if _goes_through(scene, spec, _moment(response, scene, spec, k - 1), now, last):
+            way = _followed(response, scene, spec, k)
+            if not way or _goes_through_on(scene, spec, way, last):
+                return t
     return None
 
 
-def _goes_through(response: Response, scene: Scene, spec: ContactSpec, k: int, where: str) -> bool:
-    """Whether a node, first at the side `where`, passes through the axis before load parameter k and does not return.
+def _goes_through_on(scene: Scene, spec: ContactSpec, way: list[_Moment], where: str) -> bool:
+    """Whether a node, first at the side `where`, passes through the axis on a followed way and does not return."""
+    through = False
+    for first, last in pairwise(way):
+        before, where = where, _whereabouts(last.line, last.node, scene, spec)
+        through = where != "before" and (through or _goes_through(scene, spec, first, last, before))
+    return through
+
+
+def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> list[_Moment]:
+    """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
+    way, arcs = [_moment(response, scene, spec, k - 1)], response.axis_line(spec.beam, k)[0]
+    end = _moment(response, scene, spec, k)
+    events = events_between(response, way[0].t, end.t)
+    now = at_rest(scene) if k == 0 else solve(scene, answer_state(response, scene, k - 1))
+    if now.layout.rubs or any(event.kind not in SWITCHED for event in events):
+        return []
+    stops = [(t, None) for t in np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist()]
+    for t, event in sorted(
+        [*stops, *((event.load_parameter, event) for event in events)], key=lambda stop: stop[0]
+    ):
+        step = None if now.status is not SearchStatus.FOUND else followed(scene, now, t)
+        if step is None or step.stopped:
+            return []
+        now = step.end
+        exact = described(scene, now)
+        node = exact.ends[spec.node] if "." in spec.node else np.array(scene.pin(spec.node).position(t))
+        way.append(_Moment(t=t, line=exact.shape(spec.beam, arcs).position, node=node))
+        now = switched(scene, now, event) if event else now
+    apart = np.hypot(*(way[-1].line - end.line).T).max()
+    return way if apart <= _SAME * scene.beam(spec.beam).length else []
+
+
+def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment, where: str) -> bool:
+    """Whether a node, first at the side `where`, passes through the axis between two moments and does not return.
 
     A node that returns may have been in contact in between.
     """
-    t, t_after = (0.0 if k == 0 else float(response.load_parameter[k - 1])), float(response.load_parameter[k])
-    line, line_after = _line(response, scene, spec.beam, k - 1), _line(response, scene, spec.beam, k)
+    line, line_after = begin.line, end.line
     parts = np.linspace(0.0, 1.0, SAMPLES)
     touched = np.concatenate([line, line_after])
     if "." in spec.node:
-        first, last = (_node(response, scene, spec.node, j, 0.0) for j in (k - 1, k))
-        nodes = (1.0 - parts)[:, None] * first + parts[:, None] * last
+        nodes = (1.0 - parts)[:, None] * begin.node + parts[:, None] * end.node
     else:
         pin = scene.pin(spec.node)
-        nodes = np.array([pin.position(float((1.0 - u) * t + u * t_after)) for u in parts])
+        nodes = np.array([pin.position(float((1.0 - u) * begin.t + u * end.t)) for u in parts])
     apart = np.maximum(nodes.min(axis=0) - touched.max(axis=0), touched.min(axis=0) - nodes.max(axis=0))
     if apart.max() > float(np.max(_reach(line, scene, spec))):
         return False
@@ -110,6 +158,16 @@ def _near_an_end(line: Array, line_after: Array, nodes: Array, short: Array) -> 
     """Whether a node crosses the axis so near to an end that it may have passed around the end; `short` are its distances from touching them."""
     way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
     return bool((short <= _AROUND * way).any())
+
+
+def _moment(response: Response, scene: Scene, spec: ContactSpec, k: int) -> _Moment:
+    """A beam and a node at load parameter k; undeformed for k = -1."""
+    t = float(response.load_parameter[k]) if k >= 0 else 0.0
+    return _Moment(
+        t=t,
+        line=_line(response, scene, spec.beam, k),
+        node=_node(response, scene, spec.node, k, t),
+    )
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:

@@ -7,6 +7,7 @@ import pytest
 
 from comparisons.models import solve
 from comparisons.models.options import Options
+from comparisons.referee import certify
 from comparisons.scene import load_scene
 
 STOPPED = Path(__file__).parent / "stopped"
@@ -37,3 +38,21 @@ def test_a_contact_passes_a_node_where_neither_element_has_an_equilibrium(elemen
     assert answer.completed, answer.message
     for pair, contact in exact.contacts.items():
         assert answer.contacts[pair].force == pytest.approx(contact.force, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "count", [1, 5, pytest.param(2, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("name", ["passes-by", "passes-by-under-loads", "soft-beside-stiff"])
+def test_an_answer_does_not_hang_on_the_number_of_load_parameters(name: str, count: int) -> None:
+    """A node passes beside a beam's end on a bent way, whose chord cuts the beam; a contact opens by the force of a beam that is 4e7 times softer than another."""
+    scene = load_scene(str(STOPPED / f"{name}.toml"))
+    answer, other = (
+        solve(replace(scene, load_parameters=number), "tsm", Options(element="exact"))
+        for number in (count, 12)
+    )
+    assert answer.completed, answer.message
+    found = certify(answer, replace(scene, load_parameters=count))
+    assert found.certified, found.line()
+    for pair, contact in answer.contacts.items():
+        assert other.contacts[pair].force[-1] == pytest.approx(contact.force[-1], rel=1e-9)
