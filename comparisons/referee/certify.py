@@ -217,8 +217,9 @@ def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
     steps = range(len(response.load_parameter))
     if response.completed and len(steps) < len(scene.times):
         yield f"{len(steps)} of {len(scene.times)} load parameters, and the status is {response.status}"
-    yield from (sentence for k in steps for sentence in impossible(response, scene, k))
-    if not steps or any(next(impossible(response, scene, k), "") for k in steps):
+    contradictions = [sentence for k in steps for sentence in impossible(response, scene, k)]
+    yield from contradictions
+    if not steps or contradictions:
         return
     # the solid is in balance with the pins where they touch it, and its contacts may lie inside it by their penetration
     yield from balance_failures(response, scene, allowed if response.outside else BALANCE)

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.basis import DEGREE, shapes
 from comparisons.referee.elements import Mesh, mesh_for, mesh_of, rotations
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
+from comparisons.referee.equilibrium import Rough, SearchStatus, Solution, correct, solve
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.march import closed_pairs, corners, tangent
 from comparisons.referee.stability import index_of, orientation_of
@@ -24,7 +25,7 @@ _NEAR = 0.2
 """Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
 _SHORT = 0.1
 """Largest correction of a tangent prediction [rad, L] at which the step is accepted."""
-_AIM = 0.1
+_AIM = 0.12
 """Correction over the change for which the next step is chosen; it grows with the step."""
 _ROUND_OFF = 1e-9
 """Changes of rotations [rad] and lengths below this are round-off."""
@@ -32,6 +33,8 @@ _LITTLE = 1e-7
 """Fraction of the remaining path over which the tangent is a difference."""
 _ITERATIONS = 12
 """Largest number of Newton iterations after a prediction."""
+_ROUGHLY = Rough(most=_SHORT, enough=1e-9)
+"""Newton's method after a prediction: corrections from which no step is accepted, and those after which the next is round-off."""
 _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _SAME = 1e-6
@@ -98,11 +101,11 @@ def events_between(response: Response, after: float, until: float) -> list[Conta
 
 def _switched_on_the_way(scene: Scene, now: Solution, events: Sequence[ContactEvent]) -> Solution | None:
     """Follow the path through events and return the equilibrium after the last; None where one jumps, or there is none."""
-    if not events or now.layout.rubs:
+    if not events or now.layout.rubs or any(event.kind not in SWITCHED for event in events):
         return None
     for event in events:
         way = followed(scene, now, event.load_parameter)
-        if event.kind not in SWITCHED or way.stopped:
+        if way.stopped:
             return None
         now = switched(scene, way.end, event)
         if now.status is not SearchStatus.FOUND:
@@ -175,8 +178,8 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
 def followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> Way:
     """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
 
-    A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the determinant. Displacements and rotations along all
-    parts are compared, so that nothing depends on the elements.
+    A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the
+    determinant. Displacements and rotations along all parts are compared, so that nothing depends on the elements.
     """
     closed, grips, index = closed_pairs(first), first.layout.grips, _kind(first)
     start = first.layout.load_parameter
@@ -200,7 +203,7 @@ def followed(scene: Scene, first: Solution, end: float, last: Solution | None = 
         if last and t == end:
             off, behind = _unexplained(scene, now, rate, last, index)
         if off >= _NEAR:
-            there = correct(layout, mesh, z, bubbles, _ITERATIONS)
+            there = correct(layout, mesh, z, bubbles, _ITERATIONS, _ROUGHLY)
             off, behind = _unexplained(scene, now, rate, there, index)
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
@@ -241,6 +244,7 @@ def _apart(one: Array, other: Array) -> float:
     return float(np.abs(one - other).max())
 
 
+@lru_cache(maxsize=2)
 def _state(solution: Solution) -> Array:
     return _shape(solution.layout, solution.mesh, solution.z, solution.bubbles)
 
@@ -248,10 +252,11 @@ def _state(solution: Solution) -> Array:
 def _shape(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
     forces = [k for part in layout.parts for k in (part.force, part.force + 1)]
-    coefficients, rows = rotations(mesh, z, bubbles), [np.delete(z[: layout.unknowns], forces)]
-    for k in range(len(layout.parts)):
-        elements = np.flatnonzero(mesh.part == k)
-        inside = elements[np.searchsorted(mesh.start[elements], _PLACES, side="right") - 1]
-        xi = 2.0 * (_PLACES - mesh.start[inside]) / mesh.share[inside] - 1.0
-        rows.append((shapes(xi)[0] * coefficients[inside]).sum(axis=1))
-    return np.concatenate(rows)
+    rest, parts = np.delete(z[: layout.unknowns], forces), range(len(layout.parts))
+    places = np.tile(_PLACES, len(parts))
+    own = [np.flatnonzero(mesh.part == k) for k in parts]
+    inside = np.concatenate(
+        [item[np.searchsorted(mesh.start[item], _PLACES, side="right") - 1] for item in own]
+    )
+    xi = 2.0 * (places - mesh.start[inside]) / mesh.share[inside] - 1.0
+    return np.append(rest, (shapes(xi)[0] * rotations(mesh, z, bubbles)[inside]).sum(axis=1))

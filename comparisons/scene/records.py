@@ -182,7 +182,7 @@ class Scene(Record):
         more = bool(own) and own[0].end == "end" and (len(own) == 1 or own[0].held != own[1].held)
         return "start" if more else "end"
 
-    @property
+    @cached_property
     def times(self) -> tuple[float, ...]:
         """The load parameters: ``j + k/n``, k = 1..n, of the stage j = 0, 1, ... with n load parameters."""
         counts = (self.load_parameters, *(stage.load_parameters for stage in self.stages))
