@@ -86,7 +86,7 @@ class Stepper:
         self.settings = settings
         self.newton = Newton(model, settings)
         start = self.newton.solve(initial_state(model))
-        if model.joints and mechanism(self.newton, start, self.newton.assembler.drive(0.0)):
+        if mechanism(self.newton, start, self.newton.assembler.drive(0.0)):
             start = replace(start, status=Status.MECHANISM)
         self.track, self.log = Track(self.newton, start), StepLog()
         if model.rubbed:
@@ -174,7 +174,7 @@ class Stepper:
         if 0 < t < self.model.stages and t == round(t):
             state = self.newton.prescribed(here.state, math.nextafter(t, math.inf))
             here = replace(here, state=state, system=self.newton.assembler.linearise(state))
-            if self.model.joints and mechanism(self.newton, here, self._drive(state.load_parameter)):
+            if mechanism(self.newton, here, self._drive(state.load_parameter)):
                 return Status.MECHANISM
         self.turned = here.state.load_parameter
         gripped = self._gripped(here, here.state) if self.model.rubbed else here

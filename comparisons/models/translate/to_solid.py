@@ -103,7 +103,7 @@ def _is_clamp(scene: Scene, spec: SupportSpec) -> bool:
         return True
     if scene.beam(spec.beam).solid_clamp == "full":
         raise ModelError(
-            f'the solid model has a full clamp at rest without joint, load and spring, "{spec.node}" is another'
+            f'the solid model has a full clamp at rest without joint, load and spring, "{spec.node}" is another; use solid_clamp = "rod"'
         )
     return False
 
@@ -161,8 +161,10 @@ def _turns_with_joint(scene: Scene, node: str, kind: str) -> bool:
     if node not in hinges:
         return True
     if any(end not in hinges or hinges[end] for end in ends):
+        plain = next((end for end in ends if end not in hinges), None)
+        way = f'state it at "{plain}"' if plain else "use a pinned support and a [[spring]] with a rotation"
         raise ModelError(
-            f'the solid model states the rotation of a joint at an end without a hinge, the {kind} "{node}" has one'
+            f'the solid model states the rotation of a joint at an end without a hinge, the {kind} "{node}" has one; {way}, or --model tsm'
         )
     return False
 

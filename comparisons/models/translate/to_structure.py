@@ -62,7 +62,10 @@ def beams_refusal(scene: Scene) -> str | None:
     """Return why no element of the tangent stiffness method states `scene`; None if one does."""
     for contact in scene.contacts:
         if contact.friction and _face_slope(scene, contact):
-            return f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers"
+            return (
+                f"contact {contact.pair}: the tangent stiffness method does not state friction on the face of a beam whose height tapers; "
+                'use --model solid, surface = "axis" or one height'
+            )
     return unstated(scene, "the tangent stiffness method", BEAMS)
 
 

@@ -86,7 +86,7 @@ def test_what_elements_and_contacts_do_not_state_is_refused_in_one_line():
     with pytest.raises(ModelError, match=r"such elements are straight and uniform.*; use "):
         solve(scene(), "tsm", Options(element="timoshenko"))
     rubbed = replace(scene(), contacts=(replace(scene().contacts[0], surface="face", friction=0.2),))
-    why = "does not state friction on the face of a beam whose height tapers"
+    why = 'does not state friction on the face of a beam whose height tapers; use --model solid, surface = "axis" or one height'
     for model in ("tsm", "rod"):
         assert why in MODELS[model].refusal(rubbed)
         with pytest.raises(ModelError, match=why):
