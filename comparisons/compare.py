@@ -5,10 +5,12 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 import tsm
 from comparisons import models
 from comparisons.budget import Budget, error_budget
-from comparisons.errors import Errors, error_histories, errors, largest
+from comparisons.errors import Errors, error_histories, errors, event_differences, largest
 from comparisons.files import alone_in, writable_folder, write_text
 from comparisons.models import Model, certified, find, solve
 from comparisons.models.options import ModelError, Options
@@ -16,6 +18,7 @@ from comparisons.models.progress import Count, Watch, uncounted, unwatched
 from comparisons.models.theory import bending
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.output import json_text
+from comparisons.quantities import KEPT, PATH
 from comparisons.referee import Verdict
 from comparisons.response import Response
 from comparisons.response.to_json import as_dict
@@ -101,6 +104,17 @@ class Comparison:
         return [
             row for row in self.rows if row.label != ELASTICA.label and row.response.completed and _apart(row)
         ]
+
+    @property
+    def other_events(self) -> list[str]:
+        """A sentence for each completed run about the first event that it or the reference does not have."""
+        found = []
+        for exact in (row.response for row in self.rows if row.label == ROD.label):
+            for row in self.rows:
+                events = event_differences(row.response, exact) if row.response.completed else []
+                missing = [item for item in events if item.apart == np.inf]
+                found += [item.line(row.label, ROD.label) for item in missing[:1]]
+        return found
 
     @property
     def wrong(self) -> list[Row]:
@@ -215,10 +229,11 @@ def _cause(model: Model, options: Options, scene: Scene, reference: Response) ->
 
 def _errors(response: Response, reference: Response, scene: Scene) -> Errors:
     """Return the errors of a run; over the path as far as the run came."""
-    found = errors(response, reference, scene)
+    names = (*KEPT, *PATH)
+    found = errors(response, reference, scene, quantities=names)
     if response.completed:
         return found
-    _, reached = error_histories(response, reference, scene)
+    _, reached = error_histories(response, reference, scene, quantities=names)
     return {**found, "path": {name: largest(values) for name, values in reached.items()}}
 
 

@@ -12,11 +12,12 @@ one of the responses has a material force.
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.quantities import KEPT, QUANTITIES, SCOPES
+from comparisons.quantities import COMPARED, KEPT, SCOPES
 from comparisons.response import Array, Response
 from comparisons.response.axis import STATIONS, axes_at_stations
 from comparisons.response.material import frictions
@@ -95,7 +96,7 @@ def errors(
     end : float, optional
         The load parameter of the scope ``end``, the reference's last if not given.
     quantities : iterable of str
-        Keys of `comparisons.quantities.QUANTITIES`.
+        Keys of `comparisons.quantities.COMPARED`.
     """
     names = tuple(quantities)
     last = reference.load_parameter[-1:]
@@ -128,6 +129,10 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
 def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:
     """Return the pair, support or beam, and the load parameter, where a quantity has its largest error; empty if there is none."""
     shared, _, _ = _shared(response, reference)
+    if quantity == "event":
+        events = event_differences(response, reference)
+        most = max(events, key=lambda item: item.apart, default=None)
+        return "" if most is None or not most.apart else most.line(response.model, reference.model)
     columns = error_columns(response, reference, scene, quantity)
     worst = {name: largest(values) for name, values in columns.items()}
     worst = {name: size for name, size in worst.items() if size > 0.0}
@@ -135,6 +140,60 @@ def worst_place(response: Response, reference: Response, scene: Scene, quantity:
         return ""
     name = max(worst, key=lambda name: worst[name])
     return f"{name} at load parameter {shared[int(np.nanargmax(columns[name]))]:.6g}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class EventDifference:
+    """An event of a pair in two responses; a load parameter is nan where a response has no such event."""
+
+    kind: str
+    pair: str
+    own: float
+    true: float
+
+    @property
+    def apart(self) -> float:
+        """Difference of the load parameters, infinite where one response has no such event."""
+        return float(np.nan_to_num(abs(self.own - self.true), nan=np.inf))
+
+    def line(self, own: str, true: str) -> str:
+        """Return the difference as a sentence about two responses by their names."""
+        first, other, t = (own, true, self.own) if np.isfinite(self.own) else (true, own, self.true)
+        last = f"{other} has at {self.true:.6g}" if np.isfinite(self.apart) else f"{other} does not have"
+        return f"{first} has a {self.kind} of {self.pair} at load parameter {t:.6g}, which {last}"
+
+
+def event_differences(response: Response, reference: Response) -> list[EventDifference]:
+    """Return the events of both responses up to the last load parameter that both have, without the passing of nodes and the touch at rest.
+
+    A model may state its slip-offs alone; they are compared where both have one.
+    """
+    shared, _, _ = _shared(response, reference)
+    both = [_events(item, shared[-1]) if len(shared) else {} for item in (response, reference)]
+    stated = response.events is not None and reference.events is not None
+    return [
+        EventDifference(kind=kind, pair=pair, own=own, true=true)
+        for kind, pair in sorted(
+            both[0].keys() | both[1].keys() if stated else both[0].keys() & both[1].keys()
+        )
+        for own, true in zip_longest(*(item.get((kind, pair), []) for item in both), fillvalue=np.nan)
+    ]
+
+
+def _events(response: Response, last: float) -> dict[tuple[str, str], list[float]]:
+    """Load parameters up to the last one, by kind and pair."""
+    found: dict[tuple[str, str], list[float]] = {}
+    if response.events is None:
+        slips = {("slip-off", pair): item.slip_off for pair, item in response.contacts.items()}
+        return {key: [t] for key, t in slips.items() if t <= last}
+    for event in response.events:
+        if (
+            event.pair in response.contacts
+            and event.kind != "pass-through"
+            and 0.0 < event.load_parameter <= last
+        ):
+            found.setdefault((event.kind, event.pair), []).append(event.load_parameter)
+    return found
 
 
 def error_histories(
@@ -203,6 +262,27 @@ def _arc(pair: _Pair) -> Columns:
     return columns
 
 
+def _gap(pair: _Pair) -> Columns:
+    columns = {}
+    for contact in pair.scene.contacts:
+        own, true = pair.response.contacts[contact.pair], pair.reference.contacts[contact.pair]
+        apart = np.abs(own.gap[pair.own_steps] - true.gap[pair.reference_steps])
+        closed = (own.force[pair.own_steps] != 0.0) & (true.force[pair.reference_steps] != 0.0)
+        columns[contact.pair] = np.where(closed, np.nan, apart / pair.scene.beam(contact.beam).length)
+    return columns
+
+
+def _event(pair: _Pair) -> Columns:
+    """Differences of events, each at the first load parameter behind it in one of the responses."""
+    times = pair.response.load_parameter[pair.own_steps]
+    columns: dict[str, Array] = {}
+    for item in event_differences(pair.response, pair.reference):
+        column = columns.setdefault(item.pair, np.full(len(times), np.nan))
+        k = int(np.searchsorted(times, np.fmin(item.own, item.true)))
+        column[k] = np.fmax(column[k], item.apart)
+    return columns
+
+
 def _friction(pair: _Pair) -> Columns:
     own, true = frictions(pair.response, pair.scene), frictions(pair.reference, pair.scene)
     columns = {}
@@ -264,13 +344,15 @@ _MEASURES: dict[str, Callable[[_Pair], Columns]] = {
     "force": _force,
     "arc": _arc,
     "friction": _friction,
+    "gap": _gap,
+    "event": _event,
     "moment": _moment,
     "tip": _tip,
     "shape": lambda pair: _shape(pair, np.max),
     "shape_mean": lambda pair: _shape(pair, np.mean),
     "stress": _stress,
 }
-assert set(_MEASURES) == set(QUANTITIES), "every quantity can be compared"
+assert set(_MEASURES) == set(COMPARED), "every quantity can be compared"
 
 
 def largest(values: Array) -> float:

@@ -6,7 +6,7 @@ from functools import partial
 
 from comparisons.claims.claim import Allowance, Claim, Finding, Judgement, Quantity, StoppedError, judge
 from comparisons.claims.junit import junit_text
-from comparisons.errors import difference, worst_place
+from comparisons.errors import difference, event_differences, worst_place
 from comparisons.models import ROD, certified, find, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.referee.certify import ALLOWED
@@ -78,13 +78,19 @@ def gate(
     Raises
     ------
     ModelError
-        If a model cannot state the scene, or the scene has no material force for a bound on the friction.
+        If a model cannot state the scene, the scene has no material force for a bound on the friction, or there are no events for
+        a bound on them.
     """
     if "friction" in bounds and not clamped(scene):
         raise ModelError(f"friction: {UNDEFINED}")
     allowance = max(ALLOWED, *bounds.values())
     reference = certified(_reference(scene, against), scene)
     response = certified(solve(scene, model, options), scene, allowance=allowance)
+    silent = [one.model for one in (reference, response) if one.events is None]
+    if "event" in bounds and silent and not event_differences(response, reference):
+        raise ModelError(
+            f"event: {silent[0]} states no events of this scene; compare two models that do, --against tsm"
+        )
 
     def measured(quantity: str) -> tuple[float]:
         for one in (response, reference):

@@ -47,6 +47,8 @@ def run(given: "argparse.Namespace") -> int:
 
     found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, given.others)
     print(table_text(found.rows, ROD.label))
+    if found.other_events:
+        print("", *found.other_events, sep="\n")
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     exit_status(scene, [(f"{row.label}: ", row.response) for row in found.rows])
     for row in found.apart:

@@ -8,7 +8,7 @@ from comparisons.cli.options import ModelNames, add_options, chosen
 from comparisons.cli.outcome import DONE, WRONG, exit_status, report
 from comparisons.files import result_file, write_text
 from comparisons.models import TSM
-from comparisons.quantities import QUANTITIES
+from comparisons.quantities import COMPARED
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def add_to(commands: "Commands") -> None:
         action="append",
         type=_bound,
         metavar="QUANTITY=X",
-        help="a bound, any number of them: " + ", ".join(QUANTITIES),
+        help="a bound, any number of them: " + ", ".join(COMPARED),
     )
     gate.add_argument(
         "--model", choices=ModelNames(), default=TSM.name, help="the model that is measured (tsm)"
@@ -50,9 +50,9 @@ def _bound(text: str) -> tuple[str, float]:
         value = float(bound)
     except ValueError:
         value = -1.0
-    if quantity not in QUANTITIES or not value > 0:
+    if quantity not in COMPARED or not value > 0:
         raise argparse.ArgumentTypeError(
-            f"{text}: must be QUANTITY=X with X above 0 and one of {', '.join(QUANTITIES)}"
+            f"{text}: must be QUANTITY=X with X above 0 and one of {', '.join(COMPARED)}"
         )
     return quantity, value
 

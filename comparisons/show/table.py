@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons.errors import Errors
 from comparisons.output import csv_text
-from comparisons.quantities import KEPT, SCOPES
+from comparisons.quantities import KEPT, PATH, SCOPES
 from comparisons.response import Response
 
 
@@ -102,9 +102,9 @@ def table_csv(rows: list[Row]) -> str:
             "status": row.response.status,
             "unknowns": row.response.unknowns,
             **{
-                f"error_{scope}_{name}": row.errors and row.errors[scope][name]
+                f"error_{scope}_{name}": row.errors and row.errors[scope].get(name)
                 for scope in SCOPES
-                for name in KEPT
+                for name in (*KEPT, *PATH)
             },
             "stable": _stable(row.response),
             "newton_iterations": row.response.iterations,

@@ -1,15 +1,33 @@
 """``crossval gate``: bounds hold or break, on the screen, in the exit status and as JUnit XML."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 
 from comparisons.cli import main
-from comparisons.scene import built_in_scenes
+from comparisons.errors import errors, worst_place
+from comparisons.models import solve
+from comparisons.scene import built_in_scenes, read_scene
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
+ARM = """
+scene = { name = "arm", load_parameters = 4 }
+pin = [{ name = "pin", start = [0.6, -0.02], displacement = [0, 0.05] }]
+contact = [{ node = "pin", beam = "arm", side = "right" }]
+[[beam]]
+name = "arm"
+start = [0, 0]
+end = [1, 0]
+clamped = ["start"]
+width = 0.1
+height = 0.1
+youngs_modulus = 1e7
+poissons_ratio = 0.25
+"""
 Output = pytest.CaptureFixture[str]
 
 
@@ -86,3 +104,42 @@ def test_bad_bounds(scene: str, bound: str, capsys: Output) -> None:
         main(["gate", scene, "--max-error", bound])
     assert caught.value.code == 2
     assert f"{bound}: must be QUANTITY=X" in capsys.readouterr().err
+
+
+def test_gaps_and_events_tell_of_another_path(tmp_path: Path, capsys: Output) -> None:
+    """The pin is .02 below the arm and moves up by .05, so that it touches at .4 and is .0075 away at the first load parameter."""
+    scene, file = read_scene(ARM, "arm"), tmp_path / "arm.toml"
+    file.write_text(ARM)
+    bounds = ["--max-error=event=1e-9", "--max-error=gap=1e-9"]
+    assert main(["gate", str(file), "--against", "tsm", *bounds]) == 0
+    assert main(["gate", str(file), "--model", "solid", "--mesh", "10x1", "--against", "tsm", *bounds]) == 2
+    assert "event: solid states no events of this scene" in capsys.readouterr().err
+    true = solve(scene, "tsm")
+    assert true.events is not None
+    [touch] = [event for event in true.events if event.kind == "touch"]
+    assert touch.load_parameter == pytest.approx(0.4, abs=1e-12)
+    contact = true.contacts["pin->arm"]
+    other = {"pin->arm": replace(contact, gap=contact.gap + np.array([0.01, 0.0, 0.0, 0.0]))}
+    late = replace(true, contacts=other, events=(replace(touch, load_parameter=0.45),))
+    found = errors(late, true, scene, quantities=["gap", "event"])["path"]
+    assert found == {"gap": pytest.approx(0.01), "event": pytest.approx(0.05)}
+    assert worst_place(late, true, scene, "gap") == "pin->arm at load parameter 0.25"
+    never, said = (
+        replace(true, events=()),
+        "a touch of pin->arm at load parameter 0.4, which tsm does not have",
+    )
+    for one, two in ((never, true), (true, never)):
+        assert errors(one, two, scene, quantities=["event"])["path"]["event"] == np.inf
+        assert worst_place(one, two, scene, "event") == f"tsm has {said}"
+
+
+@pytest.mark.slow
+def test_a_slip_off_is_an_event(capsys: Output) -> None:
+    """The pin slips off the upper beam at .707 and off the lower one at .972; four elements are not as exact."""
+    assert (
+        main(["gate", "double-beam", "--elements", "20", "--max-error", "event=1e-6", "--max-error=gap=1e-6"])
+        == 0
+    )
+    assert main(["gate", "double-beam", "--elements", "4", "--max-error", "event=1e-8"]) == 1
+    out = capsys.readouterr().out
+    assert re.search(r"tsm has a slip-off of pin->(upper|lower) at load parameter \S+, which rod has at", out)
