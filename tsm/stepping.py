@@ -153,7 +153,8 @@ class Stepper:
                 else:
                     self.log.cutbacks += 1
                     if self.control.cut_back(min(step, left)):
-                        status = self.control.verdict(self.track.folds())
+                        folded = self._on_held_end(self.accepted.state)
+                        status = Status.FOLDED if folded else self.control.verdict(self.track.folds())
                         if status is Status.LIMIT_POINT:
                             status = self._meet_limit_point()
                         yield self._record(False, status)
@@ -397,6 +398,16 @@ class Stepper:
         model, deep = self.model, -ROUND_OFF * self.model.length
         thick = [k for k, pair in enumerate(model.pairs) if pair.pair.offset > 0]
         return [k for k in thick if clearance(model, state, k).distance < deep]
+
+    def _on_held_end(self, state: State) -> bool:
+        """Whether a contact lies on a held end, which takes any force: nothing that happens there has a tangent."""
+        there = zip(self.model.pairs, state.touches, strict=True)
+        closed = ((pair, pair.arc_position(touch)) for pair, touch in there if touch is not None)
+        return any(
+            min(arc, pair.target.beam.length - arc) <= ROUND_OFF * self.model.length
+            and forbidden(self.model, EventKind.SLIP_OFF, pair, arc, alone=False) is Status.FOLDED
+            for pair, arc in closed
+        )
 
     def _meet_end(self, state: State, k: int) -> Status:
         """End the path where pair k meets an end, or the side that it does not touch."""

@@ -105,6 +105,21 @@ def test_folded():
     ends_in(Status.FOLDED, structure(((0.5, 0.0), (-0.5, 0.0))))
 
 
+@pytest.mark.parametrize(
+    "path", [((0.0, -0.1), (0.0, 0.1)), ((0.0, 0.0), (0.3, 0.1)), ((0.0, 0.0), (0.0, 0.1))]
+)
+@pytest.mark.parametrize("turn", [0.0, None])
+@pytest.mark.parametrize("element", ["mixed", "exact"])
+def test_a_contact_that_begins_on_a_held_end(path, turn, element):
+    """The support takes any force there: the step length does not decide how this is named."""
+    held = tsm.Support(beam="b", end="start", rotation=turn), tsm.Support(beam="b", end="end", ux=None)
+    beam = replace(BEAM, element=element, elements=1 if element == "exact" else 10)
+    begun = replace(structure(path, element=element, clamps=held), beams=(beam,))
+    begun = replace(begun, contacts=(tsm.ContactPair(node="p", beam="b", side="right"),))
+    for times in (TENTHS, TENTHS[9:]):
+        assert tsm.solve(begun, times, throw=False).status is Status.FOLDED
+
+
 def test_a_pin_pulled_over_the_clamp_is_never_reported_as_done():
     for count in (10, 30, 100):
         t = np.arange(1, count + 1) / count
