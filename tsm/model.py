@@ -336,6 +336,12 @@ class Model:
         ]
         self.free = np.array([*band_dofs, *border_dofs], dtype=int)
         self.banded = len(band_dofs)
+        if not self.banded:
+            name, beam = next((name, item.beam) for name, item in self.beams.items())
+            raise ValueError(
+                f"Beam({name}).elements = {beam.elements!r}: every node is held, and elements {beam.element!r} have no "
+                f"unknowns inside; take at least 2, or elements {EXACT.name!r}"
+            )
         self.border_dofs = len(border_dofs)
         self.border = len(border_dofs) + self.contact_unknowns
         self.equations = len(self.free)

@@ -10,7 +10,7 @@ import pytest
 from comparisons.models import MODELS, solve
 from comparisons.models.options import ModelError, Options
 from comparisons.response.to_json import as_json
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene, read_scene
 
 KS = load_scene("ks-cantilever")
 SHORT = replace(KS, load_parameters=8)
@@ -244,3 +244,30 @@ def test_every_model_states_critical_points_and_takes_a_branch(model: str, optio
     bent = solve(scene, model, Options(**options, branch="stable"))
     assert bent.completed, bent.message
     assert abs(bent.tips[beam.name][-1, 1]) > 0.5
+
+
+@pytest.mark.parametrize("element", ["mixed", "timoshenko"])
+def test_one_element_between_two_clamps_is_refused_in_one_line(element: str) -> None:
+    """It has no unknowns; two elements and one exact one have."""
+    scene = read_scene(
+        """
+scene = { name = "column", load_parameters = 2 }
+support = [{ beam = "b", end = "end", kind = "clamped", displacement = [-0.01, 0], rotation = 0.01 }]
+[[beam]]
+name = "b"
+start = [0, 0]
+end = [1, 0]
+clamped = ["start"]
+width = 0.1
+height = 0.1
+youngs_modulus = 1e7
+poissons_ratio = 0.25
+""",
+        "column",
+    )
+    with pytest.raises(
+        ModelError, match=r"Beam\(b\)\.elements = 1: every node is held.*take at least 2, or elements 'exact'"
+    ):
+        solve(scene, "tsm", Options(element=element, elements=1))
+    for options in (Options(element=element, elements=2), Options(element="exact", elements=1)):
+        assert solve(scene, "tsm", options).completed
