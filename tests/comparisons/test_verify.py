@@ -11,7 +11,8 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, failures, verified
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import ContactSpec, PinSpec, load_scene
+from comparisons.response.round_off import LEAST, RESIDUAL, least_force, round_off
+from comparisons.scene import ContactSpec, LoadSpec, PinSpec, load_scene
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
@@ -213,3 +214,36 @@ def test_the_last_places_of_a_stiff_axial_force_need_not_balance() -> None:
     response, rod = solve(scene, "tsm", Options(elements=40)), solve(scene, "rod")
     assert response.completed, response.message
     np.testing.assert_allclose(response.contacts[PAIR].force, rod.contacts[PAIR].force, rtol=1e-6)
+
+
+def test_a_round_pin_that_rubs_is_in_balance() -> None:
+    """Its tangential force acts on its surface, with a moment about its centre that statics alone would not see the sign of."""
+    beam = replace(SCENE.beams[0], width=0.1, height=0.1)
+    pin = PinSpec(name="pin", path=((0.7, -0.1), (0.69, -0.05)), radius=0.1)
+    contact = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
+    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(contact,), load_parameters=1)
+    response = solve(scene, "tsm", Options(element="exact"))
+    assert response.completed, response.message
+    rubs = response.contacts["pin->cantilever"].friction
+    assert rubs is not None
+    assert abs(rubs.tangential[-1]) > 0.1 * response.contacts["pin->cantilever"].force[-1]
+
+
+def test_what_is_round_off_has_the_units_of_its_quantity() -> None:
+    """A metre is a thousand millimetres, and so is every length, with the force left as it is."""
+    unit = 1e3
+    beam = replace(SCENE.beams[0], end=(2.0, 0.0), width=0.1, height=0.1, youngs_modulus=1e7)
+    size = {name: unit * getattr(beam, name) for name in ("width", "height")}
+    scaled = replace(beam, **size, end=(2.0 * unit, 0.0), youngs_modulus=1e7 / unit**2)
+    found = []
+    for one in (beam, scaled):
+        load = LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-3))
+        scene = replace(SCENE, beams=(one,), pins=(), contacts=(), loads=(load,), load_parameters=1)
+        found.append(round_off(solve(scene, "tsm", Options(element="exact")), scene))
+    for name, power in {"force": 0, "moment": 1, "energy": 1, "length": 1, "stress": -2}.items():
+        assert getattr(found[1], name) == pytest.approx(
+            unit**power * getattr(found[0], name), rel=1e-6, abs=0.0
+        ), name
+    assert found[0].force == pytest.approx(RESIDUAL * beam.EI / 4.0, rel=1e-9, abs=0.0)
+    assert least_force(scene) == pytest.approx(LEAST * scaled.EI / (2.0 * unit) ** 2, rel=1e-9, abs=0.0)
+    assert found[0].length == pytest.approx(found[0].force * 8.0 / beam.EI, rel=1e-9, abs=0.0)

@@ -8,7 +8,7 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.scene import load_scene
+from comparisons.scene import BeamSpec, HingeSpec, LoadSpec, Scene, SupportSpec, load_scene
 
 STOPPED = Path(__file__).parent / "stopped"
 
@@ -56,3 +56,22 @@ def test_an_answer_does_not_hang_on_the_number_of_load_parameters(name: str, cou
     assert found.certified, found.line()
     for pair, contact in answer.contacts.items():
         assert other.contacts[pair].force[-1] == pytest.approx(contact.force[-1], rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3])
+@pytest.mark.parametrize("element", ["exact", "mixed"])
+def test_a_stiff_hinge_that_turns_with_its_beams(element: str, unit: float) -> None:
+    """Its moment is the difference of two rotations by 1 rad, whose round-off times the stiffness exceeds Newton's tolerance."""
+    beams = [
+        BeamSpec(name=name, start=(x * unit, 0.0), end=((x + 1.0) * unit, 0.0), width=0.02 * unit, height=0.02 * unit, youngs_modulus=1e9 / unit**2, poissons_ratio=0.3)
+        for name, x in (("a", 0.0), ("b", 1.0))
+    ]  # fmt: skip
+    scene = Scene(
+        name="stiff-hinge", load_parameters=4, beams=tuple(beams), pins=(), contacts=(),
+        hinges=(HingeSpec(beam="b", end="start", stiffness=1e11 * unit),),
+        supports=(SupportSpec(beam="a", end="start", kind="clamped", displacement=(0.0, 0.0), rotation=1.0),),
+        loads=(LoadSpec(beam="b", end="end", force=(0.0, 4.0)),),
+    )  # fmt: skip
+    answer = solve(scene, "tsm", Options(element=element))
+    assert answer.completed, answer.message
+    assert answer.supports["a.start"].moment[-1] == pytest.approx(-3.2477407512 * unit, rel=1e-7)

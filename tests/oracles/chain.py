@@ -18,6 +18,8 @@ from scipy.linalg import lu_factor, lu_solve
 Array = NDArray[Any]
 ROOT, SMALLEST, UNSTABLE, LONGEST = 1e-10, 1e-7, 1e-4, 1.0 / 40.0
 """Widths in the load parameter: of an event, of the shortest step, of the shortest one into an unstable state, of the longest."""
+BEHIND = 1e-6
+"""Gap behind a beam, over the length, in the smallest step, at which a node does not come from the beam's side."""
 TURN, TENSE, KINK, NEAR_END = 0.3, 0.1, 0.01, 0.01
 """Largest rotation of a node in a step; tension over EI/h^2, kink F/GA of the axis and distance of a touch from an end that are resolved."""
 GIVEN = {
@@ -342,6 +344,8 @@ class Chain:
             for kind, pair in crossed[:1]:
                 contact = next(c for c in self.contacts if c.pair == pair)
                 if kind == "touch":
+                    if now[kind, pair] < -BEHIND:
+                        return self._ended(found, t, "comes from beyond an end to behind the beam")
                     contact.arc, contact.force = self.gap(contact, x, t)[1], np.zeros(2)
                     L = self.lengths[contact.beam]
                     if min(contact.arc, L - contact.arc) < NEAR_END * L:

@@ -54,7 +54,11 @@ def differences(  # noqa: C901 - events, then states
     for k in range(max(len(own), len(sharp))):
         if k >= len(rough) or k >= len(sharp) or rough[k][:2] != sharp[k][:2]:
             end = min([end, *(e[k][2] - LEAST for e in (own, rough, sharp) if k < len(e) and e is not own)])
-            if k < len(own) and own[k][2] < end:
+            if (
+                k < len(own)
+                and own[k][2] < end
+                and own[k][:2] not in [e[k][:2] for e in (rough, sharp) if k < len(e)]
+            ):
                 wrong.append(f"{own[k]} is not on the path of the chain")
             break
         if k >= len(own):
