@@ -228,9 +228,17 @@ class Stepper:
         if deep is not None:
             return self._reach(deep)
         events = broken(self.margins, self._measure(reached))
-        if events:
-            return self._stop_at_first(events, goal)
+        if events or self._pulls_at_first(goal):
+            return self._stop_at_first(events, goal) if events else self.control.refuse(_PROBE)
         return self._advance(reached) if self.newton.balanced(reached) else Status.UNBALANCED
+
+    def _pulls_at_first(self, goal: float) -> bool:
+        """Whether a contact that has no force pulls just after it, though it may push at the goal."""
+        idle = {m.pair for m in self.margins if m.kind is EventKind.RELEASE and abs(m.value) <= ROUND_OFF}
+        t = self.accepted.state.load_parameter
+        ahead = self._solve(t + _PROBE * (goal - t)) if idle else None
+        past = [] if ahead is None else broken(self.margins, self._measure(ahead))
+        return any(after.kind is EventKind.RELEASE and after.pair in idle for _, after in past)
 
     def _advance(self, reached: Equilibrium) -> Status:
         """Accept an equilibrium if the step has no event, has followed the path and has passed no critical point."""

@@ -1,5 +1,6 @@
 """`exact` follows the same path of drawn scenes as an independent chain of small elements: closed contacts, forces, places, events."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
@@ -9,7 +10,7 @@ from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import to_toml
 from tests.fuzz.world import drawn
-from tests.oracles.chain import Chain, NotStatedError, Path
+from tests.oracles.chain import LONGEST, Chain, NotStatedError, Path
 
 COARSE, FINE = 16, 32
 """Elements along every beam; the error is of second order, so that a third of the difference is left and extrapolated."""
@@ -17,8 +18,8 @@ LEAST = 2e-3
 """Smallest allowance: of a force over the largest, of a place over the beam's length, of a load parameter."""
 EARLY = 1e-6
 """Load parameter up to which contacts that touch from the beginning close."""
-FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(120, 200, 20)
-"""Seeds of the fast tests, of the one whose answer is forged, and the first of every twenty of the slow ones."""
+FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(120, 760, 80)
+"""Seeds of the fast tests, of the one whose answer is forged, and the first of every eighty of the slow ones, of which a third is stated."""
 COMPARED = ("touch", "release", "slip-off")
 
 
@@ -40,16 +41,22 @@ def near(found: float, coarse: float, fine: float, least: float) -> bool:
     return abs(found - (4.0 * fine - coarse) / 3.0) <= least + abs(fine - coarse)
 
 
+def lasting(events: Sequence[tuple[str, str, float]]) -> list[tuple[str, str, float]]:
+    """Return events after the beginning, without touches that end within a step of the chain, which does not see them."""
+    short = [
+        k
+        for k, (kind, pair, t) in enumerate(events[:-1])
+        if (kind, events[k + 1][:2]) == ("touch", ("release", pair)) and events[k + 1][2] - t < LONGEST
+    ]
+    return [e for k, e in enumerate(events) if e[2] > EARLY and k not in short and k - 1 not in short]
+
+
 def differences(  # noqa: C901 - events, then states
     response: Response, coarse: Path, fine: Path, lengths: dict[str, float]
 ) -> list[str]:
     """Return where an answer leaves the path of the chain, as far as both meshes agree on the sequence of its events."""
-    own = [
-        (e.kind, e.pair, e.load_parameter)
-        for e in response.events or ()
-        if e.kind in COMPARED and e.load_parameter > EARLY
-    ]
-    rough, sharp = ([e for e in path.events if e[2] > EARLY] for path in (coarse, fine))
+    stated = [(e.kind, e.pair, e.load_parameter) for e in response.events or () if e.kind in COMPARED]
+    own, rough, sharp = map(lasting, (stated, coarse.events, fine.events))
     end, wrong = min(coarse.end, fine.end) - LEAST, []
     for k in range(max(len(own), len(sharp))):
         if k >= len(rough) or k >= len(sharp) or rough[k][:2] != sharp[k][:2]:
@@ -106,9 +113,9 @@ def test_a_drawn_scene_has_the_path_of_the_chain(seed: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("first", SLOW)
 def test_drawn_scenes_have_the_path_of_the_chain(first: int) -> None:
-    found = {seed: told(seed) for seed in range(first, first + 20)}
+    found = {seed: told(seed) for seed in range(first, first + 80)}
     assert {seed: words for seed, words in found.items() if words} == {}
-    assert sum(words is not None for words in found.values()) >= 4
+    assert sum(words is not None for words in found.values()) >= 20
 
 
 def test_the_chain_tells_a_wrong_path() -> None:

@@ -21,7 +21,7 @@ from tests.comparisons.cases.conftest import tiny
 
 CASES = 30
 """Of the tiny study."""
-KILLS = 50
+KILLS = 20
 """A third while the libraries are loaded, the others after 1 to 8 cases more; of the command alone or of its workers too."""
 Start = Callable[..., "subprocess.Popen[str]"]
 
@@ -133,8 +133,8 @@ def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) 
 @pytest.mark.slow
 @pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see what is left running")
-def test_killed_at_fifty_random_points(whole: Path, tmp_path: Path, start: Start) -> None:
-    """50 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
+def test_killed_at_twenty_random_points(whole: Path, tmp_path: Path, start: Start) -> None:
+    """20 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
     study = tiny(tmp_path / "tiny.toml", CASES // 3)
     chance, hit, files = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
     while len(hit) < KILLS:

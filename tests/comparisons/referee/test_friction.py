@@ -345,9 +345,9 @@ def completed_and_certified(seeds: range) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, 220, 20))
+@pytest.mark.parametrize("first", range(0, 100, 20))
 def test_drawn_cantilevers_are_certified(first: int) -> None:
-    """Two hundred and twenty scenes, twenty in a test."""
+    """A hundred scenes, twenty in a test."""
     assert completed_and_certified(range(first, first + 20)) >= 16
 
 
