@@ -126,7 +126,7 @@ def test_files_are_whole_or_absent_when_interrupted(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_files_are_whole_or_absent_whenever_interrupted(tmp_path: Path) -> None:
-    check_interrupts(tmp_path, 40)
+    check_interrupts(tmp_path, 12)
 
 
 def test_interrupt_is_one_line(tmp_path: Path) -> None:
