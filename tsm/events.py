@@ -41,7 +41,7 @@ ROUND_OFF = 1e-10
 
 _DEGREE, _FINE = 4, 41
 """Degree of the polynomial through a margin, and points at which it is evaluated."""
-_SHORT = 2e-3
+SHORT = 2e-3
 """Length of a step within which contacts are not searched for a slip or stick that has passed at its end."""
 _LOCATED = 1e-12
 """Largest margin of a located event. Results at the event may depend on its load parameter with a factor of a thousand."""
@@ -254,12 +254,7 @@ def below(values: list[float], times: list[float]) -> float | None:
 
 
 def passed_within(measured: list[list[Margin]], times: list[float]) -> float | None:
-    """First load parameter at which the margin of a slip or stick is below zero between others, from margins at all these times.
-
-    Within less than `_SHORT` no event is searched for.
-    """
-    if times[-1] - times[0] <= _SHORT:
-        return None
+    """First load parameter at which the margin of a slip or stick is below zero between others, from margins at all these times."""
     trails = (trail for trail in zip(*measured, strict=True) if trail[0].kind in GRIPS)
     dips = [below([margin.value for margin in trail], times) for trail in trails]
     return min((t for t in dips if t is not None), default=None)

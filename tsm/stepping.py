@@ -23,6 +23,7 @@ from tsm.energy import spent
 from tsm.events import (
     GRIPS,
     ROUND_OFF,
+    SHORT,
     Event,
     EventKind,
     Margin,
@@ -267,6 +268,8 @@ class Stepper:
     def _dips(self, between: tuple[Equilibrium, ...], reached: Equilibrium) -> float | None:
         """Part of the step at which a margin of slip or stick is below zero, though not at the step's end; None if none is."""
         begin, end = self.accepted.state.load_parameter, reached.state.load_parameter
+        if end - begin <= SHORT or all(margin.kind not in GRIPS for margin in self.margins):
+            return None
         measured = [self.margins, *map(self._measure, (*between, reached))]
         dip = passed_within(measured, [begin, *(inner.state.load_parameter for inner in between), end])
         return (dip - begin) / (end - begin) if dip is not None else None
