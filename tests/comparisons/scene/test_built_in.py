@@ -5,14 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.claims.problems.peaks import summit
-from comparisons.cli import main
-from comparisons.exact import frictional_three_point_limit
 from comparisons.exact.chain import Chain, load_path
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.response import Array, Response
+from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene
 from tests.verification.rod_by_shooting import Rod, free, pinned
 from tsm.elements import EXACT, MIXED
@@ -33,12 +30,6 @@ def answer(scene: Scene, element: str = EXACT.name) -> Response:
 
 def test_the_page_counts_them(stated) -> None:
     stated("scenes", len(NAMES))
-
-
-@pytest.mark.parametrize("name", OTHERS)
-def test_check_draws_a_scene(name: str, tmp_path, capsys) -> None:
-    assert main(["check", name, "--out", str(tmp_path / "scene.svg")]) == 0
-    assert "  tsm: yes" in capsys.readouterr().out
 
 
 @pytest.mark.slow_at(
@@ -71,21 +62,6 @@ def test_every_load_parameter_is_certified(name: str, element: str) -> None:
     assert found.certified, found.line()
 
 
-@pytest.mark.parametrize(("load", "height"), [(1, 0.30172), (2, 0.49346), (5, 0.71379), (10, 0.81061)])
-def test_tip_load(load: int, height: float) -> None:
-    """Bisshopp and Drucker (1945); a strip with h/L = 1/100 stretches and shears by some 1e-4 besides."""
-    response = answer(load_scene("tip-load"))
-    assert response.tips["cantilever"][load - 1, 1] / 100.0 == pytest.approx(height, abs=2e-4)
-
-
-def test_roll_up() -> None:
-    """Bathe and Bolourchi (1979): an arc, for any section."""
-    tips = answer(load_scene("roll-up")).tips["cantilever"] / 100.0
-    assert tips[1, 0] == pytest.approx(2.0 / np.pi, rel=1e-9)
-    assert tips[3, 1] == pytest.approx(2.0 / np.pi, rel=1e-9)
-    assert np.abs(tips[7]).max() <= 1e-9
-
-
 @pytest.mark.parametrize(
     ("ratio", "x", "y"), [(1.063, 0.422, 0.881), (1.518, 0.792, 0.349), (1.884, 0.803, 0.123)]
 )
@@ -99,72 +75,6 @@ def test_clamped_column(ratio: float, x: float, y: float) -> None:
     near = replace(scene, loads=(replace(scene.loads[0], force=(0.0, -force), moment=1e-5 * force),))
     head = np.abs(answer(near).tips["column"][-1]) / 100.0
     assert head == pytest.approx([x, y], abs=2e-3)
-
-
-def test_pinned_column_is_two_clamped_ones() -> None:
-    whole, half = answer(load_scene("pinned-column")), answer(load_scene("clamped-column"))
-    assert whole.tips["column"][-1, 1] == pytest.approx(2.0 * half.tips["column"][-1, 1], rel=1e-7)
-
-
-def test_three_point_bending() -> None:
-    """The greatest load of the elastica, 1.667952 EI/a^2 at .476378 a, of a strip with h/a = 1/50."""
-    response = answer(load_scene("three-point-bending"))
-    load, place = summit(70.0 * response.load_parameter, -response.supports["left.end"].force[:, 1])
-    assert [load * 100.0**2 / 1.4e6, place / 100.0] == pytest.approx([1.667952, 0.476378], rel=3e-4)
-    assert [load, place] == pytest.approx([233.474683, 47.6442], rel=1e-6)
-
-
-def test_ks_with_friction() -> None:
-    """Exact Reissner rod with friction."""
-    response = answer(load_scene("ks-friction"))
-    contact = response.contacts["pin->cantilever"]
-    assert contact.force[[9, 19]] == pytest.approx([1.440282590723e-3, 2.110304862086e-3], rel=1e-9)
-    assert contact.arc_position[[9, 19]] == pytest.approx([0.613373425413, 0.847142560461], rel=1e-9)
-    assert response.events is not None
-    located = {event.kind: event.load_parameter for event in response.events}
-    assert located == pytest.approx({"stick": 0.620498, "slip": 0.683287}, abs=1e-6)
-
-
-def rises_and_loads(scene: Scene) -> tuple[Array, Array]:
-    """Rise of the supports, and the load at the hinge of three-point bending."""
-    response = answer(scene)
-    rise = np.array([scene.pins[0].position(t)[1] for t in response.load_parameter])
-    return rise, -response.supports["left.end"].force[:, 1]
-
-
-@pytest.mark.slow
-def test_three_point_bending_with_friction() -> None:
-    """The greatest loads of the elastica while the beam is drawn in and pushed back, of a strip with h/a = 1/50."""
-    rise, load = rises_and_loads(replace(load_scene("three-point-friction"), load_parameters=48))
-    limits = []
-    for way, place in ((slice(28), 52.2161), (slice(28, None), 42.7696)):
-        order = np.argsort(rise[way])
-        greatest, at = summit(rise[way][order], load[way][order])
-        assert at == pytest.approx(place, rel=2e-6)
-        limits.append(greatest)
-    assert limits == pytest.approx([265.581876, 203.628071], rel=1e-8)
-    exact = [2.0 * limit.load * 140.0 for limit in frictional_three_point_limit(0.2)]
-    assert [2.0 * limit.load for limit in frictional_three_point_limit(0.2)] == pytest.approx(
-        [1.897302759, 1.454743301], abs=1e-9
-    )
-    assert limits == pytest.approx(exact, rel=3e-4)
-
-
-@pytest.mark.slow
-def test_a_cycle_with_friction_closes() -> None:
-    """At equal places of the pin the second cycle has the state of the first, and its work is dissipated."""
-    response = answer(load_scene("hysteresis"))
-    (contact,) = response.contacts.values()
-    assert contact.friction is not None
-    assert response.work is not None
-    first, second = slice(4, 12), slice(12, 20)
-    for history in (contact.force, contact.arc_position, contact.friction.tangential):
-        assert history[first] == pytest.approx(history[second], rel=1e-12)
-    assert contact.force[[7, 11]] == pytest.approx([44.8989432868, 19.1915545096], rel=1e-11)
-    assert contact.arc_position[[7, 11]] == pytest.approx([63.9216785603, 82.9545104381], rel=1e-11)
-    spent = np.diff(contact.friction.dissipated[[3, 11, 19]])
-    assert spent[1] == pytest.approx(322.7135308, abs=1e-7)
-    assert response.work[19] - response.work[11] == pytest.approx(spent[1], rel=1e-9)
 
 
 def test_the_stages_of_a_cycle_end_as_the_cycle_does() -> None:
@@ -334,23 +244,3 @@ def test_crossed_beams_with_an_upright_strut() -> None:
     sunk = down - contact.force[-1] * 99.0 / upper.EA
     assert contact.force[-1] == pytest.approx(load_path(chain, [*down_to, sunk])[-1], rel=1e-9)
     assert contact.arc_position[-1] == pytest.approx(100.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("element", ELEMENTS)
-def test_lees_frame_past_its_limit_load(element: str) -> None:
-    """18.557 EI/L^2 (Lee, Manuel and Rossow, 1968)."""
-    response = answer(load_scene("lees-frame"), element)
-    load, place = summit(54.0 * response.load_parameter, -response.supports["near.end"].force[:, 1])
-    assert load * 10.0 == pytest.approx(18.557, rel=1e-4)
-    assert [load, place] == pytest.approx([1.855672753, 48.7351], rel=2e-6)
-
-
-@pytest.mark.parametrize("element", ELEMENTS)
-def test_williams_toggle_past_both_limit_loads(element: str) -> None:
-    """33.87 and 31.28 lb (Wood and Zienkiewicz, 1977)."""
-    response = answer(load_scene("williams-toggle"), element)
-    pressed = response.supports["left.end"]
-    down, load = 0.6 * response.load_parameter, -pressed.force[:, 1]
-    greatest, least = summit(down[:16], load[:16])[0], -summit(down[10:], -load[10:])[0]
-    assert [greatest, least] == pytest.approx([33.87, 31.28], rel=2e-4)
-    assert [greatest, least] == pytest.approx([33.8696, 31.2780], rel=3e-6)

@@ -1,0 +1,187 @@
+"""What the commands say of a dozen scenes: ``python -m tests.golden.write [SCENE ...]`` writes it anew, `test_golden` holds it.
+
+A file has a section for each command: what it prints, or the numbers of its answer at two load parameters.
+"""
+
+import csv
+import json
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import scipy
+
+from comparisons.cli import main as crossval
+
+HERE = Path(__file__).parent
+MODELS = {
+    "exact": ("--element", "exact"),
+    "mixed": ("--element", "mixed", "--elements", "10"),
+    "timoshenko": ("--element", "timoshenko", "--elements", "11"),
+    "rod": ("--model", "rod"),
+    "elastica": ("--model", "elastica"),
+    "solid": ("--model", "solid"),
+}
+SOURCES = {
+    "clamped-column": "tests/comparisons/exact/test_end_loads.py, Reissner's column by quadrature",
+    "double-beam": "tests/comparisons/exact/test_coupled.py, two rods by quadrature",
+    "heavy-strip": "tests/verification/rod_by_shooting.py, shooting",
+    "hinged-truss": "tests/comparisons/scene/test_built_in.py, closed form",
+    "hysteresis-stages": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
+    "ks-cantilever": "tests/reference/ks_rod.py, collocation",
+    "ks-friction": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
+    "sleeve": "tests/comparisons/scene/test_built_in.py, closed form",
+    "straightened-arc": "tests/comparisons/scene/test_built_in.py, closed form",
+    "tapered-spring": "tests/verification/rod_by_shooting.py, shooting",
+    "tip-load": "tests/comparisons/exact/test_end_loads.py, Reissner's column by quadrature",
+}
+"""The scenes, each with the program that redoes its digits beside the referee, whose answer stands in its file."""
+SLOW = {"clamped-column", "double-beam", "hysteresis-stages", "ks-friction", "tapered-spring"}
+COMPARED = ("ks-cantilever", "ks-friction", "tip-load")
+PAGES = ("hysteresis-stages", "sleeve")
+PROBLEMS = ("dead-load", "elastica-identity", "roll-up")
+QUANTITIES = ("arc_position", "force", "index", "moment", "strain_energy", "tips", "work")
+NOISE = 1e-9
+"""What is round-off, in the units of these scenes."""
+
+
+def said(*arguments: str, folder: str = "") -> Iterator[str]:
+    """Yield the lines that a command prints, and its exit status where it is not 0; this alone knows how a command is called."""
+    text = StringIO()
+    with redirect_stdout(text), redirect_stderr(text):
+        status = crossval(list(arguments))
+    yield from (
+        line.rstrip()
+        for line in text.getvalue().splitlines()
+        if not (folder and folder in line) and line != "files:"
+    )
+    if status:
+        yield f"exit status {status}"
+
+
+def written(scene: str) -> str:
+    """Return what stands in a scene's file."""
+    return "\n".join([f"source: {SOURCES[scene]}", *_scene(scene)]) + "\n"
+
+
+def _scene(scene: str) -> Iterator[str]:
+    with TemporaryDirectory() as folder:
+        yield "== check"
+        yield from said("check", scene, "--out", f"{folder}/picture.svg", folder=folder)
+        for model, options in MODELS.items():
+            yield f"== solve {model}"
+            file = Path(folder) / f"{model}.json"
+            given = ("--quiet", "--certify", "none", "--json", str(file))
+            printed = list(said("solve", scene, *options, *given))
+            yield from (line for line in printed if line.startswith(("crossval", "exit")))
+            if file.exists():
+                yield from _answer(json.loads(file.read_text()))
+        yield "== certify"
+        yield from list(said("certify", scene))[:2]
+
+
+def _answer(answer: dict[str, Any]) -> Iterator[str]:
+    """Yield the status, each history at two load parameters, and the events of an answer."""
+    yield f"{answer['status']}: {answer['message']}"
+    yield from sorted(_histories(answer))
+    for event in answer["events"] or ():
+        if event["kind"] != "pass-through":
+            yield f"event {event['kind']} {event.get('pair') or ''}: {event['load_parameter']:.10g}"
+
+
+def _histories(value: Any, *path: str) -> Iterator[str]:
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from _histories(part, *path, key)
+    elif isinstance(value, list) and value and {path[0], path[-1]} & set(QUANTITIES):
+        chosen = sorted({(2 * len(value) - 1) // 3, len(value) - 1})
+        yield f"{' '.join(path)}: {_flat([value[k] for k in chosen])}"
+
+
+def _flat(value: Any) -> str:
+    if isinstance(value, list):
+        return " ".join(map(_flat, value))
+    return f"{value if abs(value) > NOISE else 0.0:.13g}" if isinstance(value, float) else str(value)
+
+
+def compared(scene: str) -> Iterator[str]:
+    """Yield a row for each model of ``compare``."""
+    with TemporaryDirectory() as folder:
+        yield f"== compare {scene}"
+        yield from (line for line in said("compare", scene, "--quiet", "--out", folder) if "exit" in line)
+        for row in csv.DictReader((Path(folder) / "table.csv").open()):
+            errors = {
+                name: float(text) for name, text in row.items() if name.startswith("error_path") and text
+            }
+            numbers = (f"{name[11:]} {value:.2e}" for name, value in errors.items() if value > NOISE)
+            yield f"{row['label']}, {row['status']}, {row['unknowns']}, stable {row['stable']}: {', '.join(numbers)}"
+
+
+def problem(name: str) -> Iterator[str]:
+    """Yield what the manual says of a problem."""
+    with TemporaryDirectory() as folder:
+        yield from said("manual", "--only", name, "--quiet", "--out", folder, folder=folder)
+        (case,) = json.loads((Path(folder) / "manual.json").read_text())["cases"]
+    yield f"{case['title']}: {_flat([item['exact'] for item in case['quantities']])}"
+    for run in case["runs"]:
+        yield f"{run['model']}, {run['setting']}, {run['tolerance']:g}: {_flat(run['values'])}"
+
+
+def machine() -> str:
+    """Return what rounds: the processor's extensions and the versions of the libraries."""
+    config = np.show_config(mode="dicts")
+    found = " ".join(config["SIMD Extensions"]["found"])
+    return f"numpy {np.__version__}, scipy {scipy.__version__}, {found}"
+
+
+def pages() -> dict[str, Any]:
+    """Return every file by its name, and what computes it."""
+    return {
+        **{scene: lambda scene=scene: written(scene) for scene in SOURCES},
+        **{f"compare-{scene}": lambda scene=scene: "\n".join(compared(scene)) + "\n" for scene in COMPARED},
+        **{
+            f"page-{scene}": lambda scene=scene: "\n".join(said("solve", scene, "--quiet")) + "\n"
+            for scene in PAGES
+        },
+        **{f"manual-{name}": lambda name=name: "\n".join(problem(name)) + "\n" for name in PROBLEMS},
+    }
+
+
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
+
+
+def differences(now: str, before: str, bound: float) -> list[str]:
+    """Return the lines that differ: words at all, a number by more than `bound` of its line's largest, or by a unit of a rounded one."""
+    lines, kept = now.splitlines(), before.splitlines()
+    apart = [f"{a}\n  was: {b}" for a, b in zip(lines, kept, strict=False) if not _same(a, b, bound)]
+    return apart + [f"{len(lines)} lines, {len(kept)} before"] * (len(lines) != len(kept))
+
+
+def _same(line: str, other: str, bound: float) -> bool:
+    if NUMBER.sub("#", line) != NUMBER.sub("#", other):
+        return False
+    found, kept = NUMBER.findall(line), NUMBER.findall(other)
+    size = max((abs(float(text)) for text in kept), default=0.0)
+    return all(
+        abs(float(a) - float(b)) <= max(bound * size, _unit(b)) for a, b in zip(found, kept, strict=True)
+    )
+
+
+def _unit(number: str) -> float:
+    """A unit of the last place of a number rounded to fewer than eight digits; of a whole number, none."""
+    mantissa, _, power = number.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    digits = len(mantissa.replace(".", "").lstrip("+-0"))
+    return 1.01 * 10.0 ** (int(power or 0) - decimals) if (decimals or power) and digits < 8 else 0.0
+
+
+if __name__ == "__main__":
+    (HERE / "machine.txt").write_text(machine() + "\n", encoding="utf-8")
+    for name in sys.argv[1:] or pages():
+        (HERE / f"{name}.txt").write_text(pages()[name](), encoding="utf-8")
