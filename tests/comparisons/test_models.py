@@ -87,16 +87,6 @@ def test_axis_line_and_grid_agree_with_tip_and_contact(model: str, options: Opti
         )
 
 
-def test_rod_and_elastica_give_the_values_of_theory() -> None:
-    scene = replace(KS, load_parameters=4)
-    rod, elastica = solve(scene, "rod"), solve(scene, "elastica")
-    force = [2.971723827275e-04, 1.304991984260e-03, 2.717905910938e-03, 2.288274307175e-03]
-    assert rod.contacts[PAIR].force == pytest.approx(force, rel=1e-11)
-    assert rod.supports["cantilever.start"].moment[-1] < 0.0
-    assert elastica.contacts[PAIR].force[-1] == pytest.approx(8.18212814018414 * 2.8e-4, rel=1e-12)
-    assert elastica.supports["cantilever.start"].moment[-1] == pytest.approx(-np.pi * 2.8e-4, rel=1e-12)
-
-
 @pytest.mark.parametrize("options", [Options(elements=10), EXACT])
 def test_tsm_section_forces_balance_the_clamp(options: Options) -> None:
     response = solve(SHORT, "tsm", options)

@@ -46,10 +46,3 @@ def test_fourth_order_in_every_quantity(scene_and_rod):
     coarse, fine = (errors_of(scene_and_rod, n) for n in (5, 20))
     orders = np.log2([coarse[name] / fine[name] for name in QUANTITIES]) / 2
     assert (np.abs(orders - 4) <= 0.4).all(), orders
-
-
-@pytest.mark.parametrize(("elements", "bound"), [(10, 1e-2), (20, 3e-3), (50, 6e-4)])
-def test_the_papers_element_at_the_end(elements, bound):
-    scene = load_scene("ks-cantilever")
-    response = solve(scene, "tsm", Options(elements=elements, element="timoshenko"))
-    assert errors(response, solve(scene, "rod"), scene, quantities=["force"])["end"]["force"] <= bound

@@ -186,22 +186,6 @@ def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
     assert status(400, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
 
 
-def test_an_arc_is_straightened_by_its_natural_moment():
-    """A moment ``-EI k0`` at the tip makes a straight line of an arc of almost a full circle."""
-    turn = 5.0
-    bent = structure(turn=turn)
-    beam = bent.beams[0]
-    moment = -beam.section.EI * beam.curvature
-    result = tsm.solve(structure(turn=turn, tip=(0.0, 0.0, moment)), [0.5, 1.0])
-    arc, line = result.axis_line("b", -1)
-    assert np.abs(line - np.outer(arc, [1.0, 0.0])).max() <= 1e-12
-    assert result.supports["b.start"].moment[-1] == pytest.approx(-moment, rel=1e-12)
-    half = result.axis_line("b", 0)[1][-1]
-    assert half == pytest.approx(
-        [math.sin(turn / 2) / (turn / 2), (1 - math.cos(turn / 2)) / (turn / 2)], abs=1e-12
-    )
-
-
 def test_small_weight_bends_a_cantilever_by_the_eighth():
     """``q L^4/8EI`` and the shear ``q L^2/2GA``; what is left falls with the square of the weight."""
     given = section(0)

@@ -189,23 +189,6 @@ def test_double_beam_with_friction() -> None:
     assert forces[:2] == pytest.approx([1.480763310, 0.659472563], abs=1e-9)
 
 
-@pytest.mark.parametrize("distance", [10.0, 2.0, 1.0, 0.1])
-def test_a_sleeve_exerts_a_configurational_force(distance: float) -> None:
-    """M^2/2EI as the material force at the clamp, at every distance of its pins."""
-    scene = load_scene("sleeve")
-    inner, outer = scene.pins
-    outer = replace(outer, start=(inner.points[0][0] + distance, 0.0))
-    response = answer(replace(scene, pins=(inner, outer)))
-    beam, clamp = scene.beams[0], response.supports["cantilever.start"]
-    N, Q = -clamp.force.T
-    H = clamp.moment**2 / (2 * beam.EI) + N + N**2 / (2 * beam.EA) + Q**2 / (2 * beam.GA)
-    M = scene.loads[0].moment * response.load_parameter
-    assert pytest.approx(M**2 / (2 * beam.EI), rel=1e-9) == H
-    if distance == 2.0:
-        assert H[-1] == pytest.approx(8.75, rel=1e-9)
-        assert N[-1] == pytest.approx(8.7486, abs=5e-5)
-
-
 def test_portal_frame_under_a_small_load() -> None:
     """Kleinlogel: moments of the feet .3 H h, vertical reactions .2667 H; the rest is the stretch of columns and girder."""
     scene = load_scene("portal-frame")
