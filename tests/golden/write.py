@@ -115,7 +115,7 @@ def compared(scene: str) -> Iterator[str]:
     with TemporaryDirectory() as folder:
         yield f"== compare {scene}"
         yield from (line for line in said("compare", scene, "--quiet", "--out", folder) if "exit" in line)
-        for row in csv.DictReader((Path(folder) / "table.csv").open()):
+        for row in csv.DictReader((Path(folder) / "table.csv").read_text().splitlines()):
             errors = {
                 name: float(text) for name, text in row.items() if name.startswith("error_path") and text
             }
