@@ -249,7 +249,9 @@ class _Newton(NamedTuple):
     correction: float
 
 
-def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int, rough: Rough) -> _Newton:
+def _newton(
+    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int, rough: Rough = _FULLY
+) -> _Newton:
     """Iterate until the corrections are round-off, or small enough."""
     rods, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
