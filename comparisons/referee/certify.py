@@ -8,7 +8,6 @@ from time import perf_counter
 import numpy as np
 
 from comparisons.referee.balance import BALANCE, balance_failures
-from comparisons.referee.bending import bent_otherwise
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.events import misstated
@@ -224,7 +223,6 @@ def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
         return
     # the solid is in balance with the pins where they touch it, and its contacts may lie inside it by their penetration
     yield from balance_failures(response, scene, allowed if response.outside else BALANCE)
-    yield from bent_otherwise(response, scene)
     if response.continuum:
         return
     forces = material_forces(response, scene)

@@ -9,7 +9,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Equilibrium, Verdict, answer_state, certify, equilibrium
 from comparisons.response import Response
-from comparisons.scene import Scene, load_scene, read_scene
+from comparisons.scene import Scene, read_scene
 from tests.comparisons.referee.forged import bent, stated
 
 COLUMN = """
@@ -122,29 +122,3 @@ def test_the_path_is_followed_through_a_touch() -> None:
     found = certify(replace(stated(scene, [wrong]), events=true.events), scene)
     assert found.verdict is Verdict.UNSTABLE
     assert "ends on another branch at 1" in found.reason
-
-
-def tripled(response: Response, k: int, factor: float = 3.0) -> Response:
-    """Return the answer with all forces of one load parameter times a factor, in balance with each other."""
-    by = np.where(np.arange(len(response.load_parameter)) == k, factor, 1.0)
-    supports = {
-        end: replace(item, force=item.force * by[:, None], moment=item.moment * by)
-        for end, item in response.supports.items()
-    }
-    contacts = {
-        pair: replace(
-            item, force=item.force * by, vector=None if item.vector is None else item.vector * by[:, None]
-        )
-        for pair, item in response.contacts.items()
-    }
-    return replace(response, supports=supports, contacts=contacts, material_force={})
-
-
-@pytest.mark.parametrize("scene", [column(7), replace(load_scene("ks-cantilever"), load_parameters=7)])
-def test_forces_that_do_not_bend_the_axis_are_refused_where_nothing_else_is_judged(scene: Scene) -> None:
-    true = replace(solve(scene, "tsm", Options(element="exact")), material_force={})
-    assert certify(true, scene).certified
-    for factor in (3.0, 1.0 / 3.0):
-        found = certify(tripled(true, 4, factor), scene, at=[-1])
-        assert found.verdict is Verdict.NOT_AN_EQUILIBRIUM
-        assert "does not bend as the forces on it do at load parameter 0.714286" in found.reason
