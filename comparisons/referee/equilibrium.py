@@ -127,29 +127,17 @@ def _is_near(layout: Layout, z: Array, solution: Solution) -> bool:
     return solution.status is SearchStatus.FOUND and bool(close)
 
 
-class Rough(NamedTuple):
-    """Corrections of a rotation or place at which Newton's method gives up, and at which it, and a mesh, are accurate enough."""
-
-    most: float
-    enough: float
-
-
-_FULLY = Rough(most=np.inf, enough=0.0)
-
-
-def correct(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int, rough: Rough = _FULLY
-) -> Solution:
+def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
     """Return the equilibrium near given unknowns; elements that do not resolve the rotation are halved.
 
-    At most `iterations` Newton iterations are made on each mesh, up to round-off unless a `rough` equilibrium will do.
+    At most `iterations` Newton iterations are made on each mesh.
     """
     spent, reason = 0, ""
     for _ in range(_ROUNDS):
-        newton = _newton(layout, mesh, z, bubbles, iterations, rough)
+        newton = _newton(layout, mesh, z, bubbles, iterations)
         spent += newton.iterations
         tails = _tails(newton.bubbles)
-        coarse = tails > max(_RESOLVED, rough.enough)
+        coarse = tails > _RESOLVED
         grids = _refined(mesh, coarse)
         done = not newton.converged or not coarse.any()
         if done or max(map(len, grids)) > _MOST_ELEMENTS:
@@ -249,10 +237,8 @@ class _Newton(NamedTuple):
     correction: float
 
 
-def _newton(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int, rough: Rough = _FULLY
-) -> _Newton:
-    """Iterate until the corrections are round-off, or small enough."""
+def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
+    """Iterate until the corrections are round-off."""
     rods, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
@@ -277,10 +263,8 @@ def _newton(
         size, error = max(turn, moved, forced / (scale + least)), max(turn, moved, forced / scale)
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, z, change))
         z, bubbles = z + part * change, bubbles + part * inside
-        if not np.isfinite(size) or max(turn, moved) > rough.most:
+        if not np.isfinite(size):
             return _Newton(z, bubbles, system, False, reason, iteration, error)
-        if part == 1.0 and size < rough.enough:
-            return _Newton(z, bubbles, system, True, "", iteration, error)
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
             return _Newton(z, bubbles, assemble(layout, mesh, rods, z, bubbles), True, "", iteration, error)
         last = size if part == 1.0 else np.inf

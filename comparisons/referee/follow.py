@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.basis import DEGREE, shapes
 from comparisons.referee.elements import Mesh, mesh_for, mesh_of, rotations
-from comparisons.referee.equilibrium import Rough, SearchStatus, Solution, correct, solve
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
 from comparisons.referee.layout import Layout, lay_out
 from comparisons.referee.march import closed_pairs, corners, tangent
 from comparisons.referee.stability import index_of, orientation_of
@@ -25,7 +25,7 @@ _NEAR = 0.2
 """Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
 _SHORT = 0.1
 """Largest correction of a tangent prediction [rad, L] at which the step is accepted."""
-_AIM = 0.12
+_AIM = 0.1
 """Correction over the change for which the next step is chosen; it grows with the step."""
 _ROUND_OFF = 1e-9
 """Changes of rotations [rad] and lengths below this are round-off."""
@@ -33,8 +33,6 @@ _LITTLE = 1e-7
 """Fraction of the remaining path over which the tangent is a difference."""
 _ITERATIONS = 12
 """Largest number of Newton iterations after a prediction."""
-_ROUGHLY = Rough(most=_SHORT, enough=1e-9)
-"""Newton's method after a prediction: corrections from which no step is accepted, and those after which the next is round-off."""
 _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _SAME = 1e-6
@@ -203,7 +201,7 @@ def followed(scene: Scene, first: Solution, end: float, last: Solution | None = 
         if last and t == end:
             off, behind = _unexplained(scene, now, rate, last, index)
         if off >= _NEAR:
-            there = correct(layout, mesh, z, bubbles, _ITERATIONS, _ROUGHLY)
+            there = correct(layout, mesh, z, bubbles, _ITERATIONS)
             off, behind = _unexplained(scene, now, rate, there, index)
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
