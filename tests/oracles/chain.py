@@ -8,12 +8,13 @@ Scene files are read here again: nothing of the three packages is used.
 
 import math
 import tomllib
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
 Array = NDArray[Any]
 ROOT, SMALLEST, UNSTABLE, LONGEST = 1e-10, 1e-7, 1e-4, 1.0 / 40.0
@@ -252,7 +253,10 @@ class Chain:
             if not np.all(np.isfinite(K)):
                 return None
             unit = np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))
-            factors = lu_factor(K / np.outer(unit, unit), check_finite=False)
+            with warnings.catch_warnings(action="ignore", category=LinAlgWarning):
+                factors = lu_factor(K / np.outer(unit, unit), check_finite=False)
+            if not np.diag(factors[0]).all():
+                return None
             dx = -lu_solve(factors, r / unit, check_finite=False) / unit
             x += dx[:n]
             for i, contact in enumerate(closed):
@@ -310,14 +314,18 @@ class Chain:
                 found["touch", contact.pair] = self.gap(contact, x, t)[0] / L
         return found
 
-    def follow(self) -> Path:  # noqa: C901, PLR0911, PLR0912 - one march, whose ends all have a name
-        """Follow the path from rest, in steps of `LONGEST` at most."""
+    def follow(self, longest: float = LONGEST) -> Path:  # noqa: C901, PLR0911, PLR0912 - one march, whose ends all have a name
+        """Follow the path from rest, in steps of `longest` at most."""
         number = self.data["scene"]["load_parameters"]
         stops = [(k + 1) / number for k in range(number)]
         x, t, closed = np.array([[*p, 0.0] for p in self.places]).ravel(), 0.0, list[Contact]()
         found = Path([], [], 0.0, "")
-        before, step = self.margins(x, t, closed), LONGEST
-        if math.inf in before.values():
+        before, step = self.margins(x, t, closed), longest
+        at = [(*self.gap(contact, x, t), self.lengths[contact.beam]) for contact in self.contacts]
+        if (
+            any(gap < BEHIND * L and min(arc, L - arc) < NEAR_END * L for gap, arc, L in at)
+            or math.inf in before.values()
+        ):
             return self._ended(found, 0.0, "starts beside an end")
         while len(found.states) < number:
             goal = min(t + step, stops[len(found.states)])
@@ -362,7 +370,7 @@ class Chain:
             before = {key: max(value, 0.0) for key, value in now.items()}
             if not crossed and math.isclose(t, stops[len(found.states)]):
                 found.states.append({c.pair: (self.push(c, x), c.arc) for c in closed})
-            step = LONGEST if crossed else min(1.7 * step, LONGEST)
+            step = longest if crossed else min(1.7 * step, longest)
         return self._ended(found, 1.0, "")
 
     @staticmethod

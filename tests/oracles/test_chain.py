@@ -20,15 +20,19 @@ EARLY = 1e-6
 """Load parameter up to which contacts that touch from the beginning close."""
 FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(120, 840, 80)
 """Seeds of the fast tests, of the one whose answer is forged, and the first of every eighty of the slow ones, 206 of which are stated."""
+SHORTER = 8.0
+"""Part of the chain's longest step with which a path that differs is followed again: beside a bifurcation it may end on another branch."""
+UNSEEN = 1e-6
+"""Contact force over EI/L^2 that bends a beam by less than the chain resolves."""
 COMPARED = ("touch", "release", "slip-off")
 
 
-def paths(seed: int) -> tuple[Path, Path] | None:
+def paths(seed: int, longest: float = LONGEST) -> tuple[Path, Path] | None:
     """Return both paths of a scene with contacts; None if the chain cannot state it."""
     scene = drawn(seed)
     try:
         return (
-            (Chain(to_toml(scene), COARSE).follow(), Chain(to_toml(scene), FINE).follow())
+            tuple(Chain(to_toml(scene), number).follow(longest) for number in (COARSE, FINE))
             if scene.contacts
             else None
         )
@@ -102,7 +106,14 @@ def told(seed: int) -> list[str] | None:
     if found is None or not found[1].states:
         return None
     response = solve(scene, "tsm", Options(element="exact"))
-    return differences(response, *found, {beam.name: beam.length for beam in scene.beams})
+    lengths = {beam.name: beam.length for beam in scene.beams}
+    largest = max(contact.force.max(initial=0.0) for contact in response.contacts.values())
+    if 0.0 < largest < UNSEEN * min(beam.EI / beam.length**2 for beam in scene.beams):
+        return None
+    wrong = differences(response, *found, lengths)
+    if wrong and (found := paths(seed, LONGEST / SHORTER)):
+        wrong = differences(response, *found, lengths)
+    return wrong
 
 
 @pytest.mark.parametrize("seed", FAST)
