@@ -12,7 +12,6 @@ one of the responses has a material force.
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,8 +175,19 @@ def event_differences(response: Response, reference: Response) -> list[EventDiff
         for kind, pair in sorted(
             both[0].keys() | both[1].keys() if stated else both[0].keys() & both[1].keys()
         )
-        for own, true in zip_longest(*(item.get((kind, pair), []) for item in both), fillvalue=np.nan)
+        for own, true in _nearest(*(item.get((kind, pair), []) for item in both))
     ]
+
+
+def _nearest(own: list[float], true: list[float]) -> list[tuple[float, float]]:
+    """Pair load parameters so that the sum of their differences is least; nan stands beside those that are left over."""
+    from scipy.optimize import linear_sum_assignment
+
+    rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(own, true)))
+    pairs = [(own[i], true[j]) for i, j in zip(rows, columns, strict=True)]
+    pairs += [(t, np.nan) for i, t in enumerate(own) if i not in rows]
+    pairs += [(np.nan, t) for j, t in enumerate(true) if j not in columns]
+    return sorted(pairs, key=lambda pair: float(np.fmin(*pair)))
 
 
 def _events(response: Response, last: float) -> dict[tuple[str, str], list[float]]:

@@ -43,14 +43,14 @@ _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
 
 
-SWITCHED = ("touch", "release")
+_SWITCHED = ("touch", "release")
 """Kinds of events without a jump at which a contact closes or opens."""
 _POINTS = 201
 """Points of an axis from which an equilibrium with other contacts is sought."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Way:
+class _Way:
     """The end of a followed path, and why it does not lead on."""
 
     end: Solution
@@ -58,7 +58,6 @@ class Way:
 
     @property
     def t(self) -> float:
-        """Load parameter of the end."""
         return self.end.layout.load_parameter
 
 
@@ -82,12 +81,11 @@ def departures(
         if now.status is SearchStatus.FOUND:
             events = events_between(response, now.layout.load_parameter, there.load_parameter)
             same = all(closed[i] == closed_pairs(now).keys() for i in range(max(begin, 0), k + 1))
-            way = now if same and not events else _switched_on_the_way(scene, now, events)
-            if way is None or not _alike(way, there.solution):
-                pass
-            elif way is now or not followed(scene, way, there.load_parameter, there.solution).stopped:
+            ways = [now] if same and not events else on_the_way(scene, now, events)
+            for way in (item for item in ways[-1:] if _alike(item, there.solution)):
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                yield from filter(None, [departs(scene, way, there.solution)])
+                if way is now or not _followed(scene, way, there.load_parameter, there.solution).stopped:
+                    yield from filter(None, [departs(scene, way, there.solution)])
         now, begin = there.solution, k
 
 
@@ -97,21 +95,29 @@ def events_between(response: Response, after: float, until: float) -> list[Conta
     return [event for event in events if after <= event.load_parameter <= until]
 
 
-def _switched_on_the_way(scene: Scene, now: Solution, events: Sequence[ContactEvent]) -> Solution | None:
-    """Follow the path through events and return the equilibrium after the last; None where one jumps, or there is none."""
-    if not events or now.layout.rubs or any(event.kind not in SWITCHED for event in events):
-        return None
-    for event in events:
-        way = followed(scene, now, event.load_parameter)
+def on_the_way(
+    scene: Scene, now: Solution, events: Sequence[ContactEvent], stops: Sequence[float] = ()
+) -> list[Solution]:
+    """Follow the path from `now` through events, and return the equilibria at stops and behind the events.
+
+    Empty where contacts rub, an event jumps, or no path leads on.
+    """
+    if now.layout.rubs or any(event.kind not in _SWITCHED for event in events):
+        return []
+    found: list[Solution] = []
+    marks = [(t, None) for t in stops] + [(event.load_parameter, event) for event in events]
+    for t, event in sorted(marks, key=lambda mark: mark[0]):
+        way = _followed(scene, now, t)
         if way.stopped:
-            return None
-        now = switched(scene, way.end, event)
+            return []
+        now = _switched(scene, way.end, event) if event else way.end
         if now.status is not SearchStatus.FOUND:
-            return None
-    return now
+            return []
+        found.append(now)
+    return found
 
 
-def switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
+def _switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
     """Return the equilibrium with the contact of an event closed or open."""
     exact, arcs = described(scene, now), closed_pairs(now)
     arcs.pop(event.pair, None)
@@ -156,7 +162,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     Where the path ends at a bifurcation, all stable branches that lead back to it are right.
     """
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    way = followed(scene, first, end, last)
+    way = _followed(scene, first, end, last)
     if not way.stopped:
         off = _apart(_state(way.end), _state(last))
         return (
@@ -164,7 +170,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
             if off < _SAME
             else f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
         )
-    back = followed(scene, last, start)
+    back = _followed(scene, last, start)
     apart = abs(back.t - way.t) if back.stopped else np.inf
     if apart < _MEET * (end - start) and _apart(_state(way.end), _state(back.end)) < _MEETING:
         return ""
@@ -173,7 +179,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     return f"no continuous path{kind} leads on beyond load parameter {way.t:.6g}"
 
 
-def followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> Way:
+def _followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> _Way:
     """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
 
     A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the
@@ -190,7 +196,7 @@ def followed(scene: Scene, first: Solution, end: float, last: Solution | None = 
         rate = rate or tangent(scene, now, sign * _LITTLE * left)
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
-            return Way(end=now, stopped=True)
+            return _Way(end=now, stopped=True)
         layout = lay_out(scene, t, closed, grips)
         mesh, z, bubbles = (
             mesh_for(layout, now.mesh),
@@ -207,8 +213,8 @@ def followed(scene: Scene, first: Solution, end: float, last: Solution | None = 
         if off < _NEAR:
             now, rate = there, None if t == stop else behind
         elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
-            return Way(end=now, stopped=True)
-    return Way(end=now)
+            return _Way(end=now, stopped=True)
+    return _Way(end=now)
 
 
 def _unexplained(

@@ -178,7 +178,7 @@ class History:
         closed = self.closed(middle)
         began = [self._begins[item].solution for item in sticking.values() if item in self._begins]
         began = [item for item in began if closed_pairs(item).keys() == closed]
-        # from where a stick begins, if anything does not change; its cone may be empty at the answer's load parameters
+        # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
         near = (
             max(began, key=lambda item: item.layout.load_parameter)
             if began

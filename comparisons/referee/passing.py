@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, solve
 from comparisons.referee.faces import face_slope, touching_distance
-from comparisons.referee.follow import SWITCHED, at_rest, events_between, followed, switched
+from comparisons.referee.follow import at_rest, events_between, on_the_way
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import described
 from comparisons.response import ContactHistory, Response
@@ -105,24 +105,17 @@ def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> li
     """States on the path to load parameter k from the one before; none if it rubs, jumps, or leads elsewhere."""
     way, arcs = [_moment(response, scene, spec, k - 1)], response.axis_line(spec.beam, k)[0]
     end = _moment(response, scene, spec, k)
-    events = events_between(response, way[0].t, end.t)
     now = at_rest(scene) if k == 0 else solve(scene, answer_state(response, scene, k - 1))
-    if now.layout.rubs or any(event.kind not in SWITCHED for event in events):
+    if now.status is not SearchStatus.FOUND:
         return []
-    stops = [(t, None) for t in np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist()]
-    for t, event in sorted(
-        [*stops, *((event.load_parameter, event) for event in events)], key=lambda stop: stop[0]
-    ):
-        step = None if now.status is not SearchStatus.FOUND else followed(scene, now, t)
-        if step is None or step.stopped:
-            return []
-        now = step.end
-        exact = described(scene, now)
+    events = events_between(response, way[0].t, end.t)
+    found = on_the_way(scene, now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
+    for solution in found:
+        exact, t = described(scene, solution), solution.layout.load_parameter
         node = exact.ends[spec.node] if "." in spec.node else np.array(scene.pin(spec.node).position(t))
         way.append(_Moment(t=t, line=exact.shape(spec.beam, arcs).position, node=node))
-        now = switched(scene, now, event) if event else now
     apart = np.hypot(*(way[-1].line - end.line).T).max()
-    return way if apart <= _SAME * scene.beam(spec.beam).length else []
+    return way if found and apart <= _SAME * scene.beam(spec.beam).length else []
 
 
 def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment, where: str) -> bool:

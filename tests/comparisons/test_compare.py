@@ -11,13 +11,14 @@ import pytest
 from comparisons import compare as compared
 from comparisons import models
 from comparisons.cli import main
-from comparisons.compare import PAPER, RUNS, compare
+from comparisons.compare import PAPER, RUNS, Comparison, compare
 from comparisons.errors import errors
 from comparisons.files import WRITTEN
 from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene, read_scene, to_toml
 from comparisons.scene.keys import special_keys
+from comparisons.show.table import Row
 
 PAIR = "pin->cantilever"
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -218,3 +219,20 @@ def test_a_scene_without_exact_rods_is_refused_in_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert "errors are measured against the exact rod; contact " in line
     assert not out.exists()
+
+
+def test_an_event_that_the_reference_does_not_have_is_a_line() -> None:
+    """The first one of each completed run, and none where the events are the same."""
+    true = models.solve(
+        replace(load_scene("touch-again"), load_parameters=4), "tsm", Options(element="exact")
+    )
+    assert true.events is not None
+    touch = replace(true.events[0], load_parameter=0.25)
+    more = replace(true, events=(touch, *true.events))
+    rows = [
+        Row(label=label, response=response, errors=None)
+        for label, response in (("exact rod", true), ("same", true), ("other", more))
+    ]
+    assert Comparison(rows=rows, files=[]).other_events == [
+        "other has a touch of pin->cantilever at load parameter 0.25, which exact rod does not have"
+    ]

@@ -18,7 +18,7 @@ LEAST = 2e-3
 """Smallest allowance: of a force over the largest, of a place over the beam's length, of a load parameter."""
 EARLY = 1e-6
 """Load parameter up to which contacts that touch from the beginning close."""
-FAST, WITNESS, SLOW = (5, 13, 30, 60, 79), 13, range(120, 840, 80)
+FAST, WITNESS, SLOW = (5, 13, 30, 60, 79, 377), 13, range(120, 840, 80)
 """Seeds of the fast tests, of the one whose answer is forged, and the first of every eighty of the slow ones, 206 of which are stated."""
 SHORTER = 8.0
 """Part of the chain's longest step with which a path that differs is followed again: beside a bifurcation it may end on another branch."""
