@@ -56,8 +56,11 @@ def follow(
     *,
     EI: float,
     length: float,
+    side: int | None = None,
 ) -> FrictionPath:
     """Return the equilibria at the vertices of a path, in the units of `EI` and `length`.
+
+    Without `side`, 1 on the right of the rod and -1 on its left, the pin is where its path begins.
 
     Raises
     ------
@@ -67,7 +70,7 @@ def follow(
     require_friction(friction)
     pins = path_points(points) / length
     reach = equations_of_side(1).reach
-    problem = Problem(equations=equations_of_side(_side(pins)), friction=friction)
+    problem = Problem(equations=equations_of_side(side or _side(pins)), friction=friction)
     if 0.0 < pins[0, 0] <= 1.0 and abs(pins[0, 1]) < reach - _TOUCH:
         raise ValueError(f"points[0] = {pins[0]} length: the path must not start inside the rod")
     distance = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pins, axis=0).T))])

@@ -123,6 +123,7 @@ def rod_with_friction(
     EI: float,
     length: float,
     surface: Surface | None = None,
+    side: int | None = None,
 ) -> FrictionPath:
     """Equilibrium of a clamped Reissner rod under a pin with Coulomb friction at every vertex of the pin's path.
 
@@ -141,6 +142,8 @@ def rod_with_friction(
         Undeformed length.
     surface : Surface, optional
         Face of the rod and radius of the pin; a sharp pin on the axis by default.
+    side : int, optional
+        1 for a pin on the right of the rod, -1 on its left; by default as the path begins.
 
     Returns
     -------
@@ -173,4 +176,4 @@ def rod_with_friction(
             side=side,
         )
 
-    return follow(equations, points, friction, EI=EI, length=length)
+    return follow(equations, points, friction, EI=EI, length=length, side=side)

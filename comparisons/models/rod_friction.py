@@ -35,6 +35,7 @@ def solve_rod_with_friction(scene: Scene, local: RodScene) -> Response:
         EI=beam.EI,
         length=beam.length,
         surface=Surface(offset=local.offset - radius, radius=radius),
+        side=1,
     )
     seconds = perf_counter() - began
     slipped = [event.load_parameter for event in path.events if event.after is FrictionState.SLIPPED]
