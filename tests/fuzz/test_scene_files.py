@@ -145,11 +145,6 @@ def compared(number: int, folder: Path) -> int:
 @pytest.mark.slow
 def test_answers_are_the_rods(tmp_path: Path, stated: Callable[..., None]) -> None:
     stated("fuzz.exact", EXACT)
-    assert compared(20, tmp_path) > 15
-
-
-@pytest.mark.slow
-def test_many_answers_are_the_rods(tmp_path: Path) -> None:
     assert compared(80, tmp_path) > 80
 
 
