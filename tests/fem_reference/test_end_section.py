@@ -1,15 +1,12 @@
 """End sections as control points: exact derivatives, patch tests, reactions, joints and stability of ties."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 import fem_reference as fr
-from fem_reference.end_section import Pose
 from fem_reference.model import build
-from fem_reference.state import at_rest, build_state, imbalance, residual, section_forces, tie_residuals
+from fem_reference.state import at_rest, build_state, imbalance, residual, tie_residuals
 from fem_reference.strip import ELEMENTS
 from fem_reference.tangent import linearise
 from tests.fem_reference.conftest import (
@@ -41,22 +38,6 @@ def support(end="start", motion=(0.0, 0.0, 0.0)):
     return fr.Support(strip=STRIP, end=end, motion=motion)
 
 
-def test_derivatives_of_the_rotation():
-    """About states turned by any angle: first by central differences, second by complex steps."""
-    rest = np.array([0.3, 0.7])
-    for turn in (0.2, 1.5, 3.0, -2.0):
-        m = 1.3 * rotation(turn) @ rest
-        pose = Pose(displacement=np.zeros(2), first_moment=m, rest=rest)
-        assert pose.rotation == pytest.approx(turn, abs=1e-15)
-        for k in range(2):
-            ahead, behind = (replace(pose, first_moment=m + h * np.eye(2)[k]) for h in (1e-5, -1e-5))
-            slope = (ahead.rotation - behind.rotation) / 2e-5
-            assert slope == pytest.approx(pose.gradient[2 + k, 2], rel=1e-9)
-            moved = replace(pose, first_moment=m + 1j * STEP * np.eye(2)[k])
-            curved = moved.gradient[2:, 2].imag / STEP
-            np.testing.assert_allclose(curved, pose.curvature[2:, 2 + k], rtol=1e-13)
-
-
 @pytest.fixture(scope="module")
 def loaded():
     """A frame with a moment and contact, away from equilibrium."""
@@ -76,24 +57,6 @@ def test_tangent_is_the_derivative_of_the_residual(loaded):
         moved = build_state(model, u, state.t, state.conditions, state.tie_forces)
         change = model.expansion.T @ residual(model, moved).imag.ravel() / STEP
         np.testing.assert_allclose(change, A @ x, rtol=0, atol=1e-12 * np.abs(change).max())
-
-
-def test_force_of_a_tie_is_its_gradient(loaded):
-    """Virtual work of unit forces and moments on the sections against central differences of their motions."""
-    model, state = loaded
-    rng = np.random.default_rng(3)
-    du = rng.standard_normal(state.u.shape)
-    step = 1e-6
-    ahead, behind = (
-        build_state(model, state.u + sign * step * du, state.t, state.conditions) for sign in (1, -1)
-    )
-    for number in range(len(model.sections)):
-        for component in range(3):
-            action = np.zeros((len(model.sections), 3))
-            action[number, component] = 1.0
-            change = ahead.poses[number].motion[component] - behind.poses[number].motion[component]
-            work = float(np.sum(section_forces(model, state, action) * du))
-            assert work == pytest.approx(change / (2 * step), rel=1e-7, abs=1e-9)
 
 
 @elements

@@ -1,14 +1,12 @@
 """Derivatives of friction: of slip and direction, of all residuals, and the rates along the path."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import fem_reference as fr
 from fem_reference.active_set import equilibrium
-from fem_reference.border import build_border
 from fem_reference.dissipation import slip_rates
 from fem_reference.friction import (
     force_curvature,
@@ -69,20 +67,6 @@ def test_slip_and_direction_of_friction_by_complex_steps(model, side, radius, ze
     assert slip_gradient(pair, at, last) @ y == pytest.approx(float(change), rel=1e-10)
     turned = pair.gap_derivatives(moved)[0][:, 1].imag / STEP
     np.testing.assert_allclose(columns @ (force_curvature(pair, at) @ y), turned, rtol=0, atol=1e-9)
-
-
-def test_slip_rate_is_the_work_conjugate_of_the_tangential_force(model):
-    """``d xi = -t . W du`` for a node at the distance of the pin's radius."""
-    u = bent(model)
-    pair = model.pairs[0]
-    r, r1, _ = pair.curve.basis(0.4) @ pair.carrier.points(u)
-    for sign, radius in ((-1.0, 0.05), (-1.0, 0.0)):
-        point = r + sign * radius * np.array([-r1[1], r1[0]]) / np.hypot(*r1)
-        placed = place_pin(model, point, radius=radius).pairs[0]
-        at = placed.project(u, 0.0)
-        np.testing.assert_allclose(
-            slip_gradient(placed, at, friction_at(at)), [0, -1, 0, 0], rtol=0, atol=1e-12
-        )
 
 
 def pressed(direction, radius=0.0):
@@ -147,37 +131,6 @@ def test_correction_removes_the_linear_part_of_all_residuals(make):
     for rows in (slice(0, -2), slice(-2, -1), slice(-1, None)):  # forces, gap, slip
         scale = np.abs(r[rows]).max()
         np.testing.assert_allclose(found[rows], -r[rows], rtol=0, atol=1e-4 * scale + 1e-12)
-
-
-@pytest.mark.slow_at("end-slip", "end-stick")
-@pytest.mark.parametrize("make", CASES)
-def test_residuals_with_friction_fall_quadratically(make):
-    model, state = make()
-    errors = []
-    for _ in range(9):
-        R, _ = all_residuals(model, state)
-        errors.append(np.abs(R).max() / state.touches[0].force)
-        state = updated(model, state, linearise(model, state).correction(R), 1.0)
-    floor = model.round_off / state.touches[0].force
-    order = next(np.log(b) / np.log(a) for a, b in pairwise(errors) if a < 1e-2)
-    assert errors[-1] < floor
-    assert order > 1.6
-
-
-def test_friction_makes_the_border_unsymmetric_and_nothing_else_does():
-    """Without friction the gradients are the forces' directions, and no force is coupled to another."""
-    model, state = pressed(-1)
-    border = build_border(model, state)
-    assert np.abs(border.A - border.A.T).max() > 0
-    assert np.abs(border.coupling).max() == 0.3
-    plain = fr.solve(make_problem(mesh=(10, 1)), np.array([0.2]))
-    state = plain.states[0]
-    assert state.conditions[0].friction is None
-    assert state.touches[0].slopes.shape[1] == 3
-    border = build_border(plain.model, state)
-    np.testing.assert_array_equal(border.N, border.M)
-    np.testing.assert_array_equal(border.A, border.A.T)
-    assert not border.coupling.any()
 
 
 def test_rates_of_slip_and_force_are_those_of_the_path():

@@ -4,24 +4,9 @@ import numpy as np
 import pytest
 
 import fem_reference as fr
-from fem_reference.assembly import deformation_gradient
 from fem_reference.body import build_body, discretise
 from fem_reference.model import build
 from fem_reference.strip import ELEMENTS, solution_cost
-
-
-@pytest.mark.parametrize("mesh", [(2, 1), (5, 2), (4, 3)])
-def test_cells_are_anticlockwise_quads_with_midsides_and_centre(strip, mesh):
-    d = discretise(strip(mesh=mesh))
-    x = d.nodes[d.cells]
-    edges = np.roll(x[:, :4], -1, axis=1) - x[:, :4]
-    cross = (
-        edges[:, :, 0] * np.roll(edges, -1, axis=1)[:, :, 1]
-        - edges[:, :, 1] * np.roll(edges, -1, axis=1)[:, :, 0]
-    )
-    assert np.all(cross > 0)
-    np.testing.assert_allclose(x[:, 4:8], x[:, :4] + edges / 2, atol=1e-15)
-    np.testing.assert_allclose(x[:, 8], x[:, :4].mean(axis=1), atol=1e-15)
 
 
 def test_weights_sum_to_the_volume_and_edges_order_the_nodes(strip):
@@ -52,15 +37,6 @@ def test_grading_is_the_ratio_of_last_to_first_element(strip, element):
     np.testing.assert_allclose(lengths[1:] / lengths[:-1], 8 ** (1 / 5), rtol=1e-12)
     assert (d.stations[0], d.stations[-1]) == (0.0, 1.0)
     assert d.weights.sum() == pytest.approx(0.02 * 0.02, rel=1e-14)
-
-
-def test_gradients_are_exact_for_biquadratic_fields(strip):
-    d = discretise(strip(mesh=(3, 2)))
-    x, y = d.nodes.T
-    F = deformation_gradient(d, np.stack([x**2 * y + y**2, 0 * x], axis=1), d.at_nodes)
-    xc, yc = x[d.cells], y[d.cells]
-    np.testing.assert_allclose(F[0, 0] - 1, 2 * xc * yc, atol=1e-13)
-    np.testing.assert_allclose(F[0, 1], xc**2 + 2 * yc, atol=1e-12)
 
 
 @pytest.mark.parametrize(

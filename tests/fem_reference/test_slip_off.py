@@ -47,11 +47,6 @@ def test_node_is_armed_again_once_it_is_back_on_its_side(touch, point, before, a
     assert not _rearmed(model, contact).closed
 
 
-def test_closed_contact_stays_as_it_is(touch):
-    model, contact = touch((0.5, 0.1), closed=True, force=1.0)
-    assert _rearmed(model, contact) == contact.condition
-
-
 @pytest.mark.parametrize(
     ("point", "armed", "closed"),
     [

@@ -66,9 +66,9 @@ def test_biot_linear_material_is_closer_to_the_rod(problem):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("penalty", [1.0, 1e2, 1e4])
+@pytest.mark.parametrize("penalty", [1.0, 1e4])
 @surfaces
-@pytest.mark.parametrize("mesh", [(25, 2), (50, 2), (100, 2), (200, 4)])
+@pytest.mark.parametrize("mesh", [(25, 2), (200, 4)])
 def test_every_mesh_and_penalty_completes(problem, mesh, surface, penalty):
     scene = problem(mesh=mesh, contact={"surface": surface, "penalty": penalty})
     result = fr.solve(scene, loads(50), fr.Settings(max_penetration=1e-2))
@@ -82,12 +82,6 @@ def test_penalty_error_is_linear_in_its_inverse(problem, ks_axis):
         for eps in (10.0, 40.0)
     ]
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
-
-
-def test_answers_do_not_depend_on_the_load_parameters(problem, ks_axis):
-    coarse, fine = fr.solve(problem(), loads(10)).contacts[PAIR], ks_axis.contacts[PAIR]
-    np.testing.assert_allclose(coarse.force, fine.force[4::5], rtol=1e-9)
-    np.testing.assert_allclose(coarse.arc_position, fine.arc_position[4::5], rtol=1e-9)
 
 
 def test_one_load_parameter_is_reached_by_cutting_back(problem, ks_axis):
