@@ -60,7 +60,7 @@ def follow(
 ) -> FrictionPath:
     """Return the equilibria at the vertices of a path, in the units of `EI` and `length`.
 
-    Without `side`, 1 on the right of the rod and -1 on its left, the pin is where its path begins.
+    `side` is 1 for a pin on the right of the rod and -1 on its left; without it, the beginning of the path decides.
 
     Raises
     ------

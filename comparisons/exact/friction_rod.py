@@ -130,8 +130,8 @@ def rod_with_friction(
     Parameters
     ----------
     points : array_like, shape (s, 2)
-        Vertices of the path of the pin's point or centre, joined by straight lines. The first must not be inside the rod. A
-        path that starts below the rod, or on it and then rises, belongs to a pin on the right of the rod.
+        Vertices of the path of the pin's point or centre, joined by straight lines. The first must not be inside the rod.
+        Without `side`, a path that starts below the rod, or on it and then rises, belongs to a pin on the right of the rod.
     friction : float
         Coefficient of friction mu.
     EA, GA : float
@@ -143,7 +143,7 @@ def rod_with_friction(
     surface : Surface, optional
         Face of the rod and radius of the pin; a sharp pin on the axis by default.
     side : int, optional
-        1 for a pin on the right of the rod, -1 on its left; by default as the path begins.
+        1 for a pin on the right of the rod, -1 on its left; by default the beginning of the path decides.
 
     Returns
     -------

@@ -117,6 +117,25 @@ def test_rod_and_exact_elements_locate_one_slip_off() -> None:
     assert one.slip_off not in scene.times
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_pin_that_leaves_the_beam_at_first_touches_it_again_from_its_side(
+    friction: float, mirrored: bool
+) -> None:
+    """On the beam a pin's side is the scene's, whatever way it moves at first."""
+    path = ((0.5, 0.0), (0.7, -0.1), (0.8, 0.1))
+    pins, contacts = (PinSpec(name="pin", path=path),), (replace(KS.contacts[0], friction=friction),)
+    given = moved(
+        replace(KS, pins=pins, contacts=contacts, load_parameters=3), mirrored=mirrored, from_end=False
+    )
+    rod, beams = (solve(given, model, EXACT if model == "tsm" else Options()) for model in ("rod", "tsm"))
+    assert rod.completed
+    assert beams.completed
+    force = rod.contacts[PAIR].force
+    np.testing.assert_array_equal(force > 0.0, [False, False, True])
+    np.testing.assert_allclose(force, beams.contacts[PAIR].force, rtol=1e-9)
+
+
 def test_exact_section_forces_jump_by_the_contact_force() -> None:
     response = solve(SHORT, "tsm", EXACT)
     data = response.grid(7).point_data

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 from scipy.sparse import eye_array
 
 import fem_reference as fr
@@ -61,6 +62,19 @@ def test_curve_converges_with_fourth_order(spread):
         return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
 
     assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
+
+
+@pytest.mark.parametrize("m", [3, 46, 300, 700])
+def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
+    rng = np.random.default_rng(m)
+    s = np.cumsum(rng.uniform(0.5, 2, m))
+    values = rng.standard_normal(m)
+    band = band_slopes(s)
+    half = band.shape[1] // 2
+    slopes = [
+        band[k, max(0, half - k) : half + m - k] @ values[max(0, k - half) : k + half + 1] for k in range(m)
+    ]
+    np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), atol=1e-13)
 
 
 def test_average_leaves_cubics_and_reaches_no_further():

@@ -228,13 +228,6 @@ def test_touch_slip_off_and_touch_again():
     assert np.max(balance(path)) < 1e-13
 
 
-def test_a_pin_that_leaves_the_rod_at_first_touches_it_again_from_its_side():
-    path = rod_with_friction([[0.5, 0.0], [0.7, -0.1], [0.8, 0.1]], friction=0.3, side=1, **KS)
-    again = rod_with_friction([[0.7, -0.1], [0.8, 0.1]], friction=0.3, **KS)
-    assert path.state == (OPEN, OPEN, TO_TIP)
-    np.testing.assert_allclose(path.force[-1], again.force[-1], rtol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("k", "turn", "after"), [(1, -0.1, TO_CLAMP), (1, 0.1, STICK), (2, -0.1, STICK), (2, 0.1, TO_TIP)]
 )
