@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 import tsm
 
 SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
@@ -23,4 +27,100 @@ def cantilever(path, *, elements=10, side="right", element="mixed", offset=0.0):
         supports=(tsm.Support(beam="b", end="start"),),
         pins=(tsm.Pin(name="p", path=path),),
         contacts=(tsm.ContactPair(node="p", beam="b", side=side, offset=offset),),
+    )
+
+
+THICK = tsm.Section(EA=4e3, GA=1e3, EI=2.0)
+THIN = tsm.Section(EA=1.6e3, GA=0.4e3, EI=0.2)
+
+
+def hook(elements=1, element="exact", **other):
+    """A tapered strip of natural curvature under its weight and a load on a part of it."""
+    beam = tsm.Beam(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.2), section=THICK, end_section=THIN, turn=0.9,
+        elements=elements, element=element,
+    )  # fmt: skip
+    beam = beam.divided(0.3, 0.8)
+    weight = tsm.LineLoad(beam="b", force=((0.3, -1.5), (0.0, 1.0), (0.1, 0.2)))
+    part = tsm.LineLoad(beam="b", force=((0.5, 2.0),), start=0.3, end=0.8)
+    given = {"supports": (tsm.Support(beam="b", end="start"),), "line_loads": (weight, part), **other}
+    return tsm.Structure(beams=(beam,), **given)
+
+
+def pushed(elements=1, **pair):
+    """The same between two pins, with an offset."""
+    beam = hook().beams[0]
+    pins, contacts = [], []
+    for name, side, part, move in (("p", "right", 0.45, (0.02, 0.1)), ("r", "left", 0.75, (0.05, -0.02))):
+        (x, y), angle = beam.point(part), beam.direction(part)
+        depth = pair.get("offset", 0.0) * (1 if side == "right" else -1)
+        x, y = x + depth * np.sin(angle), y - depth * np.cos(angle)
+        pins.append(tsm.Pin(name=name, path=((x, y), (x + move[0], y + move[1]))))
+        contacts.append(tsm.ContactPair(node=name, beam="b", side=side, **pair))
+    return hook(elements, pins=tuple(pins), contacts=tuple(contacts))
+
+
+def leaning():
+    """A straight beam's tip on a curved one, one load on each."""
+    lower = replace(hook().beams[0], name="low")
+    x, y = lower.point(0.6)
+    upper = tsm.Beam(
+        name="up", start=(x - 0.6, y + 0.5), end=(x, y), section=THIN, elements=1, element="exact"
+    )
+    loads = (
+        tsm.LineLoad(beam="low", force=((0.0, -0.5), (0.2, 0.3))),
+        tsm.LineLoad(beam="up", force=((0.3, -3.0),)),
+    )
+    supports = (tsm.Support(beam="low", end="start"), tsm.Support(beam="up", end="start", uy=-0.05))
+    contact = tsm.ContactPair(node="up.end", beam="low", side="left")
+    return tsm.Structure(beams=(lower, upper), supports=supports, line_loads=loads, contacts=(contact,))
+
+
+def as_mixed(structure):
+    """The same structure in `mixed` elements."""
+    beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
+    return replace(structure, beams=beams)
+
+
+STRIP = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
+"""Section of the cantilever of Konyukhov and Schweizerhof."""
+
+
+def _strip(name, start, end, *, elements=1, element="exact"):
+    return tsm.Beam(name=name, start=start, end=end, section=STRIP, elements=elements, element=element)
+
+
+def two_beams(elements=1, lower="exact"):
+    """A tip that meets a second beam, a pin on each, one of them with an offset."""
+    return tsm.Structure(
+        beams=(
+            _strip("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
+            _strip("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
+        ),
+        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
+        pins=(
+            tsm.Pin(name="p", path=((0.7, 0.01), (0.65, -0.25))),
+            tsm.Pin(name="q", path=((0.4, -0.1), (0.4, -0.08))),
+        ),
+        contacts=(
+            tsm.ContactPair(node="p", beam="upper", side="left", offset=0.01),
+            tsm.ContactPair(node="q", beam="lower"),
+            tsm.ContactPair(node="upper.end", beam="lower", side="left", offset=0.003),
+        ),
+    )
+
+
+def two_pins(elements=1):
+    """Two pins on one beam, from both sides."""
+    return tsm.Structure(
+        beams=(_strip("b", (0.0, 0.0), (1.0, 0.0), elements=elements),),
+        supports=(tsm.Support(beam="b", end="start"),),
+        pins=(
+            tsm.Pin(name="p", path=((0.5, -0.01), (0.5, 0.2))),
+            tsm.Pin(name="q", path=((0.9, 0.01), (0.9, 0.1))),
+        ),
+        contacts=(
+            tsm.ContactPair(node="p", beam="b", offset=0.01),
+            tsm.ContactPair(node="q", beam="b", side="left", offset=0.01),
+        ),
     )

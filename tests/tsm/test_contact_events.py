@@ -9,10 +9,6 @@ import pytest
 
 import tsm
 from tests.tsm.structures import SECTION, cantilever
-from tsm.contact import nearest_chord
-from tsm.elements.curve import Curve
-from tsm.model import Model
-from tsm.projection import Projection, slide
 
 
 def kinds(result):
@@ -240,72 +236,6 @@ def test_two_pins_on_one_beam():
     assert result.contacts["q->b"].force[-1] > 0
     total = -result.supports["b.start"].force[-1]
     assert np.hypot(*total) < result.contacts["p->b"].force[-1]
-
-
-def test_owner_of_a_position():
-    model = Model(cantilever(((0.8, 0.0), (0.8, 0.1))))
-    beam = model.beams["b"]
-    assert slide(beam.lengths, 4, 1.25) == (5, pytest.approx(0.25))
-    assert slide(beam.lengths, 4, -2.25) == (1, pytest.approx(0.75))
-    assert slide(beam.lengths, 4, 1.0) == (4, 1.0)
-    assert slide(beam.lengths, 9, 1.5) == (9, 1.5)
-
-
-@pytest.mark.parametrize("bend", [0.3, -0.3])
-@pytest.mark.parametrize("ulps", [-1, 0, 1])
-def test_one_owner_at_a_kink(bend, ulps):
-    """On the convex side of a kink no projection falls inside, on the concave side both do: one owner either way."""
-    model = Model(cantilever(((0.8, 0.0), (0.8, 0.1)), elements=2))
-    q = np.zeros(model.dof_count)
-    q[7] = bend / 2
-    x = 0.5 + ulps * np.finfo(float).eps
-    element, xi = nearest_chord(model, model.beams["b"], q, (x, -0.01))
-    assert element in {0, 1}
-    assert nearest_chord(model, model.beams["b"], q, (x, -0.01)) == (element, xi)
-
-
-def test_projection_is_the_closest_point():
-    """Against a search over a fine division of the elements' curves."""
-    structure = cantilever(((0.8, 0.0), (0.8, 0.3)))
-    result = tsm.solve(structure, TENTHS)
-    model, state = result.model, result.equilibria[-1].state
-    pair, xi = model.pairs[0], np.linspace(0, 1, 2001)
-    lines = []
-    for e in range(10):
-        x = state.q[model.dofs[:, e]]
-        curve = Curve(model.element[e], x)
-        d = np.array([curve.dx, curve.dy])
-        across = np.outer(curve.deflection(xi)[0], (-d[1], d[0]))
-        lines.append(model.element_start[e] + x[:2] + np.outer(xi, d) + across)
-    arc, xy = np.add.outer(np.arange(10), xi).ravel() / 10, np.concatenate(lines)
-    for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
-        moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
-        seen = pair.group.project(
-            replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,))
-        )
-        distance = np.hypot(*(xy - np.array(target)).T)
-        nearest = int(np.argmin(distance))
-        assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)
-        assert (seen.element + seen.xi) / 10 == pytest.approx(arc[nearest], abs=1e-3)
-        assert isinstance(seen, Projection)
-
-
-@pytest.mark.parametrize("elements", [1, 3])
-def test_projection_on_exact_elements_is_the_closest_point(elements):
-    """On a beam rolled up to three quarters of a circle, from points nearest to any part of it."""
-    turn = 1.5 * np.pi
-    radius = 1 / turn
-    apart = cantilever(((2.0, 0.0), (2.0, 0.1)), elements=elements, element="exact")
-    rolled = replace(apart, loads=(tsm.Load(beam="b", end="end", moment=turn * SECTION.EI),))
-    result = tsm.solve(rolled, TENTHS)
-    model, state = result.model, result.equilibria[-1].state
-    for angle in turn * np.array([0.02, 0.2, 0.45, 0.7, 0.97]):
-        for distance in (0.3 * radius, 1.1 * radius):
-            point = distance * np.sin(angle), radius - distance * np.cos(angle)
-            pair = replace(model.pairs[0], pin=tsm.Pin(name="p", path=(point, (9.0, 9.0))))
-            seen = pair.group.project(pair, replace(state, load_parameter=0.0))
-            assert (seen.element + seen.xi) / elements == pytest.approx(angle / turn, abs=1e-9)
-            assert seen.gap == pytest.approx(distance - radius, abs=1e-9)
 
 
 def test_bad_structures_are_refused():

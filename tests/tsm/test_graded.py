@@ -59,12 +59,6 @@ def test_a_position_passes_from_element_to_element():
         assert 0.0 <= at <= 1.0 or arc < 0.0 or arc > 1.0
 
 
-def test_equal_elements_are_the_same_however_they_are_stated():
-    equal = graded(np.arange(1, 10) / 10)
-    plain = replace(equal, beams=(replace(equal.beams[0], nodes=()),))
-    assert force(equal) == pytest.approx(force(plain), rel=1e-11)
-
-
 @pytest.mark.parametrize("element", ["mixed", "exact"])
 @pytest.mark.parametrize("ratio", [1e1, 1e3, 1e6])
 def test_lengths_of_elements_may_differ(rod, element, ratio):
@@ -83,14 +77,3 @@ def test_order_on_unequal_elements(rod):
         errors.append(np.abs(force(graded(nodes)) - rod).max() / rod.max())
     orders = np.diff(np.log2(errors))
     assert (orders < -3.7).all(), errors
-
-
-def test_shapes_and_section_forces_of_unequal_elements():
-    nodes = (0.1, 0.2, 0.35, 0.5, 0.6, 0.8, 0.9)
-    mixed, exact = (tsm.solve(graded(*given), T) for given in ((nodes,), ((0.5,), "exact")))
-    arc, line = mixed.axis_line("cantilever", -1)
-    arc_exact, line_exact = exact.axis_line("cantilever", -1, points_per_element=400)
-    assert {0.0, *nodes, 1.0} <= set(arc.round(12).tolist())
-    for own, other in zip(line.T, line_exact.T, strict=True):
-        assert np.abs(own - np.interp(arc, arc_exact, other)).max() <= 1e-3
-    assert mixed.stations("cantilever", -1).arc[:, 1].tolist() == pytest.approx([*nodes, 1.0])

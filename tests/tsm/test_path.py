@@ -8,8 +8,6 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 import tsm
-from tsm.newton import Newton
-from tsm.path import PathTangent
 
 SECTION = tsm.Section(EA=3e4, GA=9e3, EI=1.0)
 ENDS = {
@@ -72,13 +70,6 @@ def test_a_perfect_column_ends_at_its_first_critical_load(ends: str, GA: float, 
     assert len(result.load_parameter) == int(count / 1.7)
     assert np.abs(point.mode["c"][:, 0]).max() == pytest.approx(1.0)
     assert np.abs(point.mode["c"][:, 1]).max() < 1e-3
-
-
-def test_the_shear_of_a_clamped_pinned_column_is_the_known_one() -> None:
-    """Reissner's rod with GA = 50, EI = L = 1, hardly stretching: 15.0586."""
-    assert buckling_load("clamped-pinned", tsm.Section(EA=1e12, GA=50.0, EI=1.0)) == pytest.approx(
-        15.0586, abs=5e-5
-    )
 
 
 @pytest.mark.parametrize("ends", ENDS)
@@ -240,61 +231,6 @@ def test_a_symmetric_bifurcation_turns_to_the_left(angle: float, elements: int, 
     assert mode[len(mode) // 2] > 0.9
     assert shape.max() > 0.3 > -0.1 > -shape.max()
     assert shape.min() > -0.02
-
-
-@pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_rates_are_those_of_the_path(element: str) -> None:
-    """Under a load and a pin that rises along a slant: against differences of equilibria on both sides."""
-    problem = tsm.Structure(
-        beams=(tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=SECTION, elements=2, element=element),),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=((0.8, 0.0), (0.7, 0.4))),),
-        contacts=(tsm.ContactPair(node="p", beam="b"),),
-        loads=(tsm.Load(beam="b", end="end", force=(0.5, -1.0)),),
-    )
-    dt = 1e-4
-    result = tsm.solve(problem, [0.6 - dt, 0.6, 0.6 + dt], tsm.Settings(tolerance=1e-13))
-    newton = Newton(result.model, tsm.Settings())
-    before, at, after = result.equilibria
-    moved = (after.state.q - before.state.q)[result.model.free] / (2 * dt)
-    rates = PathTangent(newton, at).rates(0.6, 0.6)
-    assert rates is not None
-    assert rates[: result.model.equations] == pytest.approx(moved, abs=1e-4 * np.abs(moved).max())
-
-
-@pytest.mark.parametrize("value", [np.inf, np.nan])
-def test_a_tangent_without_finite_rates_predicts_nothing(
-    value: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Stiffnesses a hundred decades apart: the factors are finite, the rates are not."""
-    result = tsm.solve(column("clamped-free", 1.0, elements=5), [0.1])
-    newton, at = Newton(result.model, tsm.Settings()), result.equilibria[-1]
-    solve = newton.assembler.solve
-
-    def overflowing(system, right):  # type: ignore[no-untyped-def]
-        solved = solve(system, right)
-        solved[0, 1] = value
-        return solved
-
-    monkeypatch.setattr(newton.assembler, "solve", overflowing)
-    tangent = PathTangent(newton, at)
-    assert tangent.rates(0.1, 0.2) is None
-    assert tangent.speed == np.inf
-    assert tangent.unexplained(at.state, at.state) == 0.0
-    assert np.isfinite(tangent.predicted(at.state, 0.2).q).all()
-
-
-def test_another_branch_is_not_explained_by_the_tangent() -> None:
-    """From a column bent to one side to the same bent to the other: neither tangent leads there."""
-    bent = [
-        tsm.solve(column("clamped-free", 4.0, elements=10, aside=aside), [0.9, 1.0])
-        for aside in (1e-3, -1e-3)
-    ]
-    newton = Newton(bent[0].model, tsm.Settings())
-    before, after, mirrored = bent[0].equilibria[0], bent[0].equilibria[1], bent[1].equilibria[1]
-    tangent = PathTangent(newton, before)
-    assert tangent.unexplained(before.state, after.state) < 0.15
-    assert tangent.unexplained(before.state, mirrored.state) > 0.9
 
 
 @pytest.mark.parametrize("element", ["mixed", "exact"])

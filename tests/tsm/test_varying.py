@@ -8,133 +8,7 @@ import pytest
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.test_rod_element import dense, perturbed, settled
-from tsm.contact_set import initial_state
-from tsm.model import Model
-from tsm.newton import Newton
-from tsm.stability import _symmetric, index
-
-THICK = tsm.Section(EA=4e3, GA=1e3, EI=2.0)
-THIN = tsm.Section(EA=1.6e3, GA=0.4e3, EI=0.2)
-
-
-def hook(elements=1, element="exact", **other):
-    """A tapered strip of natural curvature under its weight and a load on a part of it."""
-    beam = tsm.Beam(
-        name="b", start=(0.0, 0.0), end=(1.0, 0.2), section=THICK, end_section=THIN, turn=0.9,
-        elements=elements, element=element,
-    )  # fmt: skip
-    beam = beam.divided(0.3, 0.8)
-    weight = tsm.LineLoad(beam="b", force=((0.3, -1.5), (0.0, 1.0), (0.1, 0.2)))
-    part = tsm.LineLoad(beam="b", force=((0.5, 2.0),), start=0.3, end=0.8)
-    given = {"supports": (tsm.Support(beam="b", end="start"),), "line_loads": (weight, part), **other}
-    return tsm.Structure(beams=(beam,), **given)
-
-
-def pushed(elements=1, **pair):
-    """The same between two pins, with an offset."""
-    beam = hook().beams[0]
-    pins, contacts = [], []
-    for name, side, part, move in (("p", "right", 0.45, (0.02, 0.1)), ("r", "left", 0.75, (0.05, -0.02))):
-        (x, y), angle = beam.point(part), beam.direction(part)
-        depth = pair.get("offset", 0.0) * (1 if side == "right" else -1)
-        x, y = x + depth * np.sin(angle), y - depth * np.cos(angle)
-        pins.append(tsm.Pin(name=name, path=((x, y), (x + move[0], y + move[1]))))
-        contacts.append(tsm.ContactPair(node=name, beam="b", side=side, **pair))
-    return hook(elements, pins=tuple(pins), contacts=tuple(contacts))
-
-
-def leaning():
-    """A straight beam's tip on a curved one, one load on each."""
-    lower = replace(hook().beams[0], name="low")
-    x, y = lower.point(0.6)
-    upper = tsm.Beam(
-        name="up", start=(x - 0.6, y + 0.5), end=(x, y), section=THIN, elements=1, element="exact"
-    )
-    loads = (
-        tsm.LineLoad(beam="low", force=((0.0, -0.5), (0.2, 0.3))),
-        tsm.LineLoad(beam="up", force=((0.3, -3.0),)),
-    )
-    supports = (tsm.Support(beam="low", end="start"), tsm.Support(beam="up", end="start", uy=-0.05))
-    contact = tsm.ContactPair(node="up.end", beam="low", side="left")
-    return tsm.Structure(beams=(lower, upper), supports=supports, line_loads=loads, contacts=(contact,))
-
-
-def as_mixed(structure):
-    """The same structure in `mixed` elements."""
-    beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
-    return replace(structure, beams=beams)
-
-
-SCENES = {
-    "two pins": pushed,
-    "with offset": lambda: pushed(offset=0.03),
-    "with friction": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
-    "leaning": leaning,
-    "mixed": lambda: as_mixed(pushed(offset=0.03)),
-    "on a face": lambda: pushed(offset=0.04, end_offset=0.02),
-}
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_assembled_tangent_and_rate(name):
-    """Out of equilibrium, every column and the load parameter's by central differences with one extrapolation."""
-    result = tsm.solve(SCENES[name](), np.array([0.5, 1.0]))
-    newton, rng = Newton(result.model, tsm.Settings()), np.random.default_rng(5)
-    assert all(result.equilibria[-1].state.touches)
-    state = settled(newton, perturbed(newton, result.equilibria[-1], rng))
-    system = newton.assembler.linearise(state)
-    assert newton.norm(system) > 1.0
-    matrix = dense(newton.model, system.tangent)
-    for column in range(len(matrix) + 1):
-        unit = np.zeros(len(matrix))
-        unit[column:][:1] = 1.0
-        t = state.load_parameter
-
-        def moved(h, unit=unit, column=column, t=t):
-            after = newton.update(state, h * unit, system, t=t + h if column == len(matrix) else None)
-            return newton.assembler.linearise(settled(newton, after)).residual
-
-        h = 2e-3 if column == len(matrix) or newton.scale[column] <= 10 else 2e-6
-        wide, narrow = ((moved(d) - moved(-d)) / (2 * d) for d in (h, h / 2))
-        expected = (4 * narrow - wide) / 3
-        got = matrix[:, column] if column < len(matrix) else newton.assembler.rate(state)
-        size = np.abs(expected).max()
-        assert np.abs(got - expected).max() <= 1e-7 * size, column
-
-
-def symmetric(newton, equilibrium):
-    """The symmetric tangent as one matrix, and its units."""
-    model = newton.model
-    band, right, corner, units, _ = _symmetric(newton.assembler, equilibrium.state, equilibrium.system)
-    count, width = band.shape[1], len(corner)
-    whole = np.zeros((count + width, count + width))
-    for k, diagonal in enumerate(band):
-        for c in range(count - k):
-            whole[c + k, c] = whole[c, c + k] = diagonal[c] * units[c + k] * units[c]
-    whole[:count, count:] = right * units[:, None]
-    whole[count:, :count], whole[count:, count:] = whole[:count, count:].T, corner
-    return whole, model.units / math.sqrt(model.force_scale * model.length)
-
-
-@pytest.mark.parametrize("name", ["two pins", "with offset", "leaning", "near a node", "on a face"])
-def test_second_variation_answers_loads_as_the_tangent_does(name):
-    """A force or moment on a node moves nodes and contacts by the symmetric matrix as by the tangent, which is not symmetric."""
-    near = replace(pushed(), beams=(hook().beams[0].divided(0.504133),))
-    result = tsm.solve({**SCENES, "near a node": lambda: near}[name](), np.array([0.5, 1.0]))
-    model, equilibrium = result.model, result.equilibria[-1]
-    if name == "near a node":
-        assert min(min(touch.xi, 1 - touch.xi) for touch in equilibrium.state.touches) < 1e-4
-    newton = Newton(model, tsm.Settings())
-    matrix = dense(model, equilibrium.system.tangent)
-    whole, units = symmetric(newton, equilibrium)
-    assert np.abs(whole - whole.T).max() <= 1e-12 * np.abs(whole).max()
-    nodal = np.flatnonzero(model.free < 3 * len(model.coordinates))
-    shown = np.append(nodal, np.arange(model.equations, len(matrix)))
-    for column in nodal:
-        moved = np.linalg.solve(matrix, np.eye(len(matrix))[column])[shown]
-        again = np.linalg.solve(whole, units[column] * np.eye(len(whole))[column])[shown] * units[shown]
-        assert np.abs(moved - again).max() <= 1e-10 * np.abs(moved).max()
+from tests.tsm.structures import THICK, THIN, hook, leaning, pushed
 
 
 def heavy_column(weight, elements, *, tapered=False, element="exact"):
@@ -153,11 +27,9 @@ def heavy_column(weight, elements, *, tapered=False, element="exact"):
     )  # fmt: skip
 
 
-def straight_index(structure):
-    model = Model(structure)
-    newton = Newton(model, tsm.Settings())
-    equilibrium = newton.solve(newton.prescribed(initial_state(model), 1.0))
-    return index(newton.assembler, equilibrium.state, equilibrium.system)
+def index(column):
+    """Index of the straight column, past the weights at which it may bend."""
+    return int(tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index[0])
 
 
 @pytest.mark.parametrize(
@@ -177,13 +49,13 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
     for number, zero in enumerate(zeros):
         for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
             column = heavy_column(9 / 4 * zero**2 * factor, elements, element=element)
-            assert straight_index(column) == expected
+            assert index(column) == expected
 
 
 def test_index_of_a_tapered_column_does_not_depend_on_the_elements():
     """Unstable columns under their weight, up to 30 times the first critical one."""
     for weight in (2.0, 10.0, 60.0, 240.0):
-        assert len({straight_index(heavy_column(weight, n, tapered=True)) for n in (1, 2, 5)}) == 1
+        assert len({index(heavy_column(weight, n, tapered=True)) for n in (1, 2, 5)}) == 1
 
 
 def test_work_of_loads_along_the_beam_is_the_strain_energy():
@@ -197,20 +69,10 @@ def test_work_of_loads_along_the_beam_is_the_strain_energy():
 
 @pytest.mark.slow
 def test_work_goes_into_strain_and_friction():
-    result = tsm.solve(SCENES["with friction"](), np.linspace(0, 1, 5)[1:])
+    result = tsm.solve(pushed(offset=0.03, radius=0.01, friction=0.3), np.linspace(0, 1, 5)[1:])
     spent = sum(history.friction.dissipated for history in result.contacts.values())
     assert spent[-1] > 1e-3
     assert np.abs(result.work - result.strain_energy - spent).max() <= 1e-7 * result.work[-1]
-
-
-def test_index_and_potential_along_the_path():
-    """The derivative of the potential in the load parameter is the work of the loads: the potential is stationary."""
-    result = tsm.solve(hook(), np.array([0.5 - 1e-4, 0.5, 0.5 + 1e-4]))
-    newton = Newton(result.model, tsm.Settings())
-    before, here, after = (e.state for e in result.equilibria)
-    rate = (newton.potential(after) - newton.potential(before)) / 2e-4
-    assert rate == pytest.approx(-result.model.groups[0].load_work(here) / 0.5, rel=1e-7)
-    assert (result.index == 0).all()
 
 
 def test_elements_that_cannot_state_it_refuse_by_name():

@@ -111,6 +111,16 @@ def test_three_point_bending_limits(friction, drawn_in, displacement, pushed_bac
     assert scaled.displacement == pytest.approx(2.0 * displacement, abs=2e-9)
 
 
+def test_friction_is_recovered_from_the_reactions_of_the_clamp():
+    """`H = m^2/2 EI + N + N^2/2 EA + Q^2/2 GA` at the clamp is the tangential force times the mean tangent."""
+    for friction in (0.1, 0.5):
+        path = elastica_with_friction(ks_pins([0.0, 0.3, 1.0]), friction=friction)
+        for k, sign in ((1, -1.0), (2, 1.0)):
+            H = path.clamp_moment[k] ** 2 / 2.0 - path.clamp_force[k, 0]
+            F = np.hypot(*path.clamp_force[k])
+            assert H / np.sqrt(F**2 - H**2) == pytest.approx(sign * friction, abs=1e-10)
+
+
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_the_limit_load_is_the_largest_along_the_path_of_a_support(friction):
     limit = frictional_three_point_limit(friction).drawn_in
@@ -120,16 +130,6 @@ def test_the_limit_load_is_the_largest_along_the_path_of_a_support(friction):
     assert set(path.state) == {FrictionState.SLIP_TO_TIP}
     assert path.force[2, 1] == pytest.approx(limit.load, rel=1e-13)
     assert max(path.force[1, 1], path.force[3, 1]) < limit.load
-
-
-def test_friction_is_recovered_from_the_reactions_of_the_clamp():
-    """`H = m^2/2 EI + N + N^2/2 EA + Q^2/2 GA` at the clamp is the tangential force times the mean tangent."""
-    for friction in (0.1, 0.5):
-        path = elastica_with_friction(ks_pins([0.0, 0.3, 1.0]), friction=friction)
-        for k, sign in ((1, -1.0), (2, 1.0)):
-            H = path.clamp_moment[k] ** 2 / 2.0 - path.clamp_force[k, 0]
-            F = np.hypot(*path.clamp_force[k])
-            assert H / np.sqrt(F**2 - H**2) == pytest.approx(sign * friction, abs=1e-10)
 
 
 def along_the_axis(path, k, stiffness):
@@ -176,23 +176,3 @@ def test_all_conditions_hold_when_integrated_from_the_clamp(surface, side):
         assert end[3] == pytest.approx(side * surface.offset * F_t, abs=1e-11)
         assert end[4] == pytest.approx(path.stored[k], rel=1e-11)
     check_states(path, friction)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("surface", "stiffness", "allowance"),
-    [(Surface(), THICK, 1e-13), (FACE, KS, 4e-12), (FACE, THICK, 3e-8)],
-)
-def test_one_load_parameter_and_fifteen_have_the_same_answer(surface, stiffness, allowance):
-    paths = [
-        rod_with_friction(
-            ks_pins(np.linspace(0.0, 1.0, n), surface.offset), friction=0.3, surface=surface, **stiffness
-        )
-        for n in (2, 16)
-    ]
-    for name in ("magnitude", "arc_position", "clamp_moment", "work", "dissipated"):
-        one, many = (getattr(path, name)[-1] for path in paths)
-        assert one == pytest.approx(many, rel=1e-12)
-    for first, second in zip(*(path.events for path in paths), strict=True):
-        assert first.load_parameter == pytest.approx(second.load_parameter, abs=1e-12)
-    assert balance(paths[0])[-1] < allowance

@@ -9,18 +9,17 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.network import solve_network
 from comparisons.models.options import Options
-from comparisons.referee import Certificate, Verdict, answer_state, certify, equilibrium
+from comparisons.referee import Certificate, Verdict, certify
 from comparisons.referee.basis import DEGREE
 from comparisons.referee.elements import mesh_of, properties
-from comparisons.referee.energy import dissipated
 from comparisons.referee.equations import assemble
 from comparisons.referee.friction import Grip, Hold
+from comparisons.referee.energy import dissipated
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out
 from comparisons.referee.phases import OPEN, UNKNOWN
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
-from tests.comparisons.referee.test_drawn import two_beams
 
 PAIR = "pin->cantilever"
 EXACT = Options(element="exact")
@@ -59,23 +58,6 @@ def test_exact_elements_are_certified_to_round_off_all_along(name: str, friction
 
 
 @pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("friction", [0.3, *(pytest.param(mu, marks=pytest.mark.slow) for mu in (0.1, 0.5))])
-def test_twenty_mixed_elements_are_certified_all_along(name: str, friction: float) -> None:
-    scene = rough(name, friction)
-    found = all_along(scene, answer(scene, "mixed", 20))
-    assert found.certified, found.line()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
-def test_the_rod_of_quadrature_is_certified(name: str) -> None:
-    scene = rough(name, 0.3)
-    found = all_along(scene, solve(scene, "rod"))
-    assert found.certified, found.line()
-    assert max(item.distance.largest[1] for item in found.judged if item.distance) < 1e-8
-
-
-@pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
 def test_the_solid_is_certified_all_along(name: str) -> None:
     """With its events, and without them, so that the referee finds slip and stick itself."""
     scene = rough(name, 0.3, 20)
@@ -87,18 +69,6 @@ def test_the_solid_is_certified_all_along(name: str) -> None:
     found = all_along(scene, response)
     assert found.certified, found.line()
     assert 1e-3 < max(item.distance.force for item in found.judged if item.distance) < 6e-3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("element", ["exact", "mixed"])
-@pytest.mark.parametrize("name", ["two-pins", "three-point-bending", "double-beam", "touch-again"])
-def test_several_contacts_are_certified(name: str, element: str) -> None:
-    scene = rough(name, 0.2, 12)
-    response = answer(scene, element, 20)
-    assert len(response.load_parameter) >= 8
-    assert any((item.friction.slip != 0).any() for item in response.contacts.values() if item.friction)
-    found = all_along(scene, response)
-    assert found.certified, found.line()
 
 
 def test_the_places_of_stick_are_the_tabulated_ones() -> None:
@@ -123,23 +93,6 @@ def test_the_sign_of_a_slip_that_ends_at_a_corner() -> None:
     assert begin.solution.layout.grips[PAIR].slip == -1
     found = certify(response, scene)
     assert found.certified, found.line()
-
-
-@pytest.mark.parametrize(
-    ("friction", "force", "arc_position"),
-    [
-        (0.1, 2.1935803158557e-3, 0.873335466586),
-        (0.3, 2.110304862086e-3, 0.847142560461),
-        (0.5, 2.122282811362e-3, 0.831119109269),
-    ],
-)
-def test_the_last_slip_is_the_tabulated_one(friction: float, force: float, arc_position: float) -> None:
-    """Reissner rod by shooting; a slip needs no history."""
-    scene = rough("ks-cantilever", friction)
-    given = replace(answer_state(answer(rough("ks-cantilever", 0.3)), scene, -1), load_parameter=1.0)
-    found = equilibrium(scene, replace(given, grips={PAIR: Grip(friction=friction, slip=1)})).contacts[PAIR]
-    assert float(np.hypot(*found.force)) == pytest.approx(force, rel=1e-11)
-    assert found.arc_position == pytest.approx(arc_position, rel=1e-11)
 
 
 @pytest.mark.parametrize("slip", [1, 0])
@@ -180,29 +133,6 @@ def test_without_events_the_referee_finds_them_itself() -> None:
         own, stated_there = without.begin(PAIR, number), with_events.begin(PAIR, number)
         assert own.load_parameter == pytest.approx(stated_there.load_parameter, abs=1e-9)
     assert all_along(scene, replace(response, events=None)).certified
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "load_parameters"), [("hysteresis", 5), ("three-point-friction", 12)])
-def test_a_load_parameter_at_the_turn_of_a_pin_is_certified(name: str, load_parameters: int) -> None:
-    """There an answer states the slip before the turn, and the event behind it; without events its slip turns with no stick in between."""
-    scene = replace(load_scene(name), load_parameters=load_parameters)
-    response = answer(scene)
-    assert {event.load_parameter for event in response.events} & set(response.load_parameter)
-    for item in (response, replace(response, events=None)):
-        found = all_along(scene, item)
-        assert found.certified, found.line()
-
-
-@pytest.mark.slow
-def test_slips_and_sticks_between_two_load_parameters_are_found() -> None:
-    """The sign of a slip that no load parameter shows is the sign of the force at the end of the stick before it."""
-    scene = replace(load_scene("hysteresis"), load_parameters=1)
-    response = answer(scene)
-    found, history = all_along(scene, response), History(response, scene)
-    assert found.certified, found.line()
-    spent = dissipated(history, 0, found.judged[0].exact)[PAIR]
-    assert spent == pytest.approx(response.contacts[PAIR].friction.dissipated[0], rel=1e-11)
 
 
 @pytest.mark.slow
@@ -304,61 +234,3 @@ def test_a_pin_that_sticks_where_it_touches_is_certified(
         assert max(item.distance.largest[1] for item in found.judged if item.distance) < (
             4e-10 if rolls else 1e-11
         )
-
-
-def drawn(seed: int) -> Scene:
-    """A cantilever under a sharp or round pin, on its axis or face, on a path with up to two corners."""
-    rng = np.random.default_rng(seed)
-    height = float(10.0 ** rng.uniform(-2.4, -1.0))
-    surface = ("axis", "face")[rng.integers(2)]
-    radius = float(10.0 ** rng.uniform(-2.0, -0.7)) if rng.random() < 0.4 else None
-    offset = (height / 2.0 if surface == "face" else 0.0) + (radius or 0.0)
-    gap = float(rng.uniform(0.0, 0.05)) * (rng.random() < 0.5)
-    path = [(float(rng.uniform(0.4, 0.9)), -offset - gap)]
-    for _ in range(int(rng.integers(1, 4))):
-        path.append((float(path[-1][0] + rng.uniform(-0.3, 0.15)), float(rng.uniform(-0.02, 0.5)) - offset))
-    beam = BeamSpec(
-        name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), width=height, height=height,
-        youngs_modulus=1e7, poissons_ratio=float(rng.uniform(0.0, 0.45)),
-    )  # fmt: skip
-    contact = ContactSpec(
-        node="p", beam="b", side="right", surface=surface, friction=float(rng.uniform(0.02, 1.0))
-    )
-    return Scene(
-        name=f"drawn-{seed}", load_parameters=int(rng.integers(3, 9)), beams=(beam,),
-        pins=(PinSpec(name="p", path=tuple(path), radius=radius),), contacts=(contact,),
-    )  # fmt: skip
-
-
-def completed_and_certified(seeds: range) -> int:
-    """Number of drawn scenes that exact elements complete; every answer is certified, and incomplete ones have a named end."""
-    completed = 0
-    for seed in seeds:
-        scene = drawn(seed)
-        response = solve(scene, "tsm", EXACT)
-        assert response.status != "CHECK_FAILED", f"seed {seed}: {response.message}"
-        completed += response.completed
-        if len(response.load_parameter):
-            found = all_along(scene, response)
-            assert found.certified, f"seed {seed}: {found.line()}"
-    return completed
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, 100, 20))
-def test_drawn_cantilevers_are_certified(first: int) -> None:
-    """A hundred scenes, twenty in a test."""
-    assert completed_and_certified(range(first, first + 20)) >= 16
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [7, 22])
-def test_two_drawn_beams_with_three_contacts_are_certified(seed: int) -> None:
-    """Seed 7 begins without a touch; in seed 22 seven contacts change in one step, two of them at one load parameter."""
-    rng = np.random.default_rng(seed)
-    height, surface = float(10.0 ** rng.uniform(-2.4, -0.9)), ("axis", "face")[rng.integers(2)]
-    scene = two_beams(rng, height, surface)
-    friction = float(rng.uniform(0.02, 1.0))
-    scene = replace(scene, contacts=tuple(replace(spec, friction=friction) for spec in scene.contacts))
-    found = all_along(scene, answer(scene))
-    assert found.certified, found.line()

@@ -11,7 +11,7 @@ from comparisons.referee.friction import Grip
 from comparisons.referee.history import History
 from comparisons.response import ContactHistory, FrictionHistory, Response
 from tests.comparisons.referee.forged import stated
-from tests.comparisons.referee.test_friction import PAIR, all_along, answer, rough
+from tests.comparisons.referee.test_friction import PAIR, answer, rough
 
 
 def contact(response: Response, **changes: object) -> Response:
@@ -145,12 +145,6 @@ FAULTS: dict[str, tuple[Callable[[Response], Response], Verdict, str]] = {
         Verdict.INADMISSIBLE, "slips after an event of kind stick",
     ),
 }  # fmt: skip
-
-
-@pytest.mark.slow
-def test_the_answer_that_is_spoilt_is_certified() -> None:
-    assert certify(answer(FAULTY), FAULTY).certified
-    assert all_along(FAULTY, answer(FAULTY)).certified
 
 
 @pytest.mark.slow_at(

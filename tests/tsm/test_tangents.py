@@ -1,0 +1,56 @@
+"""Tangents of whole structures are the derivatives of their residuals, and lead Newton's method to the square of its error."""
+
+import numpy as np
+import pytest
+
+import tsm
+from tests.tsm.friction_scenes import ks
+from tests.tsm.structures import as_mixed, leaning, pushed, two_beams, two_pins
+from tsm.model import Model
+from tsm.newton import Newton
+
+SCENES = {
+    "two beams": two_beams,
+    "two beams, two elements each": lambda: two_beams(2),
+    "tip on mixed": lambda: two_beams(2, "mixed"),
+    "two pins": two_pins,
+    "varying": pushed,
+    "varying, on a face": lambda: pushed(offset=0.04, end_offset=0.02),
+    "varying, rubbed": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
+    "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
+    "leaning": leaning,
+    **{
+        f"rubbed {element} {place}": lambda element=element, count=count, place=place: ks(
+            0.3, face=place[0], radius=place[1]
+        ).structure(element, count)
+        for element, count in (("exact", 2), ("mixed", 6))
+        for place in ((0.0, 0.0), (0.03, 0.0), (0.02, 0.03))
+    },
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_tangent_is_the_derivative(name: str) -> None:
+    """In slip, in stick, and in the load parameter.
+
+    Unknowns inside exact elements follow the others to second order, so central differences see the condensed tangent.
+    """
+    result = tsm.solve(SCENES[name](), np.array([0.4, 0.64, 0.9]))
+    newton = Newton(Model(result.model.structure), tsm.Settings())
+    model = newton.model
+    for equilibrium in result.equilibria:
+        state = equilibrium.state
+        assert any(state.touches)
+        system = newton.assembler.linearise(state)
+        matrix = newton.assembler.whole(system.tangent).toarray() / model.row_units[:, None] * model.units
+        for seed in range(3):
+            way = np.random.default_rng(seed).standard_normal(len(model.units))
+            dt = 0.0 if seed else 1.0
+            ends = [
+                newton.update(state, h * way * model.units, system, t=state.load_parameter + h * dt)
+                for h in (1e-5, -1e-5)
+            ]
+            apart = [newton.assembler.linearise(end).residual for end in ends]
+            measured = (apart[0] - apart[1]) / 2e-5 / model.row_units
+            expected = matrix @ way + dt * newton.assembler.rate(state) / model.row_units
+            assert measured == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
