@@ -44,12 +44,10 @@ bench: setup
 	$(THREADS) $(BIN)/python -m tests.benchmarks.bench --out bench.json
 
 fuzz: setup
-	$(THREADS) $(BIN)/python -m tests.fuzz.run 10000
-	$(THREADS) $(BIN)/python -m tests.fuzz.reader 100000
-	$(THREADS) $(BIN)/python -m tests.fuzz.run_world 5000
-	$(THREADS) $(BIN)/python -m tests.fuzz.run_world 1000 --friction --models exact,mixed
-	$(THREADS) $(BIN)/python -m tests.fuzz.run_friction 500
-	$(THREADS) $(BIN)/python -m tests.fuzz.run_friction 150 --element mixed
+	$(THREADS) $(BIN)/python -m tests.fuzz files 0 40
+	$(THREADS) $(BIN)/python -m tests.fuzz world 0 5000
+	$(THREADS) $(BIN)/python -m tests.fuzz friction 0 1000
+	$(THREADS) $(BIN)/python -m tests.fuzz cantilevers 0 600
 
 platforms: setup
 	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox

@@ -1,21 +1,16 @@
-"""Scenes of one beam that is held at both ends and shortened, one for every seed: ``python -m tests.fuzz.held SEED`` prints it.
+"""Scenes of one beam that is held at both ends and shortened, one for every seed: ``python -m tests.fuzz held SEED`` prints it.
 
 Clamped at both ends, or clamped and pinned; slender to stocky, straight and arched; shortened by one to four times what buckles it, some
 by up to a third of the length; turned and moved aside, or neither, so that the path bifurcates; with a pin beside it, or without.
-``python -m tests.fuzz.held SEED NUMBER`` judges so many from that seed on.
 """
 
 import math
-import sys
-import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from random import Random
 
-from comparisons.scene import Scene, SceneError, read_scene, to_toml
-from tests.fuzz.broken import toml_text
-from tests.fuzz.scenes import Place, Tables
+from comparisons.scene import Scene, SceneError, read_scene
+from tests.fuzz.world import Place, Tables, toml_text
 from tests.fuzz.world_judge import Finding, Judged, Row, apart, findings, judged
 
 NUMBERS = (1, 3, 7, 20)
@@ -86,25 +81,3 @@ def judged_held(seed: int) -> Judged:
     """Solve the scene of a seed with every number of load parameters, and judge the answers."""
     found = judged(drawn_held(seed), ("exact", "mixed"), NUMBERS)
     return replace(found, findings=tuple(findings_held(found.scene, found.rows)))
-
-
-def main(first: int, number: int) -> None:
-    """Judge drawn scenes and count how they end."""
-    ends, ways = Counter[str](), Counter[str]()
-    began = time.process_time()
-    for seed in range(first, first + number):
-        found = judged_held(seed)
-        exact, mixed = (next(row for row in found.rows if row.model == model) for model in ("exact", "mixed"))
-        ends[f"exact {exact.ended}, mixed {mixed.ended}"] += 1
-        ways.update(item.kind for item in found.findings)
-        if found.findings or exact.ended != mixed.ended:
-            lines = (f"{item.kind}: {item.text}" for item in found.findings)
-            print(seed, f"exact {exact.ended}, mixed {mixed.ended}", *lines, sep="\n  ", flush=True)
-    print(f"{(time.process_time() - began) / number:.2f} s a scene", dict(ends), dict(ways))
-
-
-if __name__ == "__main__":
-    if len(sys.argv) == 2:
-        print(to_toml(drawn_held(int(sys.argv[1]))))
-    else:
-        main(*map(int, sys.argv[1:]))

@@ -1,10 +1,6 @@
-"""Drawn scenes with hinges, springs, stages, loads along and inside beams, weight, curvature and taper, one for every seed.
-
-``python -m tests.fuzz.special SEED`` prints one; ``python -m tests.fuzz.special SEED NUMBER`` judges so many from that seed on.
-"""
+"""Drawn scenes with hinges, springs, stages, loads along and inside beams, weight, curvature and taper, one for every seed: ``python -m tests.fuzz special SEED`` prints it."""
 
 import math
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from random import Random
@@ -18,7 +14,6 @@ from comparisons.scene import (
     SpringSpec,
     StageSpec,
     SupportMove,
-    to_toml,
 )
 from comparisons.scene.rules import Point
 from tests.fuzz.world import ENDS, drawn, drawn_with_friction
@@ -169,21 +164,3 @@ def taper(random: Random, scene: Scene) -> Scene:
 CHANGES: tuple[Callable[[Random, Scene], Scene], ...] = (
     hinge, hinge, spring, spring, stage, stage, stage, along, weight, turn, taper,
 )  # fmt: skip
-
-
-def main() -> None:
-    """Print a scene, or judge some and print what is wrong."""
-    from tests.fuzz.world_judge import judged
-
-    first, number = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    if not number:
-        print(to_toml(drawn_special(first)), end="")
-    for seed in range(first, first + number):
-        found = judged(drawn_special(seed), ("exact", "mixed"), (3,))
-        print(seed, [row.line() for row in found.rows], flush=True)
-        for finding in found.findings:
-            print("WRONG", seed, finding.kind, finding.text, flush=True)
-
-
-if __name__ == "__main__":
-    main()

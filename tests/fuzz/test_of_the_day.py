@@ -3,52 +3,23 @@
 import os
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from datetime import UTC, datetime
 from time import process_time
 
 import pytest
-from hypothesis import given, seed, settings
 
-from comparisons.scene import Scene, SceneError, read_scene
 from tests.fuzz import world_judge
-from tests.fuzz.broken import toml_text
-from tests.fuzz.scenes import Tables, valid_scenes
 from tests.fuzz.special import drawn_special
-from tests.fuzz.test_scene_files import DRAWN
 from tests.fuzz.world import drawn, drawn_with_friction
 from tests.fuzz.world_judge import BEAMS, judged, wrong
 
-NUMBER = 15
+NUMBER = 20
 """Scenes of each kind."""
 BUDGET = 50.0
 """Processor seconds for each kind; what is not drawn until then is counted."""
 LIMIT = 10.0
 """Processor seconds for one solution, and for one certificate."""
-FINE = 40
-"""Elements of `mixed` where a scene is drawn with few."""
-
-
-def of_a_file(first: int) -> Scene:
-    """Return a scene as the reader's tests draw them, with enough elements."""
-    found = list[Tables]()
-
-    @settings(DRAWN, max_examples=2)
-    @seed(first)
-    @given(valid_scenes)
-    def draw(tables: Tables) -> None:
-        found.append(tables)
-
-    draw()
-    try:
-        # the first is the same for every seed
-        scene = read_scene(toml_text(found[-1]), f"file {first}")
-    except SceneError:
-        return of_a_file(first + 1_000_000)
-    return replace(scene, beams=tuple(replace(beam, elements=FINE, nodes=()) for beam in scene.beams))
-
-
-KINDS = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "file": of_a_file}
+KINDS = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special}
 
 
 # the limit of time may ring inside a callback of the garbage collector, where it is ignored with a warning

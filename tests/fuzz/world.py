@@ -1,4 +1,4 @@
-"""Scenes drawn over everything that the format can state, one for every seed: ``python -m tests.fuzz.world SEED`` prints it.
+"""Scenes drawn over everything that the format can state but special keys, one for every seed: ``python -m tests.fuzz world SEED`` prints it.
 
 Structures (cantilevers, struts, beams on two supports, chains, portals, forks, stacks, struts pressed on beams) in any place, size and
 unit; slender and thick, soft and stiff in shear; dead loads, moved supports, point and round pins on straight and bent paths on either
@@ -6,17 +6,17 @@ side, on the axis or a face. Forces and motions are of a size that bends.
 """
 
 import math
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from random import Random
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from comparisons.scene import Scene, SceneError, read_scene
-from tests.fuzz.broken import toml_text
-from tests.fuzz.scenes import Place, Tables
+from comparisons.scene.values import toml_value
 
+Tables = dict[str, Any]
+"""A scene as its TOML file holds it."""
 Corner = tuple[float, float]
 Item = TypeVar("Item")
 CLAMPED, PINNED = {"kind": "clamped"}, {"kind": "pinned"}
@@ -25,6 +25,56 @@ STRIDE = 1_000_000
 ENDS = ("start", "end")
 EULER = {"free": math.pi**2 / 4.0, "pinned": math.pi**2, "held": 4.0 * math.pi**2}
 """Buckling forces of slender struts, over EI/L^2, by the loaded end."""
+
+
+def quoted(key: str) -> str:
+    """The key as TOML writes it, bare if it can be."""
+    return key if key.isascii() and key.replace("_", "").isalnum() else toml_value(key)
+
+
+def written(value: Any) -> str:
+    """The value as TOML, inline."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{quoted(key)} = {written(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(written(item) for item in value) + "]"
+    return toml_value(value)
+
+
+def toml_text(tables: Tables) -> str:
+    """The file of a scene, however broken."""
+    lines: list[str] = []
+    for key, value in tables.items():
+        if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+            for table in value:
+                lines += [
+                    f"[[{quoted(key)}]]",
+                    *(f"{quoted(k)} = {written(v)}" for k, v in table.items()),
+                    "",
+                ]
+        elif isinstance(value, dict):
+            lines += [f"[{quoted(key)}]", *(f"{quoted(k)} = {written(v)}" for k, v in value.items()), ""]
+        else:
+            lines.insert(0, f"{quoted(key)} = {written(value)}")
+    return "\n".join(lines) + "\n"
+
+
+class Place:
+    """Where a scene lies: turns parts of its length into coordinates."""
+
+    def __init__(self, length: float, angle: float, origin: tuple[float, float]) -> None:
+        self.length, self.origin = length, origin
+        self.cos, self.sin = math.cos(angle), math.sin(angle)
+
+    def vector(self, x: float, y: float) -> list[float]:
+        return [
+            self.length * (self.cos * x - self.sin * y) + 0.0,
+            self.length * (self.sin * x + self.cos * y) + 0.0,
+        ]
+
+    def point(self, x: float, y: float) -> list[float]:
+        vx, vy = self.vector(x, y)
+        return [self.origin[0] + vx, self.origin[1] + vy]
 
 
 def drawn(seed: int) -> Scene:
@@ -382,9 +432,3 @@ class _World:
         beam = next(item for item in self.beams if item["name"] == name)
         if "height" in beam and self.chance(0.2):
             self.contacts[-1]["surface"] = "face"
-
-
-if __name__ == "__main__":
-    from comparisons.scene import to_toml
-
-    print(to_toml(drawn(int(sys.argv[1]))), end="")

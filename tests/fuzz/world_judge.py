@@ -24,9 +24,10 @@ MODELS = {
     "exact": ("tsm", Options(element="exact")),
     "mixed": ("tsm", Options(element="mixed")),
     "solid": ("solid", Options()),
+    "rod": ("rod", Options()),
 }
 BEAMS = ("exact", "mixed")
-ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": math.inf}
+ALLOWED = {"exact": 1e-6, "mixed": 1e-2, "solid": math.inf, "rod": 1e-6}
 """Largest distance from the exact equilibrium in forces and places, where it is less than the certificate's own."""
 SECTIONS = 0.2
 """Largest difference of a section force that the sixteen `mixed` elements state in the middles of steep parts: of second order, and refused beyond 5 %."""
@@ -36,7 +37,7 @@ NEWTON = 1e-10
 """Force that Newton's method leaves, over the largest EI/L^2."""
 BETWEEN = 2e-2
 """Largest difference between `exact` and `mixed` at the last load parameter: twice what each may be off."""
-INSIDE = {"exact": 1e-9, "mixed": 1e-4, "solid": math.inf}
+INSIDE = {"exact": 1e-9, "mixed": 1e-4, "solid": math.inf, "rod": 1e-9}
 """Largest depth of a completed axis inside a round pin, over the beam's length. The axis of `mixed` is drawn through element ends."""
 NO_NEXT_STEP = (
     "CUTBACK_FLOOR",

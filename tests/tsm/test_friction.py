@@ -7,7 +7,7 @@ import pytest
 
 import tsm
 from comparisons.exact import elastica_with_friction, frictional_three_point_limit
-from tests.fuzz.run_friction import verdict
+from tests.fuzz.cantilevers import verdict
 from tests.tsm.friction_scenes import LAST, STRIP, Cantilever, drawn, ks
 from tsm.events import EventKind
 
@@ -196,7 +196,7 @@ def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 40, 10))
 def test_drawn_cantilevers_with_friction(first: int) -> None:
-    """The command ``python -m tests.fuzz.run_friction 500`` judges more."""
+    """The command ``python -m tests.fuzz cantilevers 0 500`` judges more."""
     found = [verdict(seed) for seed in range(first, first + 10)]
     assert not [item for item in found if item.wrong]
     right = {tsm.Status.COMPLETED.name, tsm.Status.END_CONTACT.name}

@@ -12,9 +12,9 @@ from comparisons.models.options import Options
 from comparisons.referee import Certificate, Verdict, certify
 from comparisons.referee.basis import DEGREE
 from comparisons.referee.elements import mesh_of, properties
+from comparisons.referee.energy import dissipated
 from comparisons.referee.equations import assemble
 from comparisons.referee.friction import Grip, Hold
-from comparisons.referee.energy import dissipated
 from comparisons.referee.history import History
 from comparisons.referee.layout import lay_out
 from comparisons.referee.phases import OPEN, UNKNOWN

@@ -91,58 +91,6 @@ def test_area_and_second_moment_have_shear_factor_one() -> None:
     assert stiffness == pytest.approx([7.5e10 * 5e-3, 7.5e7])
 
 
-BAD = {
-    "negative height": (("height = 0.02", "height = -0.02"), "beam[0].height = -0.02: must be positive"),
-    "zero width": (("width = 0.02", "width = 0"), "beam[0].width = 0: must be positive"),
-    "negative stiffness": (("2.1e4", "-2.1e4"), "beam[0].youngs_modulus = -21000.0: must be positive"),
-    "nan": (("2.1e4", "nan"), "beam[0].youngs_modulus = nan: must be a finite number"),
-    "inf": (("2.1e4", "-inf"), "beam[0].youngs_modulus = -inf: must be a finite number"),
-    "huge integer": (("2.1e4", "1" + 400 * "0"), "must be a finite number"),
-    "nan in a point": (("end = [1.0, 0.0]", "end = [1.0, nan]"), "beam[0].end = [1.0, nan]: must be a finite number"),
-    "bool as number": (("height = 0.02", "height = true"), "beam[0].height = true: must be a number"),
-    "bool as count": (("load_parameters = 50", "load_parameters = true"), "scene.load_parameters = true: must be a whole number"),
-    "text as number": (("height = 0.02", 'height = "0.02"'), 'beam[0].height = "0.02": must be a number'),
-    "float as count": (("elements = 20", "elements = 20.0"), "beam[0].elements = 20.0: must be a whole number"),
-    "no elements": (("elements = 20", "elements = 0"), "beam[0].elements = 0: must lie between 1 and 100000"),
-    "no load parameters": (("load_parameters = 50", "load_parameters = 0"), "scene.load_parameters = 0: must lie between"),
-    "nodes that fall": (("elements = 20", "nodes = [0.5, 0.2]"), "beam[0].nodes = [0.5, 0.2]: must rise between 0 and 1"),
-    "three coordinates": (("end = [1.0, 0.0]", "end = [1.0, 0.0, 0.0]"), "beam[0].end = [1.0, 0.0, 0.0]: must be two numbers"),
-    "zero length": (("end = [1.0, 0.0]", "end = [0.0, 0.0]"), "beam[0].end = [0.0, 0.0]: must differ from start"),
-    "nu": (("poissons_ratio = 0.3", "poissons_ratio = 0.5"), "beam[0].poissons_ratio = 0.5: must lie between -1 and 0.5"),
-    "nu and G": (("poissons_ratio = 0.3", "poissons_ratio = 0.3\nshear_modulus = 1.0"), "beam[0].shear_modulus = 1.0: give either poissons_ratio or shear_modulus, not both"),
-    "neither nu nor G": (("poissons_ratio = 0.3", ""), "beam[0].poissons_ratio = (missing): give poissons_ratio or shear_modulus"),
-    "two sections": (("height = 0.02", "height = 0.02\narea = 1.0"), "beam[0].area = 1.0: give either width and height or area and second_moment, not both"),
-    "half a section": (("height = 0.02", ""), "beam[0].height = (missing): must be given"),
-    "no section": (("width = 0.02\nheight = 0.02", ""), "beam[0].width = (missing): give width and height or area and second_moment"),
-    "unknown key": (("height = 0.02", "hieght = 0.02"), "beam[0].hieght = 0.02: unknown key, did you mean height?"),
-    "unknown table": (("[[contact]]", "[[contcat]]"), "unknown key, did you mean contact?"),
-    "missing key": (('side = "right"', ""), "contact[0].side = (missing): must be given"),
-    "missing scene key": (('name = "ks-cantilever"', ""), "scene.name = (missing): must be given"),
-    "pin as a table": (("[[pin]]", "[pin]"), "must be a list of tables, [[pin]]"),
-    "side": (('side = "right"', 'side = "below"'), 'contact[0].side = "below": must be one of "right", "left"'),
-    "unhashable choice": (('side = "right"', "side = []"), 'contact[0].side = []: must be one of "right", "left"'),
-    "clamp twice": (('clamped = ["start"]', 'clamped = ["start", "start"]'), "beam[0].clamped = "),
-    "no clamp": (('clamped = ["start"]', "clamped = []"), 'beam[0].clamped = []: beam "cantilever" is free: clamp it'),
-    "unknown beam": (('beam = "cantilever"', 'beam = "lower"'), 'contact[0].beam = "lower": must name a beam: "cantilever"'),
-    "unknown pin": (('node = "pin"', 'node = "nip"'), 'contact[0].node = "nip": must name a pin or a beam\'s end: "pin", "cantilever.start"'),
-    "own end": (('node = "pin"', 'node = "cantilever.end"'), "must not be an end of the beam itself"),
-    "still pin": (("displacement = [-1.0, 0.6366197723675814]", "displacement = [0.0, 0.0]"), "pin[0].displacement = [0.0, 0.0]: give a load, or a pin or a support that moves: nothing happens"),
-    "pin without way": (("displacement = [-1.0, 0.6366197723675814]", ""), "pin[0].displacement = (missing)"),
-    "pin with two ways": ((START, "path = [[1.0, 0.0], [1.0, 1.0]]\n" + START), "pin[0].path = [[1.0, 0.0], [1.0, 1.0]]: give either start and displacement or path"),
-    "wrong side": ((START, "start = [0.9, 0.01]\ndisplacement"), 'pin[0].start = [0.9, 0.01]: must lie on the right of beam "cantilever" (axis), gap -0.01'),
-    "inside the face": (('surface = "axis"', 'surface = "face"'), 'pin[0].start = [1.0, 0.0]: must lie on the right of beam "cantilever" (face), gap -0.01'),
-    "bad name": (('name = "pin"', 'name = "../pin"'), 'pin[0].name = "../pin": must consist of letters'),
-    "new line in a name": (('name = "pin"', 'name = "a\\nb"'), "pin[0].name = "),
-    "syntax": (("height = 0.02", "height = = 0.02"), "must be valid TOML"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("case", BAD)
-def test_bad_scene_is_refused_in_one_line(case: str) -> None:
-    (old, new), sentence = BAD[case]
-    assert sentence in refused(edited(old, new))
-
-
 def test_syntax_error_keeps_its_line() -> None:
     text = edited("height = 0.02", "height = = 0.02")
     line = next(i for i, content in enumerate(text.splitlines(), 1) if "= =" in content)
@@ -158,13 +106,6 @@ def test_duplicate_names_and_pairs() -> None:
     assert refused(PLAIN + pin) == 'pin[1].name = "pin": must not appear twice'
     contact = '[[contact]]\nnode = "pin"\nbeam = "cantilever"\nside = "right"\n'
     assert refused(PLAIN + contact) == 'contact[1].node = "pin->cantilever": must not appear twice'
-
-
-def test_face_needs_a_height() -> None:
-    text = edited("width = 0.02\nheight = 0.02", "area = 5e-3\nsecond_moment = 1e-3").replace(
-        '"axis"', '"face"'
-    )
-    assert refused(text) == 'contact[0].surface = "face": needs the height of beam "cantilever"'
 
 
 @pytest.mark.parametrize("y", [math.nextafter(0.0, 1.0), -math.ulp(1.0), math.ulp(1.0), 0.0])
@@ -206,9 +147,3 @@ def test_records_check_themselves() -> None:
     contact = ContactSpec(node="p", beam="b", side="right")
     with pytest.raises(ValueError, match=re.escape("pin[0].start = [1.0, 1.0]: must lie on the right")):
         Scene(name="s", load_parameters=1, beams=(beam,), pins=(pin,), contacts=(contact,))
-
-
-def test_a_height_whose_third_power_overflows_is_refused() -> None:
-    text = built_in_scenes()["ks-cantilever"].replace("height = 0.02", "height = 1e60")
-    with pytest.raises(SceneError, match=re.escape("EI = 3.5e+181 must lie between 1e-100 and 1e+100")):
-        read_scene(text, "high.toml")

@@ -79,22 +79,6 @@ def test_a_word_is_answered(place: str, key: str, line: str) -> None:
     assert f".{key} = 1.0: unknown key, {line}" in only
 
 
-@pytest.mark.parametrize(
-    ("table", "line"),
-    [
-        ("[dynamics]\n", "dynamics is not modelled"),
-        ("[[foundation]]\n", "an elastic bedding is not modelled"),
-        ("[[step]]\n", "did you mean stage?"),
-        ("[[material]]\n", "the material is stated in every [[beam]]"),
-    ],
-)
-def test_a_table_is_answered(table: str, line: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        read_scene(SCENES["strip"] + table, "my.toml")
-    (only,) = str(caught.value).splitlines()
-    assert f": unknown key, {line}" in only
-
-
 def test_another_name_gives_no_second_line() -> None:
     text = (
         SCENES["strip"].replace("youngs_modulus", "E").replace("poissons_ratio", "nu").replace("height", "h")

@@ -1,14 +1,7 @@
-"""Judge drawn cantilevers with friction by shooting, on all cores: ``python -m tests.fuzz.run_friction 500``."""
+"""Judge drawn cantilevers with friction by shooting."""
 
-import argparse
-import os
-import sys
 import traceback
-from collections import Counter
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -120,39 +113,3 @@ def kind(event: FrictionEvent) -> EventKind | None:
         return EventKind.SLIP
     others = {FrictionState.STICK: EventKind.STICK, FrictionState.SLIPPED: EventKind.SLIP_OFF}
     return others.get(event.after, EventKind.RELEASE if event.after is FrictionState.OPEN else None)
-
-
-def verdicts(seeds: range, element: str) -> Iterator[Verdict]:
-    """Yield the verdicts in order, from all cores."""
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        yield from pool.map(partial(verdict, element=element), seeds)
-
-
-def main() -> int:
-    """Print what is wrong and how the solutions ended."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("number", type=int, nargs="?", default=500, help="of cantilevers (500)")
-    parser.add_argument("--seed", type=int, default=0, help="of the first cantilever (0)")
-    parser.add_argument(
-        "--element", choices=ELEMENTS, default=next(iter(ELEMENTS)), help="type of the elements"
-    )
-    given = parser.parse_args()
-    ends, errors, wrong = Counter[str](), [0.0], 0
-    for found in verdicts(range(given.seed, given.seed + given.number), given.element):
-        ends[found.ended] += 1
-        print(f"\r{ends.total()} cantilevers, {wrong} wrong", end="", file=sys.stderr)
-        if found.wrong:
-            wrong += 1
-            print(f"WRONG {found.seed} {found.ended}: {found.wrong}", flush=True)
-        else:
-            errors.append(found.error)
-    print(file=sys.stderr)
-    kinds = ", ".join(f"{n} {end}" for end, n in ends.most_common())
-    print(
-        f"{given.number} cantilevers, {wrong} wrong: {kinds}; largest error of the others {max(errors):.2g}"
-    )
-    return int(wrong > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
