@@ -71,6 +71,12 @@ def _determinant(F: Array) -> Array:
     return J
 
 
+def _log_area(F: Array) -> Array:
+    """``ln det F``; nan at a folded point, which ends the iteration by name."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.log(_determinant(F)))
+
+
 def st_venant_kirchhoff(lam: float, mu: float, plane: str) -> Law:
     """``W = lam (tr E)^2 / 2 + mu E:E`` with Green's strain ``E = (F^T F - I) / 2``."""
     lam = in_plane_lam(lam, mu, plane)
@@ -157,7 +163,7 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
     """
 
     def log_stretch(F: Array) -> Array:
-        log_area = np.log(_determinant(F))
+        log_area = _log_area(F)
         z = 0 * log_area
         if plane == "strain":
             return z
@@ -171,13 +177,13 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
 
     def energy(F: Array) -> Array:
         z = log_stretch(F)
-        log_J = np.log(_determinant(F)) + z
+        log_J = _log_area(F) + z
         W: Array = mu / 2 * (_contract(F, F) + np.exp(2 * z) - 3) - mu * log_J + lam / 2 * log_J**2
         return W
 
     def stress(F: Array) -> Array:
         J = _determinant(F)
-        P: Array = mu * F + (lam * (np.log(J) + log_stretch(F)) - mu) * _cofactor(F) / J
+        P: Array = mu * F + (lam * (_log_area(F) + log_stretch(F)) - mu) * _cofactor(F) / J
         return P
 
     def tangent(F: Array) -> Array:
@@ -187,7 +193,7 @@ def neo_hookean(lam: float, mu: float, plane: str) -> Law:
         both = _outer(inverse, inverse)
         free = 2 * mu * np.exp(2 * z)
         c = lam * free / (lam + free) if plane == "stress" else lam
-        A: Array = c * both - (lam * (np.log(J) + z) - mu) * both.swapaxes(1, 3)
+        A: Array = c * both - (lam * (_log_area(F) + z) - mu) * both.swapaxes(1, 3)
         A += mu * _IDENTITY.reshape(2, 2, 2, 2, *(1,) * (F.ndim - 2))
         return A
 

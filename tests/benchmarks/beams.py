@@ -13,10 +13,10 @@ import tsm
 from comparisons.cases import measure
 from comparisons.cost.points import cheapest
 from comparisons.cost.sweep import measure_trade
+from comparisons.exact.rod import rod_under_pin
 from comparisons.models import solve
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.translate import to_rod, to_solid, to_structure
 from comparisons.scene import load_scene, read_scene
-from tests.benchmarks.integrators import errors
 from tests.benchmarks.measure import Gate, seconds
 from tests.comparisons.many_beams import MANY
 from tsm.model import Model
@@ -115,6 +115,16 @@ def many_beams(gates: list[Gate], times: dict[str, float]) -> None:
         scene = read_scene(text(3000), "many.toml")
         (spent,) = seconds(lambda scene=scene: solve(scene, "tsm"), repeats=1)
         gates.append(Gate(f"seconds for 3,000 beams, {kind}", spent, 20, False))
+
+
+def errors(result: tsm.Result) -> tuple[float, float]:
+    """Largest errors of contact force (relative) and arc position against the exact rod of KS."""
+    local = to_rod(load_scene("ks-cantilever"))
+    beam = local.beam
+    path = rod_under_pin(local.path, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length)
+    contact = result.contacts["pin->cantilever"]
+    F, s = path.magnitude[local.hits], path.arc_position[local.hits]
+    return float(np.abs(contact.force / F - 1).max()), float(np.abs(contact.arc_position - s).max())
 
 
 def exact_element(gates: list[Gate], times: dict[str, float]) -> None:

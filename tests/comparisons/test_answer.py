@@ -128,14 +128,6 @@ def test_a_stored_answer_has_a_page_and_columns_without_its_scene() -> None:
     assert len(again.plot(response.definition).axes) == 2
 
 
-def test_it_prints_itself_in_a_line_and_in_a_notebook_as_tables() -> None:
-    response = answer("two-pins")
-    assert repr(response) == "<Response two-pins by tsm exact 1: COMPLETED, 10 load parameters, the last 1>"
-    shown = response._repr_html_()
-    assert shown.count("<table>") == shown.count("</table>") == 5
-    assert "<td>p1-&gt;beam</td>" in shown
-
-
 def test_the_picture_has_shape_diagrams_and_forces() -> None:
     response = answer("portal-frame")
     shape, *diagrams, history = response.plot().axes
@@ -148,13 +140,6 @@ def test_the_picture_has_shape_diagrams_and_forces() -> None:
     assert drawn == pytest.approx(response.sections("left", -1).M)
     assert [text.get_text() for text in shape.texts if text.get_text()] == ["400 N"]
     assert [line.get_label() for line in history.get_lines()] == ["left.start", "right.end"]
-
-
-def test_a_state_without_force_is_not_drawn() -> None:
-    """The double beam is at rest at the end: the last state with a force is drawn."""
-    response = answer("double-beam", load_parameters=19)
-    loaded = response.load_parameter[response.contacts["pin->lower"].force > 0.0][-1]
-    assert f"load parameter {loaded:.6g}" in response.plot().axes[0].get_title()
 
 
 def arrows(scene: Scene) -> set[str]:

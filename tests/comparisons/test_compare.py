@@ -12,7 +12,6 @@ from comparisons import compare as compared
 from comparisons import models
 from comparisons.cli import main
 from comparisons.compare import PAPER, RUNS, Comparison, compare
-from comparisons.errors import errors
 from comparisons.files import WRITTEN
 from comparisons.models.options import Options
 from comparisons.response import Response
@@ -88,22 +87,6 @@ def test_scenes_with_special_keys_are_compared(name: str, tmp_path: Path) -> Non
     assert len(rods) == 1
 
 
-@pytest.mark.parametrize(
-    ("section", "cause"),
-    [
-        ({"area": 2e-4, "second_moment": 1.6e-9}, "a bent strip"),
-        ({"width": 0.02, "height": (0.02, 0.01)}, ""),
-    ],
-)
-def test_theory_names_a_cause_where_it_holds(section: dict[str, Any], cause: str) -> None:
-    """The cause of the solid's difference is stated for a beam by area and second moment, and for no beam that tapers."""
-    beam = replace(KS.beams[0], **{"width": None, "height": None, **section})
-    scene = replace(KS, beams=(beam,), load_parameters=2)
-    rod = models.solve(scene, "rod")
-    assert compared._cause(models.MODELS["solid"], Options(), scene, rod).startswith(cause)
-    assert bool(compared._cause(models.MODELS["solid"], Options(), scene, rod)) == bool(cause)
-
-
 @pytest.mark.slow
 def test_a_run_that_stops_is_named_and_the_rest_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -117,42 +100,6 @@ def test_a_run_that_stops_is_named_and_the_rest_goes_on(
     assert "crossval: solid: LOST_CONTACT" in progress
     assert "solid (LOST_CONTACT)" in printed
     assert (tmp_path / "out" / "summary.json").is_file()
-
-
-def test_a_run_that_stops_by_name_is_a_row_with_its_errors_so_far(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    scene = tmp_path / "short.toml"
-    scene.write_text(to_toml(replace(KS, load_parameters=4)))
-
-    def stopping(scene: Scene, model: str, *more: Any) -> Response:
-        response = models.solve(scene, model, *more)
-        if model != "tsm":
-            return response
-        first, history = slice(0, 2), response.contacts[PAIR]
-        changes = {name: getattr(history, name)[first] for name in ("force", "arc_position", "gap", "vector")}
-        held = response.supports["cantilever.start"]
-        return replace(
-            response,
-            load_parameter=response.load_parameter[first],
-            contacts={PAIR: replace(history, **changes)},
-            supports={"cantilever.start": replace(held, force=held.force[first], moment=held.moment[first])},
-            tips={name: tip[first] for name, tip in response.tips.items()},
-            index=None,
-            material_force={},
-            status="CUTBACK_FLOOR",
-            completed=False,
-        )
-
-    monkeypatch.setattr(compared, "solve", stopping)
-    monkeypatch.setattr(compared, "RUNS", (compared.MIXED, compared.ROD))
-    assert main(["compare", str(scene), "--out", str(tmp_path / "out")]) == 0
-    printed, progress = capsys.readouterr()
-    assert "TSM mixed, 20 elements (CUTBACK_FLOOR)" in printed
-    assert "crossval: TSM mixed, 20 elements: CUTBACK_FLOOR" in progress
-    found = json.loads((tmp_path / "out" / "summary.json").read_text())["runs"][0]["errors"]
-    assert 0.0 < found["path"]["force"] < 5e-6
-    assert found["end"]["force"] is None
 
 
 @pytest.mark.slow_at("False-True-")
@@ -194,15 +141,6 @@ def test_models_on_different_branches_end_with_status_3(
     assert (
         said.startswith(f"crossval: TSM mixed, 20 elements: {status}") if other else "BRANCH" not in said
     ), said
-
-
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face", "ks-tied-tip"])
-def test_discretisation_alone_is_no_other_branch(name: str) -> None:
-    """The coarsest beams are far from the limit: a twentieth of it."""
-    scene = replace(load_scene(name), load_parameters=20)
-    coarse = models.solve(scene, "tsm", Options(element="timoshenko", elements=10))
-    found = errors(coarse, models.solve(scene, "rod"), scene)["path"]
-    assert max(found[name] for name in compared.BRANCH) < compared.APART / 20
 
 
 def test_a_scene_without_exact_rods_is_refused_in_one_line(

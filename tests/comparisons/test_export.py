@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 import pyvista
 
-from comparisons.cli import main
 from comparisons.files import WRITTEN, OutputError
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -130,16 +129,6 @@ def test_stress_has_named_components(tmp_path: Path) -> None:
     assert data["von_mises"] == pytest.approx(np.sqrt(((a - b) ** 2 + a**2 + b**2) / 2), rel=1e-12)
 
 
-def test_files_state_the_index(response: Response, tmp_path: Path) -> None:
-    unstable = replace(response, index=np.array([0, 0, 2]))
-    write_series(tmp_path, unstable, SCENE)
-    files = [tmp_path / f"{response.model}-000{k}.vtm" for k in (1, 2, 3)]
-    found = [pyvista.read(file)["cantilever"].point_data["index"] for file in files]
-    assert [set(values.tolist()) for values in found] == [{0}, {0}, {2}]
-    write_series(tmp_path, replace(response, index=None), SCENE)
-    assert "index" not in pyvista.read(files[0])["cantilever"].point_data
-
-
 def test_quads_are_in_vtk_order(tmp_path: Path) -> None:
     solid = solve(SCENE, "solid", Options(mesh=(12, 2)))
     (tmp_path / "solid.vtu").write_text(grid_text(solid.grid(0), {}))
@@ -175,13 +164,6 @@ def test_forces_between_beams_balance_the_supports(model: str) -> None:
     assert contacts["slip"][1] == -1.0
 
 
-def test_the_displacement_of_the_touched_beam_keeps_a_contact_closed(response: Response) -> None:
-    """Enlarged deformations: the touched point of the beam is where the pin is, less the pin's own way."""
-    data = blocks(response, SCENE, 2)[CONTACTS].point_data
-    arc = response.contacts["pin->cantilever"].arc_position[2]
-    assert data["beam_displacement"][0] == pytest.approx(data["deformed"][0] - [arc, 0.0], abs=1e-4)
-
-
 @pytest.mark.slow_at("solid")
 def test_series_lists_its_files_and_removes_older_ones(response: Response, tmp_path: Path) -> None:
     longer = replace(SCENE, load_parameters=4)
@@ -211,17 +193,6 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != WRITTEN}
 
 
-def test_two_models_share_a_folder(tmp_path: Path) -> None:
-    beams, solid = solve(SCENE, "tsm"), solve(SCENE, "solid", Options(mesh=(12, 2)))
-    write_series(tmp_path, beams, SCENE)
-    alone = contents(tmp_path)
-    write_series(tmp_path, solid, SCENE)
-    assert contents(tmp_path).items() > alone.items()
-    both = all_files(tmp_path, "tsm") | all_files(tmp_path, "solid")
-    assert both == contents(tmp_path).keys()
-    assert len(both) == 2 * (1 + 3 * 4)
-
-
 @pytest.mark.parametrize(
     "name", ["pin-head.vtu", "tsm-mine.vtu", "pin-0001.vtu", "tsm-0009.vtm", "tsm-0009-0.vtu"]
 )
@@ -247,25 +218,6 @@ def test_a_file_in_the_way_ends_the_run_before_anything_is_written(
     with pytest.raises(OutputError, match=f"{name}: is there already, and is not as crossval wrote it"):
         write_series(tmp_path, beams, SCENE)
     assert contents(tmp_path) == there
-
-
-def test_a_listed_file_that_was_changed_outlives_a_shorter_series(tmp_path: Path) -> None:
-    write_series(tmp_path, solve(SCENE, "tsm"), SCENE)
-    (tmp_path / "tsm-0003-0.vtu").write_text("mine")
-    shorter = replace(SCENE, load_parameters=2)
-    write_series(tmp_path, solve(shorter, "tsm"), shorter)
-    assert (tmp_path / "tsm-0003-0.vtu").read_text() == "mine"
-    assert not (tmp_path / "tsm-0003-1.vtu").exists()
-
-
-def test_a_series_that_was_edited_behind_its_end_stays(tmp_path: Path) -> None:
-    beams, pvd = solve(SCENE, "tsm"), tmp_path / "tsm.pvd"
-    write_series(tmp_path, beams, SCENE)
-    edited = pvd.read_text() + "<!-- mine -->\n"
-    pvd.write_text(edited)
-    with pytest.raises(OutputError, match=r"tsm\.pvd: is there already, and is not as crossval wrote it"):
-        write_series(tmp_path, beams, SCENE)
-    assert pvd.read_text() == edited
 
 
 @pytest.mark.slow
@@ -299,11 +251,3 @@ def test_a_run_goes_on_where_another_was_ended_among_its_files(
         write_series(folder, beams, SCENE)
         assert contents(folder).keys() == all_files(folder, "tsm")
         assert len(contents(folder)) == 1 + 3 * 4
-
-
-def test_the_command_leaves_what_is_in_the_way(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Before anything is computed."""
-    (tmp_path / "tsm-0007-1.vtu").write_text("mine")
-    assert main(["solve", "ks-cantilever", "--model", "tsm", "--vtk", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.startswith(f"crossval: {tmp_path}/tsm-0007-1.vtu: is there already")
-    assert contents(tmp_path) == {"tsm-0007-1.vtu": b"mine"}

@@ -16,7 +16,6 @@ import pytest
 
 from comparisons.extras import install
 from comparisons.files import WRITTEN, write_text
-from comparisons.scene import built_in_scenes
 from comparisons.show.render import INSTEAD
 
 HERE = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -163,22 +162,6 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
     assert {path.name for path in folder.glob(".*")} == {WRITTEN}
 
 
-@pytest.mark.slow
-def test_two_comparisons_into_one_folder(tmp_path: Path) -> None:
-    scene, out = tmp_path / "short.toml", tmp_path / "out"
-    scene.write_text(
-        built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 5")
-    )
-    children = [begun(COMMAND, "compare", str(scene), "--out", str(out)) for _ in range(2)]
-    for child in children:
-        err = child.communicate(timeout=600)[1]
-        assert "Traceback" not in err
-        assert child.returncode == 0, err
-    summary = json.loads((out / "summary.json").read_text())
-    assert all((out / name).is_file() for name in summary["files"])
-    assert {path.name for path in out.rglob(".*")} == {WRITTEN}
-
-
 FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))"
 
 
@@ -311,14 +294,3 @@ def test_no_opengl(tmp_path: Path) -> None:
     assert err == ""
     assert out == f"{INSTEAD}\n"
     assert names(tmp_path) == {"lib", "a.png"}
-
-
-@pytest.mark.slow
-def test_no_pyvista(tmp_path: Path) -> None:
-    """A package of its name that cannot be imported."""
-    (tmp_path / "pyvista.py").write_text("raise ImportError('broken')\n")
-    with begun(PICTURE, cwd=tmp_path, PYTHONPATH=os.pathsep.join([str(tmp_path), *sys.path])) as child:
-        out, err = child.communicate(timeout=300)
-    assert err == ""
-    assert out == f"{INSTEAD}\n"
-    assert (tmp_path / "a.png").is_file()

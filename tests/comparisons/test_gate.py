@@ -54,13 +54,6 @@ def test_bounds(scene: str, bounds: list[str], status: int, capsys: Output) -> N
     assert error == ("crossval: tip: beyond the bound\n" if status else "")
 
 
-def test_the_error_is_that_of_the_resolution(scene: str) -> None:
-    """The force of ``mixed`` with 10 elements is 1.5e-5 off, with 20 elements a sixteenth of that."""
-    assert main(["gate", scene, "--max-error", "force=2e-5", "--elements", "10"]) == 0
-    assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "10"]) == 1
-    assert main(["gate", scene, "--max-error", "force=2e-6", "--elements", "20"]) == 0
-
-
 @pytest.mark.slow
 def test_a_bound_names_where_the_error_is_largest(capsys: Output) -> None:
     bounds = ["--max-error", "force=1e-12", "--max-error", "tip=1e-12"]
@@ -77,12 +70,6 @@ def test_junit(scene: str, tmp_path: Path) -> None:
     assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
     assert [len(case) for case in suite] == [0, 1]
     assert "against rod" in str(suite[1][0].get("message"))
-
-
-@pytest.mark.slow
-def test_two_beams_are_measured_against_the_exact_rods(capsys: Output) -> None:
-    assert main(["gate", "double-beam", "--max-error", "force=1e-3", "--elements", "10"]) == 0
-    assert capsys.readouterr().out.startswith("double-beam: tsm against rod")
 
 
 def test_a_solution_that_stops_holds_no_bound(tmp_path: Path, capsys: Output) -> None:

@@ -1,18 +1,17 @@
 """Material force: zero of frictionless answers, a model's error of direction, and every seeded fault of a contact."""
 
-import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from comparisons.errors import difference
 from comparisons.models import certified, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.response import Response, SupportHistory
-from comparisons.response.from_json import restated
+from comparisons.response import Response
 from comparisons.response.material import (
     clamped,
     friction_coefficient,
@@ -20,10 +19,7 @@ from comparisons.response.material import (
     frictions_found,
     material_forces,
 )
-from comparisons.response.to_json import as_json
 from comparisons.scene import BeamSpec, LoadSpec, SupportSpec, load_scene
-from tests.comparisons.drawn_cantilevers import BEAM, drawn_cantilevers
-from tests.comparisons.shooting import Array, Shot, rod_with_direction, shoot, tangent
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 CANTILEVER, CLAMP, PAIR = "cantilever", "cantilever.start", "pin->cantilever"
@@ -67,30 +63,6 @@ def test_the_rods_formula_is_not_the_solids(stated: Callable[..., None]) -> None
     stated("friction.solid-by-rod", abs(frictions(rods, KS)[CANTILEVER][-1]))
 
 
-def test_linear_elements_of_the_solid_lock_and_rub() -> None:
-    coarse = replace(KS, beams=(replace(KS.beams[0], solid_element="Q1"),))
-    assert largest(solve(coarse, "solid", Options(mesh=(50, 2)))) > 0.1
-
-
-def exact_frictions(count: int) -> tuple[float, int]:
-    """Largest friction of exact elements over drawn cantilevers, and the number of closed load parameters."""
-    found = []
-    for scene in drawn_cantilevers(count):
-        response = solve(scene, "tsm", Options(element="exact"))
-        if len(response.load_parameter):
-            values = frictions(response, scene)[BEAM]
-            found.append(values[np.isfinite(values)])
-    every = np.abs(np.concatenate(found))
-    return float(every.max()), len(every)
-
-
-@pytest.mark.slow
-def test_exact_elements_have_no_friction_at_drawn_cantilevers() -> None:
-    worst, count = exact_frictions(20)
-    assert count > 150
-    assert worst <= 1e-10
-
-
 @pytest.mark.parametrize("clamp", ["start", "end"])
 def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
     """Its H has the part of the natural curvature: without it the friction is more than one percent."""
@@ -107,120 +79,14 @@ def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
     assert abs(beam.curvature * support.moment[-1]) > 0.01 * response.contacts[PAIR].force[-1]
 
 
-@pytest.mark.slow
-def test_exact_elements_have_no_friction_at_many_drawn_cantilevers() -> None:
-    worst, count = exact_frictions(150)
-    assert count > 1200
-    assert worst <= 1e-10
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A wrong contact: the tangent that its force is normal to, and the distance of the force from the point of the axis."""
-
-    direction: Callable[[Shot], Array]
-    lever: Callable[[Shot], float] = lambda _: 0.0
-
-
-def unit(angle: float) -> Array:
+def unit(angle: float) -> NDArray[np.float64]:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-def at_end_of_last_step(_: Shot) -> Array:
-    """Tangent at the load parameter before: the projection is frozen during the step."""
-    force = solve(KS, "rod").contacts[PAIR].vector
-    assert force is not None
-    return np.array([force[-2, 1], -force[-2, 0]])
-
-
-def interpolated(shot: Shot) -> Array:
-    """Linear interpolation between the rotations of the element's ends."""
-    a, b = shot.node(ELEMENTS, 0), shot.node(ELEMENTS, 1)
-    part = (shot.arc - a) / (b - a)
-    return unit((1.0 - part) * shot.rotation(a) + part * shot.rotation(b))
-
-
-FAULTS = {
-    "chord of the element": Fault(
-        lambda shot: shot.position(shot.node(ELEMENTS, 1)) - shot.position(shot.node(ELEMENTS, 0))
-    ),
-    "chord of the beam": Fault(lambda shot: shot.position(shot.beam.length)),
-    "loaded side of the kink": Fault(lambda shot: shot.loaded),
-    "free side of the kink": Fault(lambda shot: shot.tail),
-    "kink with the wrong sign": Fault(lambda shot: 2.0 * shot.loaded - shot.tail),
-    "projection of the last step": Fault(at_end_of_last_step),
-    "mean of the end normals": Fault(
-        lambda shot: unit(
-            (shot.rotation(shot.node(ELEMENTS, 0)) + shot.rotation(shot.node(ELEMENTS, 1))) / 2.0
-        )
-    ),
-    "rotations interpolated": Fault(interpolated),
-    "undeformed axis": Fault(lambda _: np.array([1.0, 0.0])),
-    "normal at the nearest node": Fault(
-        lambda shot: unit(
-            shot.rotation(round(shot.arc * ELEMENTS / shot.beam.length) * shot.beam.length / ELEMENTS)
-        )
-    ),
-    "foot of the normal off by a hundredth": Fault(lambda shot: unit(shot.rotation(shot.arc - 0.01))),
-    "line of action beside the contact": Fault(lambda shot: shot.mean, lambda shot: 0.01 * shot.beam.length),
-}
-"""Seeded faults of a contact, by what the force is taken normal to or where it acts."""
-
-
-@pytest.fixture(scope="module")
-def true_shot() -> Shot:
-    """The rod's answer at the last load parameter, as a first guess."""
-    rod = solve(KS, "rod")
-    support = rod.supports[CLAMP]
-    return shoot(
-        KS.beams[0],
-        -support.force[-1],
-        -float(support.moment[-1]),
-        float(rod.contacts[PAIR].arc_position[-1]),
-    )
-
-
-def answered(shot: Shot) -> Response:
-    """The rod's response with the reactions and the contact of another equilibrium at the last load parameter."""
-    rod = solve(KS, "rod")
-    support, contact = rod.supports[CLAMP], rod.contacts[PAIR]
-    size = np.append(contact.force[:-1], np.hypot(*shot.force))
-    changed = replace(
-        rod,
-        supports={
-            CLAMP: SupportHistory(
-                force=np.vstack([support.force[:-1], -shot.force]),
-                moment=np.append(support.moment[:-1], -shot.moment),
-            )
-        },
-        contacts={PAIR: replace(contact, force=size)},
-    )
-    return replace(changed, material_force=material_forces(changed, KS))
-
-
-def solved(fault: Fault, start: Shot) -> tuple[Shot, float]:
-    """The equilibrium with a fault, and its friction."""
-    touched = np.array(KS.pin("pin").position(1.0))
-    shot = rod_with_direction(KS.beams[0], touched, start, fault.direction, fault.lever)
-    return shot, float(frictions(answered(shot), KS)[CANTILEVER][-1])
-
-
-def test_the_true_direction_has_no_friction(true_shot: Shot) -> None:
-    """The mean of the tangents on both sides of the kink, with the exact rod's force."""
-    shot, friction = solved(Fault(lambda shot: shot.mean), true_shot)
-    assert abs(friction) < 1e-10
-    assert np.hypot(*shot.force) == pytest.approx(solve(KS, "rod").contacts[PAIR].force[-1], rel=1e-9)
-
-
-@pytest.mark.slow_at("projection of the last step")
-@pytest.mark.parametrize("name", FAULTS)
-def test_every_fault_of_a_contact_is_a_material_force(name: str, true_shot: Shot) -> None:
-    """H is what the fault makes it, a tangential force or the moment of a lever, and a million times what the true contact has."""
-    shot, friction = solved(FAULTS[name], true_shot)
-    size, moment = np.hypot(*shot.force), shot.line(shot.arc)[3]
-    made = (shot.force @ shot.mean + moment**2 / (2.0 * shot.beam.EI)) / size
-    assert friction == pytest.approx(made, rel=1e-6)
-    assert abs(friction) > 1e-4
+def tangent(beam: BeamSpec, n: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """Return ``r' = (1 + N/EA) d1 + (Q/GA) d2``."""
+    d1, d2 = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    return np.asarray((1.0 + n @ d1 / beam.EA) * d1 + n @ d2 / beam.GA * d2)
 
 
 @pytest.mark.parametrize("coefficient", [-0.5, -0.1, 0.0, 0.05, 0.3, 2.0])
@@ -228,7 +94,7 @@ def test_every_fault_of_a_contact_is_a_material_force(name: str, true_shot: Shot
 def test_the_coefficient_of_friction_found(coefficient: float, lever: float) -> None:
     """From H at the clamp of a rod that stretches and shears strongly, under forces at every angle, with the couple of a face."""
     beam = BeamSpec(
-        name=BEAM,
+        name="b",
         start=(0.0, 0.0),
         end=(1.0, 0.0),
         youngs_modulus=1.0,
@@ -269,21 +135,6 @@ def test_where_there_is_no_material_force(kind: str) -> None:
     assert clamped(KS)
     assert not clamped(scene)
     assert not solve(scene, "tsm", Options(elements=4)).material_force
-
-
-def test_two_beams_joined_have_no_material_force() -> None:
-    tail = replace(KS.beams[0], name="tail", start=KS.beams[0].end, end=(2.0, 0.0), clamped=())
-    assert not clamped(replace(KS, beams=(*KS.beams, tail)))
-
-
-def test_the_quantity_in_files() -> None:
-    response = beams("mixed")
-    again = restated(json.loads(as_json(response)))
-    assert np.array_equal(again.material_force[CANTILEVER], response.material_force[CANTILEVER])
-    without = {
-        name: value for name, value in json.loads(as_json(response)).items() if name != "material_force"
-    }
-    assert restated(without).material_force == {}
 
 
 def test_the_error_of_the_friction() -> None:

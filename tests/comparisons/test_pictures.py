@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib import colormaps
 from matplotlib.image import imread
 
 from comparisons.compare import DRAWN
@@ -15,7 +14,7 @@ from comparisons.response import Response
 from comparisons.scene import load_scene
 from comparisons.show import render
 from comparisons.show.panel import Panel, Scale
-from comparisons.show.plot import nearest_steps, plot_panels, plot_shapes
+from comparisons.show.plot import plot_shapes
 from comparisons.show.render import render_panels
 from comparisons.show.stress import LAYERS, beam_panel, solid_panel
 
@@ -70,21 +69,6 @@ def test_a_round_pin_has_its_true_radius_beside_the_beam() -> None:
         assert scale.centre[1] - scale.extent[1] <= panel.pins[0, 1] - 0.05
 
 
-def test_brightness_grows_with_the_stress() -> None:
-    """In grey print, for stress of one sign and of both."""
-    for low in (0.0, -1.0):
-        scale = Scale(centre=(0.0, 0.0), extent=(1.0, 1.0), stress=(low, 1.0), force=0.0, label="")
-        grey = colormaps[scale.colours](np.linspace(0.0, 1.0, 50))[:, :3] @ [0.299, 0.587, 0.114]
-        assert np.diff(grey).min() > 0.0
-        assert grey[-1] - grey[0] > 0.5
-
-
-def test_nearest_steps_are_distinct() -> None:
-    assert nearest_steps(np.array([0.25, 0.5, 0.75, 1.0])) == [0, 1, 2, 3]
-    assert nearest_steps(np.linspace(0.1, 2.0, 20), 2.0) == [3, 7, 11, 15, 19]
-    assert nearest_steps(np.array([1.0])) == [0]
-
-
 def test_shapes_are_drawn_in_both_formats(beams: Response, tmp_path: Path) -> None:
     paths = [tmp_path / "shapes.png", tmp_path / "shapes.svg"]
     plot_shapes(SCENE, {"TSM mixed": beams, "exact rod": solve(SCENE, "rod")}, *paths)
@@ -128,8 +112,3 @@ def test_matplotlib_stands_in_where_rendering_dies(
     assert sentence is not None
     assert "matplotlib" in sentence
     assert coloured(tmp_path / "both.png") > 0.01
-
-
-def test_plot_panels_shares_one_scale(panels: list[Panel], tmp_path: Path) -> None:
-    plot_panels(panels, Scale.of(panels, "stress"), tmp_path / "panels.png")
-    assert coloured(tmp_path / "panels.png") > 0.01

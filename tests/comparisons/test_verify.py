@@ -78,19 +78,6 @@ def test_a_broken_response_is_not_a_success(good: Response, case: str) -> None:
     assert re.search(reason, checked.message)
 
 
-@pytest.mark.slow_at("solid-ks-cantilever")
-@pytest.mark.parametrize("scene", ["ks-cantilever", "ks-face"])
-@pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
-def test_true_responses_pass(scene: str, model: str) -> None:
-    short = replace(load_scene(scene), load_parameters=5)
-    options = Options(mesh=(16, 1)) if model == "solid" else Options()
-    assert list(failures(solve(short, model, options), short)) == []
-
-
-def test_slip_off_excuses_a_node_on_the_far_side(good: Response) -> None:
-    assert verified(with_contact(without_force(good), slip_off=0.1), SCENE).completed
-
-
 AROUND = ((1.2, 0.01), (1.2, -0.1), (0.6, -0.1))
 """Past the free end and below the beam, which it never touches."""
 
@@ -153,16 +140,6 @@ def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
     assert verified(stopped, SCENE) is stopped
 
 
-@pytest.mark.slow_at("options0")
-@pytest.mark.parametrize("options", [Options(element="exact"), Options(elements=3), Options(elements=10)])
-def test_nothing_that_acts_balances(options: Options) -> None:
-    """The double beam's whole path in one step: in the end both beams are free, and what is left is the solver's tolerance."""
-    response = solve(replace(load_scene("double-beam"), load_parameters=1), "tsm", options)
-    assert response.completed, response.message
-    kinds = [event.kind for event in response.events or () if event.kind != "pass-through"]
-    assert kinds == ["touch", "slip-off", "touch", "release", "slip-off"]
-
-
 @pytest.mark.parametrize(
     ("model", "options", "reason"),
     [
@@ -177,15 +154,6 @@ def test_elements_that_bend_too_far_are_not_believed(model: str, options: Option
     assert response.status == CHECK_FAILED
     assert not response.completed
     assert re.search(reason, response.message)
-
-
-@pytest.mark.parametrize("options", [Options(elements=2), Options(element="timoshenko", elements=5)])
-def test_as_few_elements_as_bear_it_are_believed(options: Options) -> None:
-    """Two elements of fourth order, whose forces are right to .5 %, five of second order, 6 %."""
-    response = solve(SCENE, "tsm", options)
-    assert response.completed, response.message
-    assert response.deformation is not None
-    assert 0.8 < response.deformation.turn.max() / response.deformation.bearable < 1.0
 
 
 def test_forces_beyond_the_shear_stiffness_are_not_believed() -> None:
@@ -205,28 +173,6 @@ def test_a_motion_below_the_resolution_is_refused(model: str) -> None:
     response = solve(replace(SCENE, pins=(pin,)), model)
     assert response.status == CHECK_FAILED
     assert "pin moves by 1e-18" in response.message
-
-
-def test_the_last_places_of_a_stiff_axial_force_need_not_balance() -> None:
-    """L/h = 1e5: positions leave some 1e-16 EA, ten times what the bending forces are checked to."""
-    beam = replace(SCENE.beams[0], width=1e-5, height=1e-5)
-    scene = replace(SCENE, beams=(beam,), load_parameters=10)
-    response, rod = solve(scene, "tsm", Options(elements=40)), solve(scene, "rod")
-    assert response.completed, response.message
-    np.testing.assert_allclose(response.contacts[PAIR].force, rod.contacts[PAIR].force, rtol=1e-6)
-
-
-def test_a_round_pin_that_rubs_is_in_balance() -> None:
-    """Its tangential force acts on its surface, with a moment about its centre that statics alone would not see the sign of."""
-    beam = replace(SCENE.beams[0], width=0.1, height=0.1)
-    pin = PinSpec(name="pin", path=((0.7, -0.1), (0.69, -0.05)), radius=0.1)
-    contact = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
-    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(contact,), load_parameters=1)
-    response = solve(scene, "tsm", Options(element="exact"))
-    assert response.completed, response.message
-    rubs = response.contacts["pin->cantilever"].friction
-    assert rubs is not None
-    assert abs(rubs.tangential[-1]) > 0.1 * response.contacts["pin->cantilever"].force[-1]
 
 
 def test_what_is_round_off_has_the_units_of_its_quantity() -> None:

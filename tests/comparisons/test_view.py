@@ -72,35 +72,6 @@ def test_the_ribbon_has_the_height_and_the_bending_stress(
     assert beams.stress[0] - beams.stress[4] == pytest.approx(2 * moment * 0.01 / (0.02**4 / 12), rel=1e-9)
 
 
-def test_the_ribbon_follows_the_axis(responses: list[Response], series: list[Series]) -> None:
-    """Its middle is the cubic between the nodes: within 3e-4 of the axis with 10 elements."""
-    beams = panel(series[0].blocks(2), "")
-    middle = beams.points.reshape(10, 9, 5, 2)[:, :, 2]
-    _, axis = responses[0].axis_line("cantilever", 2)
-    for e in range(10):
-        at = np.linspace(0, 1, 9) * 10 + 10 * e
-        exact = np.stack([np.interp(at, np.arange(101), axis[:, i]) for i in (0, 1)], axis=-1)
-        assert np.abs(middle[e] - exact).max() < 5e-4
-
-
-def test_an_enlarged_deformation_is_drawn_and_said(series: list[Series]) -> None:
-    """At a small load twice the deformation is that of twice the load; a closed contact stays on its beam."""
-    small = replace(
-        SCENE, load_parameters=40, pins=(replace(SCENE.pins[0], start=(0.8, 0.0), displacement=(0.0, 0.04)),)
-    )
-    for model in ("tsm", "solid"):
-        one = solved_series(solve(small, model), small, model)
-        twice, plain = panel(one.blocks(9), "t", 2.0), panel(one.blocks(19), "t")
-        assert twice.title == "t, deformation x 2"
-        assert plain.title == "t"
-        assert (
-            np.abs(twice.points - plain.points).max() < 3e-4
-        )  # the tip moves back by the square of the load
-        assert np.abs(twice.points - panel(one.blocks(9), "t").points).max() > 5e-3
-        assert twice.pins == pytest.approx(plain.pins, abs=1e-4)
-    assert panel(series[0].blocks(2), "", 1.0).points == pytest.approx(panel(series[0].blocks(2), "").points)
-
-
 def test_supports_forces_between_beams_and_their_states_are_drawn() -> None:
     scene = replace(load_scene("double-beam-friction"), load_parameters=4)
     response = solve(scene, "tsm")
@@ -130,16 +101,6 @@ def test_a_curved_and_tapered_ribbon_has_the_heights_of_its_ends() -> None:
     across = sections[0, -1] - sections[0, 0]
     assert across @ scene.beam("hook").tangent(0.0) == pytest.approx(0.0, abs=0.02)
     assert len(panel(blocks, "t").supports) > len(one.supports) == 0
-
-
-def test_coarse_solids_and_rods_can_be_viewed(tmp_path: Path) -> None:
-    """Bilinear elements have other cells, and a rod's file has neither stress nor height."""
-    scene = replace(SCENE, beams=(replace(SCENE.beams[0], solid_element="Q1", mesh=(24, 2)),))
-    for model in ("solid", "rod"):
-        write_series(writable_folder(tmp_path / model), solve(scene, model), scene)
-    solid, rod = (panel(one.blocks(2), "") for one in read_series(tmp_path))
-    assert len(solid.quads) == 48
-    assert rod.points.max(axis=0) == pytest.approx(solid.points.max(axis=0), abs=0.05)
 
 
 @pytest.mark.parametrize("factor", ["0", "-1", "many", "inf"])
@@ -202,20 +163,6 @@ def test_without_opengl_matplotlib_draws(
         assert motion.n_frames == 3
 
 
-def test_a_window_where_there_is_a_display(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: Output
-) -> None:
-    write_series(writable_folder(tmp_path / "tsm"), solve(SCENE, "tsm"), SCENE)
-    monkeypatch.setenv("DISPLAY", ":0")
-    shown = []
-    monkeypatch.setattr("comparisons.show.view.show", lambda found: shown.append(found) or True)
-    assert main(["view", str(tmp_path)]) == 0
-    assert len(shown[0].frames) == 3
-    monkeypatch.setattr("comparisons.show.view.show", lambda _: False)
-    assert main(["view", str(tmp_path)]) == 2
-    assert "no window could be opened" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("broken", ["empty", "not a PVD", "not a VTM", "not a VTU", "no VTU"])
 def test_a_broken_folder_is_one_line(broken: str, tmp_path: Path, capsys: Output) -> None:
     folder = tmp_path / "folder"
@@ -235,14 +182,3 @@ def test_a_broken_folder_is_one_line(broken: str, tmp_path: Path, capsys: Output
     assert len(error.splitlines()) == 1, error
     assert str(folder) in error
     assert not list((tmp_path / "out").iterdir())
-
-
-@pytest.mark.slow
-def test_a_solid_that_cannot_state_the_scene_is_left_out(tmp_path: Path, capsys: Output) -> None:
-    scene = tmp_path / "rigid.toml"
-    scene.write_text(
-        built_in_scenes()["ks-printed-shear"].replace("load_parameters = 50", "load_parameters = 2")
-    )
-    assert main(["view", str(scene), "--out", str(tmp_path / "out")]) == 0
-    assert "solid: left out, " in capsys.readouterr().err
-    assert (tmp_path / "out" / "view.gif").is_file()

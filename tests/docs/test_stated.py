@@ -33,7 +33,6 @@ COMPUTED = {
     "friction-over-mu.solid-{}": "st-venant-kirchhoff biot-linear",
     "friction.paper-{}": "10 20 50",
     "friction.solid-{}x{}": "25x1 50x2 100x4",
-    "integrators.{}-{}": "explicit-4 explicit-8 gauss-8 gauss-12 gauss-14",
     "ks.mixed-{}": "5 10 20 40 200",
     "mixed.roll-up-order-{}": "1 2",
     "mixed.roll-up-{}": "1 2",

@@ -7,8 +7,6 @@ import pytest
 from scipy.linalg import null_space
 
 import fem_reference as fr
-from fem_reference import factor
-from fem_reference.factor import count_negatives, factorise
 from fem_reference.model import build
 from fem_reference.state import build_state
 from fem_reference.tangent import linearise
@@ -122,50 +120,3 @@ def test_index_is_that_of_the_dense_reduced_hessian_on_every_drawn_state(strip, 
     assert min(seen[index] for index in range(5)) > count / 60
     assert min(seen["closed"], seen["indefinite body"], seen["tied"]) > count / 5
     assert seen["joined"] > count / 30
-
-
-def banded(K, width):
-    """Function that returns a symmetric matrix in lower band storage."""
-    rows = [np.append(np.diagonal(K, -below), np.zeros(below)) for below in range(width + 1)]
-    return lambda: np.array(rows, order="F")
-
-
-@pytest.mark.parametrize("growth", [None, 0.0])
-def test_negatives_are_counted_with_reliable_and_unreliable_pivots(monkeypatch, growth):
-    """With no growth allowed, the eigenvalues themselves are counted; both ways solve with a band matrix K."""
-    if growth is not None:
-        monkeypatch.setattr(factor, "_GROWTH", growth)
-    rng = np.random.default_rng(0)
-    for width in (*range(1, 9), *(6,) * 42):
-        half = np.triu(np.tril(rng.standard_normal((40, 40)), width), -width)
-        K = half + half.T + rng.uniform(0, 8) * np.eye(40)  # few negative eigenvalues, or many
-        factors = factorise(banded(K, width))
-        assert factors.negatives() == (np.linalg.eigvalsh(K) < 0).sum()
-        b = rng.standard_normal((40, 2))
-        np.testing.assert_allclose(K @ factors.solve(b), b, atol=1e-8)
-        np.testing.assert_array_equal(factors.solve(b[:, 0]).shape, (40,))
-
-
-def test_factors_without_row_exchanges_are_used_where_they_do_not_grow(monkeypatch):
-    """Fewer than 10 of 50 random indefinite band matrices need a row exchange."""
-    exchanged = []
-    monkeypatch.setattr(factor, "_with_row_exchanges", exchanged.append)
-    rng = np.random.default_rng(1)
-    for _ in range(50):
-        half = np.triu(np.tril(rng.standard_normal((40, 40)), 6), -6)
-        factorise(banded(half + half.T + 8 * np.eye(40), 6))
-    assert len(exchanged) < 10
-
-
-def test_pivots_that_vanish_or_grow_are_not_used():
-    """``[[0, 1], [1, 0]]`` has no pivot on its diagonal, ``[[e, 1], [1, 0]]`` one that spoils the next."""
-    for corner in (0.0, 1e-12, -1e-12):
-        K = np.array([[corner, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -2.0]])
-        factors = factorise(banded(K, 1))
-        assert factors.negatives() == 2
-        np.testing.assert_allclose(factors.solve(np.array([1.0, 2.0, 3.0])), [2, 1, -1.5], atol=1e-9)
-
-
-def test_singular_matrix_has_no_factor():
-    assert factorise(banded(np.diag([0.0, 1.0, 1.0]), 1)) is None
-    assert count_negatives(np.array([[-1.0, 2.0, -3.0]])) == 2

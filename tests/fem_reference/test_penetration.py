@@ -48,15 +48,6 @@ def test_augmented_lagrangian_reaches_the_requested_penetration(problem, surface
     check_penetration_and_work(augmented(problem, surface, material=material), 10, stated)
 
 
-@pytest.mark.slow
-@surfaces
-@pytest.mark.parametrize("material", fr.MATERIALS)
-@pytest.mark.parametrize(("mesh", "panels"), [((25, 2), 80), ((100, 2), 10), ((200, 4), 10)])
-def test_every_mesh_and_material_reaches_it(problem, surface, material, mesh, panels, stated):
-    """On 25 x 2 the force changes with every element that the pin passes, so that its integral takes 80 panels."""
-    check_penetration_and_work(augmented(problem, surface, material=material, mesh=mesh), panels, stated)
-
-
 def test_too_few_augmentations_are_a_status(problem):
     soft = problem(contact={"penalty": 1.0, "penetration": 1e-12}, mesh=(10, 1))
     result = fr.solve(soft, loads(4), fr.Settings(max_augmentations=1, min_step=0.1), throw=False)
@@ -83,15 +74,6 @@ def test_penetration_falls_with_the_penalty_over_ten_decades(problem, surface):
         assert result.status is fr.Status.CUTBACK_FLOOR
         assert fr.Status.TOO_DEEP.value in result.message
     assert solve(1e14).contacts[PAIR].force[-1] == pytest.approx(exact, rel=1e-8)
-
-
-@surfaces
-@pytest.mark.slow_at("axis")
-def test_default_penalty_is_as_good_as_augmented_lagrangian(problem, surface):
-    default = fr.solve(problem(contact={"surface": surface, "penalty": None}), loads(20)).contacts[PAIR]
-    exact = fr.solve(augmented(problem, surface), loads(20)).contacts[PAIR]
-    np.testing.assert_allclose(default.force, exact.force, rtol=2e-6)
-    np.testing.assert_allclose(default.arc_position, exact.arc_position, rtol=2e-6)
 
 
 def scatter(make, meshes, quantities=("force", "arc_position")):

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -63,12 +61,6 @@ def test_clamp_reaction_is_the_force_on_the_first_sections(turned):
     assert forces.M[2] - slope[0] * forces.stations[2] == pytest.approx(-support.moment[k], rel=2e-3)
 
 
-def test_sections_of_the_users_own_choice(turned):
-    own = fr.section_forces(turned, STRIP, -1, np.array([0.25, 0.251]))
-    all_ = fr.section_forces(turned, STRIP, -1)
-    np.testing.assert_allclose(own.M, np.interp(own.stations, all_.stations, all_.M), rtol=2e-3)
-
-
 def test_the_j_integral_is_the_tangential_force(turned):
     """It vanishes between clamp and contact, where the bending part alone is more than half of the contact force, and in the free tail."""
     forces, strip = fr.section_forces(turned, STRIP, -1), turned.model.problem.strips[0]
@@ -79,21 +71,3 @@ def test_the_j_integral_is_the_tangential_force(turned):
     assert np.abs(forces.material_force[inner]).max() < 1e-4 * force
     assert abs(forces.material_force[inner].mean()) < 1e-5 * force
     assert np.abs(forces.material_force[forces.stations > arc + 0.03]).max() < 1e-6 * force
-
-
-@pytest.mark.parametrize("material", ["st-venant-kirchhoff", "biot-linear", "neo-hookean"])
-def test_the_j_integral_under_an_axial_dead_load(problem, material):
-    """A bar under the force P at its end has ``H = P (1 + e) - W A`` in every section; of the law linear in Biot's strain P + P^2/2EA."""
-    pin = ((0.5, -1.0), (0.5, -0.9))
-    load = fr.EndLoad(strip=STRIP, end="end", force=(0.05, 0.0))
-    scene = problem(path=pin, material=material)
-    result = fr.solve(replace(scene, loads=(load,)), np.array([1.0]))
-    forces, strip = fr.section_forces(result, STRIP, 0), result.model.problem.strips[0]
-    H, EA = forces.material_force, strip.youngs_modulus * strip.height * strip.width
-    inner = (forces.stations > 0.1) & (forces.stations < 0.9)
-    stretch = result.tips[STRIP][0, 0] / strip.length
-    energy = 0.05**2 / (2 * EA)
-    np.testing.assert_allclose(H[inner], H[inner].mean(), rtol=1e-9)
-    assert H[inner].mean() == pytest.approx(0.05 * stretch - energy, rel=3e-4)
-    if material == "biot-linear":
-        assert H[inner].mean() == pytest.approx(0.05 + energy, rel=1e-9)

@@ -12,7 +12,7 @@ from fem_reference.model import build
 from fem_reference.state import at_rest, build_state
 from fem_reference.tangent import linearise
 from fem_reference.touch import Condition
-from fem_reference.track import accept, departure
+from fem_reference.track import accept
 from tests.fem_reference.conftest import CLAMP, NU, STRIP, B, E, loads
 
 
@@ -65,13 +65,6 @@ def test_buckling_load_does_not_depend_on_the_load_parameters(strip, material, e
     t = [result.critical[0].load_parameter for result in results]
     assert 1.3 * t[0] - 1 == pytest.approx(expected, abs=2e-6)
     np.testing.assert_allclose(t, t[0], rtol=2e-8)
-
-
-def test_first_step_past_several_critical_points_finds_the_first(strip):
-    """At 30 times the buckling load three modes are unstable: the path still ends at the first."""
-    result = fr.solve(column(strip, 30.0), loads(1), fr.Settings(first_step=0.999), throw=False)
-    assert result.status is fr.Status.BIFURCATION
-    assert 30 * result.critical[0].load_parameter == pytest.approx(1, abs=1e-4)
 
 
 def test_primary_branch_continues_and_counts_unstable_modes(strip):
@@ -188,21 +181,6 @@ def test_contact_closed_without_force_has_no_index_where_its_sides_differ(strip)
         assert linearise(model, at).index(force_tolerance=1e-12) == expected
     opened = build_state(model, u, 0.0, (Condition(),))
     assert linearise(model, opened).index() == 1
-
-
-def test_departure_measures_both_ends_and_corners(strip):
-    """The departure is zero without a step, grows with the step on a curved path, and is large after a jump."""
-    model = build(column(strip, 0.5, lateral=0.3))
-    settings = fr.Settings()
-    states = fr.solve(column(strip, 0.5, lateral=0.3), loads(10)).states
-    accepted = [accept(model, at, settings) for at in (at_rest(model), *states)]
-    short, long = departure(accepted[0], accepted[1], 1e-9), departure(accepted[0], accepted[10], 1e-9)
-    assert 0 < short < long / 5 < 0.5
-    assert departure(accepted[10], accepted[0], 1e-9) == pytest.approx(long)  # the larger of both ends
-    mirrored = states[-1].u * [1, -1]
-    jumped = accept(model, build_state(model, mirrored, 1.0, ()), settings)
-    assert departure(accepted[9], jumped, 1e-9) > 1
-    assert departure(accepted[5], accepted[5], 1e-9) == 0
 
 
 def test_end_load_is_spread_evenly_and_reacts_at_the_clamp(strip):

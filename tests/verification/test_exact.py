@@ -171,39 +171,6 @@ def test_double_beam_stages(double, stated):
     assert np.abs(double.tips["lower"][depth > 0.74] - [1.0, -0.2]).max() <= 1e-9
 
 
-@pytest.mark.parametrize("count", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 7))])
-def test_double_beam_in_few_steps(double, count):
-    """The coupled stage and the stage after the hand-over, each reached in any number of steps."""
-    for end, k in ((50, 49), (70, 69)):
-        result = tsm.solve(double_beam(), steps(count) * end / 76)
-        for name, contact in result.contacts.items():
-            assert contact.force[-1] == pytest.approx(double.contacts[name].force[k], rel=1e-9, abs=1e-12)
-        assert essentials(result) == DOUBLE_BEAM_EVENTS[: len(essentials(result))]
-
-
-@pytest.mark.slow_at("1", "5")
-@pytest.mark.parametrize("count", [1, 2, 5])
-def test_double_beam_events_do_not_depend_on_the_steps(double, count):
-    """The whole path in one step meets what 76 steps meet."""
-    result = tsm.solve(double_beam(), steps(count))
-    assert essentials(result) == DOUBLE_BEAM_EVENTS
-    assert [e.load_parameter for e in result.events] == pytest.approx(
-        [e.load_parameter for e in double.events], abs=1e-9
-    )
-
-
-def test_mixed_converges_to_exact(double):
-    """Root mean square over the coupled stage: fourth order down to 1e-7, below that slower but on to zero."""
-    stage, errors, pairs = slice(15, 53), [], (UPPER, TIP)
-    for elements in (4, 8, 32):
-        mixed = tsm.solve(double_beam("mixed", elements), steps(76)[:53])
-        found, exact = ([r.contacts[pair].force[stage] for pair in pairs] for r in (mixed, double))
-        errors.append(np.sqrt(((np.array(found) / np.array(exact) - 1) ** 2).mean(axis=1)))
-    coarse, middle, fine = np.array(errors)
-    assert (np.abs(np.log2(coarse / middle) - 4) <= 0.4).all(), errors
-    assert (fine <= 1e-8).all()
-
-
 def test_elastica_ks(stated):
     """Theory's digits: KS with stretch and shear ten decades stiffer."""
     result = tsm.solve(cantilever(KS_PATH, section=STIFF), steps(4))

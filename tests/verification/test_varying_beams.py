@@ -9,8 +9,6 @@ from scipy.integrate import quad
 
 import tsm
 from tests.verification.rod_by_shooting import Rod, free, pinned
-from tsm.elements.collocation import collocation
-from tsm.rods.shape import plain_shape
 
 E, G, WIDTH, HEIGHT = 1.2e5, 4.5e4, (0.1, 0.06), (0.1, 0.05)
 """EI is 1 at the clamp; EA is 1200."""
@@ -163,15 +161,6 @@ def test_mixed_converges_with_fourth_order_at_least(key, pin):
     assert fine <= max(coarse / 4**4, 1e-11)
 
 
-def test_too_few_mixed_elements_say_how_much_they_bend():
-    for elements in (1, 5):
-        result = tsm.solve(
-            structure(turn=5.0, element="mixed", tip=(0.0, 0.0, 0.1), elements=elements), [1.0]
-        )
-        assert result.deformation.turn[-1] == pytest.approx(5.1 / elements, rel=0.05)
-        assert (result.deformation.turn[-1] > result.deformation.bearable) == (elements == 1)
-
-
 def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
     """Tension along the clamp's normal, 40,000 EI/L^2: the layer at the clamp has the length L/200."""
     tight = {"loads": (((((0.0, 1e-3),)), 0.0, 1.0),), "tip": (0.0, 4e4, 0.0)}
@@ -184,18 +173,6 @@ def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
 
     assert status(4, "mixed") is tsm.Status.INACCURATE
     assert status(400, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
-
-
-def test_small_weight_bends_a_cantilever_by_the_eighth():
-    """``q L^4/8EI`` and the shear ``q L^2/2GA``; what is left falls with the square of the weight."""
-    given = section(0)
-    left = []
-    for weight in (1e-1, 1e-2):
-        result = tsm.solve(structure(loads=((((0.0, -weight),), 0.0, 1.0),)), [1.0])
-        linear = weight * (1 / (8 * given.EI) + 1 / (2 * given.GA))
-        left.append(abs(-result.tips["b"][-1][1] / linear - 1))
-    assert left[0] < 1e-3
-    assert math.log10(left[0] / left[1]) == pytest.approx(2.0, abs=0.01)
 
 
 def test_tapered_cantilever_with_a_flexible_root_by_quadrature():
@@ -256,52 +233,3 @@ def test_largest_span_of_a_heavy_strip_on_two_points():
         limits.append(result.critical[-1].load_parameter * weight)
     least = np.polyfit(np.array(limits) ** -0.5, spans, 3)[-1]
     assert least == pytest.approx(1 / math.e, abs=1e-6)
-
-
-@pytest.mark.parametrize("key", KEYS)
-def test_balance_of_the_material_force(key):
-    """``H = m^2/2EI + k0 m + N + N^2/2EA + Q^2/2GA`` changes by its explicit derivative: the sections', and ``- q . r'`` by the load."""
-    result = tsm.solve(structure(**KEYS[key], tip=(0.3, 0.9, -0.2)), [1.0])
-    model, state = result.model, result.equilibria[-1].state
-    shape = plain_shape(model.rods, state, model.rods.enter(state))
-    steps, rises = [], []
-    for s in range(len(shape.length)):
-        nodes = collocation(48).c
-        ends = [shape.within(s, np.array([x])) for x in (0.0, 1.0)]
-        inside = shape.within(s, nodes)
-        values = []
-        for at, part in ((ends[0], [0.0]), (inside, nodes), (ends[1], [1.0])):
-            x = (model.beams["b"].arcs[s] + shape.length[s] * np.array(part)) / model.beams["b"].beam.length
-            values.append(_material_force(KEYS[key], at, x))
-        (first, _), (_, explicit), (last, _) = values
-        steps.append(last[0] - first[0])
-        rises.append(shape.length[s] * collocation(48).w @ explicit)
-    assert np.abs(np.subtract(steps, rises)).max() <= 1e-11
-    if key == "natural curvature":
-        assert np.abs(rises).max() == 0.0
-    else:
-        assert np.abs(rises).max() > 0.1
-
-
-def _material_force(given, at, x):
-    """H, and its explicit derivative by the arc length, from a rod of unit length."""
-    specimen = rod(**given)
-    stiffness = np.array([specimen.stiffness(part) for part in x]).T
-    h = 1e-6
-    EA_slope, GA_slope, EI_slope = np.array(
-        [
-            1 / np.array(specimen.stiffness(part + h)) - 1 / np.array(specimen.stiffness(part - h))
-            for part in x
-        ]
-    ).T / (2 * h)
-    c, sn = np.cos(at.angle), np.sin(at.angle)
-    N, Q, m = at.force[:, 0] * c + at.force[:, 1] * sn, at.force[:, 1] * c - at.force[:, 0] * sn, at.moment
-    EA, GA, EI = stiffness
-    value = m**2 / (2 * EI) + specimen.turn * m + N + N**2 / (2 * EA) + Q**2 / (2 * GA)
-    load = np.zeros((len(x), 2))
-    for density, begin, end in specimen.loads:
-        load += np.array([density(part) if begin < part < end else (0.0, 0.0) for part in x])
-    along, across = 1 + N / EA, Q / GA
-    explicit = (EI_slope * m**2 + EA_slope * N**2 + GA_slope * Q**2) / 2
-    explicit -= load[:, 0] * (along * c - across * sn) + load[:, 1] * (along * sn + across * c)
-    return value, explicit

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from comparisons.accuracy import solve_to
-from comparisons.accuracy.pilot import pilot
 from comparisons.accuracy.require import without_idle
 from comparisons.accuracy.theory import beam_theory
 from comparisons.errors import difference
@@ -224,17 +223,6 @@ def test_what_a_scene_requires():
     assert "but the solid model has a full clamp at rest" in other.decisions[0]
 
 
-@pytest.mark.slow
-def test_stress_is_the_solids():
-    answer = solve_to(replace(KS, load_parameters=2), 0.05, "stress")
-    assert answer.model == "solid"
-    assert answer.reached
-    with pytest.raises(ModelError, match="beams have section forces"):
-        solve_to(KS, 0.05, "stress", model="tsm")
-    with pytest.raises(ModelError, match="is defined for a scene with one beam"):
-        solve_to(load_scene("double-beam"), 0.05, "stress")
-
-
 def test_bodies_without_a_load_path_are_left_out():
     double = load_scene("double-beam")
     idle = replace(double.beams[0], name="idle", start=(0.0, 5.0), end=(1.0, 5.0))
@@ -250,14 +238,6 @@ def test_bodies_without_a_load_path_are_left_out():
     assert without_idle(double) == (double, ())
 
 
-@pytest.mark.slow
-def test_the_solids_estimate():
-    coarse = solve_to(KS, 1e-3, model="solid")
-    fine = solve(replace(KS, load_parameters=10), "solid", Options(mesh=(200, 4)))
-    assert coarse.reached
-    assert difference(coarse.response, fine, KS, "force") <= coarse.found.estimate
-
-
 @pytest.mark.slow_at("0.01")
 @pytest.mark.parametrize("height", [0.02, 0.01])
 def test_beam_theorys_own_error(height):
@@ -271,13 +251,6 @@ def test_beam_theorys_own_error(height):
     theory = solve_to(scene, 1e-3).theory
     assert theory.slenderness == pytest.approx(height)
     assert apart / 2 <= theory.error <= 2 * apart
-
-
-def test_a_pilot_shares_its_load_parameters():
-    for count in (1, 3, 7, 8, 13, 20, 50, 96):
-        short = pilot(replace(KS, load_parameters=count))
-        assert set(short.times) <= set(replace(KS, load_parameters=count).times)
-        assert short.load_parameters >= min(8, count)
 
 
 @pytest.mark.parametrize(

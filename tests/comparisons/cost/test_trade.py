@@ -21,10 +21,8 @@ from comparisons.cost.tables import cheapest_text, setting_rows, stopped_text
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.scene import SPECIAL, load_scene, read_scene, to_toml
-from comparisons.scene.conditions import LoadSpec
+from comparisons.scene import load_scene
 from comparisons.show.pages import text
-from tests.comparisons.scene.test_special_keys import USES
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
@@ -168,25 +166,6 @@ def test_front_ends_at_the_uncertainty(trade: Trade) -> None:
     assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("key", SPECIAL)
-def test_special_keys_have_a_reference_and_errors_that_fall(key: str) -> None:
-    """What an element or a model does not state is a setting without a solution."""
-    scene = read_scene(USES[key], "s")
-    made = measure_trade(scene, beams_only, quick=True)
-    assert made.reference.uncertainty["path"]["force"] < 1e-9
-    whole = [point for point in made.points if point.case.scene.load_parameters == scene.load_parameters]
-    errors = {
-        point.case.options.elements: point.errors["path"]["force"]
-        for point in whole
-        if family(point.case) == "TSM mixed"
-    }
-    assert errors[40] < 1e-3 * errors[2]
-    assert errors[40] < 1e-4
-    stopped = {point.case.model for point in made.points if point.measured.response.status == "REFUSED"}
-    assert "elastica" in stopped
-
-
 def test_order_of_mixed_elements(trade: Trade) -> None:
     rows = {row["family"]: row for row in orders(trade, "force")}
     assert rows["TSM mixed"]["order"] == pytest.approx(4.0, abs=0.2)
@@ -282,32 +261,3 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert run("trade", "ks-cantilever", "--quick", "--out", str(tmp_path)) == 0
     assert (tmp_path / "trade.csv").read_text() == before
     assert capsys.readouterr().out == out
-
-
-@pytest.mark.slow
-def test_a_frame_of_two_beams(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    column = replace(KS.beams[0], name="column")
-    girder = replace(column, name="girder", start=(1.0, 0.0), end=(1.0, 1.0), clamped=())
-    scene = replace(
-        KS,
-        name="frame",
-        load_parameters=2,
-        beams=(column, girder),
-        pins=(),
-        contacts=(),
-        loads=(LoadSpec(beam="girder", end="end", force=(1e-4, 0.0)),),
-    )
-    path = tmp_path / "frame.toml"
-    path.write_text(to_toml(scene))
-    assert run("trade", str(path), "--quick", "--out", str(tmp_path / "out")) == 0
-    out = capsys.readouterr().out
-    assert "errors against: the exact Reissner rods" in out
-    assert (
-        "1 of 40 settings without a solution:\n  elastica [2]: REFUSED: elastica: the exact models have one beam"
-        in out
-    )
-    with (tmp_path / "out" / "trade.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    exact = [float(row["error_path_shape"]) for row in rows if row["family"] == "TSM exact"]
-    assert len(exact) > 0
-    assert max(exact) < 1e-12

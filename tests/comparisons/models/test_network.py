@@ -6,14 +6,10 @@ import numpy as np
 import pytest
 
 from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
-from comparisons.errors import errors
 from comparisons.models import TSM, solve
 from comparisons.models.network import solve_network
-from comparisons.models.options import Options
 from comparisons.models.progress import unwatched
-from comparisons.quantities import KEPT
-from comparisons.response.material import material_forces
-from comparisons.scene import Scene, load_scene
+from comparisons.scene import load_scene
 from comparisons.scene.conditions import LoadSpec, SupportSpec
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -28,26 +24,6 @@ TWO_SUPPORTS = replace(
 LOADED = replace(
     TIED, supports=(), pins=(), loads=(LoadSpec(beam="cantilever", end="end", moment=KS.beams[0].EI / 500.0),)
 )
-
-
-@pytest.mark.slow_at("ks-tied-tip")
-@pytest.mark.parametrize("scene", [KS, TIED], ids=lambda scene: scene.name)
-def test_it_is_the_rod_of_quadrature(scene: Scene) -> None:
-    network = solve_network(scene, "rod")
-    network = replace(network, material_force=material_forces(network, scene))
-    found = errors(network, solve(scene, "rod"), scene)
-    assert max(found["path"][name] for name in KEPT if not np.isnan(found["path"][name])) < 1e-10
-
-
-@pytest.mark.parametrize("scene", [TWO_SUPPORTS, LOADED], ids=["two supports", "moment"])
-def test_mixed_elements_converge_to_it(scene: Scene) -> None:
-    rods = solve(scene, "rod")
-    assert rods.completed
-    coarse, fine = (
-        errors(solve(scene, "tsm", Options(element="mixed", elements=count)), rods, scene)["path"]["tip"]
-        for count in (10, 20)
-    )
-    assert fine < max(coarse / 10.0, 1e-10)
 
 
 def test_two_beams_in_contact_are_the_coupled_rods() -> None:
