@@ -30,6 +30,8 @@ _ROUND_OFF = 1e-10
 _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 """Round-off of a force over EA, since forces follow from stretches."""
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
+DENSE = 300
+"""Number of unknowns up to which matrices are solved as full ones."""
 _NONE = np.zeros(0, dtype=np.int64)
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
@@ -296,25 +298,36 @@ def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:
 
     Rows and columns are scaled, since EI, EA and forces differ by orders of magnitude.
     """
-    hessian, gradient = system.hessian.copy(), system.gradient.copy()
-    hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
-    hessian[held, held] = 1.0
-    if not np.all(np.isfinite(hessian)) or np.any(np.abs(hessian).max(axis=1, initial=0.0) == 0.0):
+    hessian, gradient = system.hessian, system.gradient
+    if len(held):
+        hessian, gradient = hessian.copy(), gradient.copy()
+        hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
+        hessian[held, held] = 1.0
+    row, column = np.nonzero(hessian)
+    entry = hessian[row, column]
+    if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
         return None
-    scale = scales(hessian)
+    scale = scales(row, column, entry)
+    right = scale * gradient
     try:
-        return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, scale * gradient))
-    except np.linalg.LinAlgError:
+        if len(hessian) <= DENSE:
+            return np.asarray(-scale * np.linalg.solve(scale[:, None] * hessian * scale, right))
+        from scipy.sparse import coo_array
+        from scipy.sparse.linalg import splu
+
+        factors = splu(coo_array((scale[row] * entry * scale[column], (row, column))).tocsc())
+        return np.asarray(-scale * factors.solve(right))
+    except (np.linalg.LinAlgError, RuntimeError):
         return None
 
 
-def scales(matrix: Array) -> Array:
+def scales(row: NDArray[np.int64], column: NDArray[np.int64], entry: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
-    scale = np.ones(len(matrix))
-    size = np.abs(matrix)
+    scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
     for _ in range(3):
-        largest = (scale[:, None] * size * scale).max(axis=1)
-        scale = scale / np.sqrt(np.where(largest > 0.0, largest, 1.0))
+        largest = np.zeros(len(scale))
+        np.maximum.at(largest, row, scale[row] * size * scale[column])
+        scale = scale / np.sqrt(largest)
     return scale
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import fields
-from comparisons.referee.equilibrium import Solution, scales
+from comparisons.referee.equilibrium import DENSE, Solution, scales
 from comparisons.referee.layout import Part, normal
 from comparisons.referee.stations import NONE
 
@@ -23,13 +23,27 @@ def index_of(solution: Solution) -> int:
         return -1
     system = solution.system
     assert system is not None, "an equilibrium has its equations"
-    held = _directions(solution)
-    reduced = held.T @ system.hessian @ held
-    scale = scales(reduced)
-    values = np.linalg.eigvalsh(scale[:, None] * reduced * scale)
+    held, reduced = _directions(solution), system.hessian
+    if held is not None:
+        reduced = held.T @ reduced @ held
+    row, column = np.nonzero(reduced)
+    scale = scales(row, column, reduced[row, column])
     inside = np.linalg.eigvalsh(system.blocks)
-    negatives = int((values < 0.0).sum() + (inside < 0.0).sum())
+    negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
     return negatives - 2 * len(solution.layout.parts)
+
+
+def _negatives(matrix: Array) -> int:
+    """Number of negative eigenvalues; of large matrices by Sylvester's law of inertia from ``L D L^T``."""
+    if len(matrix) <= DENSE:
+        return int((np.linalg.eigvalsh(matrix) < 0.0).sum())
+    from scipy.linalg import ldl
+
+    pivots = ldl(matrix)[1]
+    # a block of two pivots has one eigenvalue of either sign
+    blocks = np.diag(pivots, 1) != 0.0
+    single = ~(np.append(blocks, False) | np.append(False, blocks))
+    return int((np.diag(pivots)[single] < 0.0).sum() + blocks.sum())
 
 
 def orientation_of(solution: Solution) -> int:
@@ -40,9 +54,11 @@ def orientation_of(solution: Solution) -> int:
     return int(np.prod(np.sign(signs)))
 
 
-def _directions(solution: Solution) -> Array:
-    """Admissible variations as columns; the angles phi follow with ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
+def _directions(solution: Solution) -> Array | None:
+    """Admissible variations as columns, None if all are; the angles phi follow with ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
     layout, z = solution.layout, solution.z
+    if all(touch.angle == NONE for touch in layout.touches):
+        return None
     size = solution.mesh.unknowns
     free = np.eye(size)
     angles = []

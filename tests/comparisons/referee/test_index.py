@@ -1,6 +1,7 @@
 """The referee's index against buckling loads, folds and units; its answer where there are many contacts, and on finer meshes."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -66,6 +67,28 @@ def critical(ends: str, mode: int) -> float:
 def test_the_index_grows_by_one_at_every_buckling_load_to_1e_10(ends: str, mode: int) -> None:
     load = critical(ends, mode)
     assert [column(ends, load * part).index for part in (1.0 - 1e-10, 1.0 + 1e-10)] == [mode - 1, mode]
+
+
+@pytest.mark.parametrize("part", [1.0 - 1e-8, 1.0 + 1e-8])
+@pytest.mark.parametrize("mode", [1, 3])
+def test_the_index_of_many_beams_is_that_of_one(mode: int, part: float) -> None:
+    """A column of 120 beams, whose equations are solved and counted as nearly empty ones."""
+    load, ends = part * critical("clamped-free", mode), np.linspace(0.0, 1.0, 121)
+    section = {"area": EA, "shear_area": GA, **SECTION}
+    beams = tuple(
+        BeamSpec(name=f"b{k}", start=(a, 0.0), end=(b, 0.0), clamped=() if k else ("start",), **section)
+        for k, (a, b) in enumerate(pairwise(ends.tolist()))
+    )
+    push = LoadSpec(beam="b119", end="end", force=(-load, 0.0))
+    scene = Scene(name="column", load_parameters=1, beams=beams, loads=(push,))
+    short = 1.0 - load / EA
+    axes = {
+        spec.name: (np.array([0.0, spec.length]), short * np.array([spec.start, spec.end])) for spec in beams
+    }
+    given = AnswerState(load_parameter=1.0, arcs={}, forces={}, axes=axes, reactions={}, tips={})
+    exact = equilibrium(scene, given)
+    assert exact.status is SearchStatus.FOUND
+    assert exact.index == mode - (part < 1.0)
 
 
 def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, AnswerState]:
