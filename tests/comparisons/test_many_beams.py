@@ -80,7 +80,7 @@ def test_a_long_chain_is_bent_in_few_iterations() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", MANY)
 def test_many_beams_are_solved_from_the_command_line(kind: str, tmp_path: Path) -> None:
-    """A thousand in a frame, the kind with most joints; `make bench` measures thousands of every kind."""
+    """Six hundred in a frame, the kind with most joints; `make bench` measures thousands of every kind."""
     file = tmp_path / "many.toml"
-    file.write_text(MANY[kind](1000 if kind == "frame" else 400))
+    file.write_text(MANY[kind](600 if kind == "frame" else 150))
     assert main(["solve", str(file), "--model", "tsm", "--quiet"]) == 0

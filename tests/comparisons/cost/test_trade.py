@@ -41,12 +41,6 @@ def few(cases: Sequence[Case]) -> dict[Case, Measurement]:
     }
 
 
-def beams_only(cases: Sequence[Case]) -> dict[Case, Measurement]:
-    """Measure all models but the solid, which stops by name."""
-    stopped = changed(measured(cases[0]), status="LEFT_OUT", completed=False)
-    return {case: stopped if case.model == "solid" else measured(case) for case in cases}
-
-
 def changed(measurement: Measurement, **response: object) -> Measurement:
     return replace(measurement, response=replace(measurement.response, **response))  # type: ignore[arg-type]
 

@@ -9,9 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from comparisons.exact.elastica import fold_angle
-from comparisons.models import solve
-from comparisons.models.options import Options
-from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec
 
 GA, EA = 50.0, 400.0
@@ -147,35 +145,3 @@ def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(beyond: float, index:
     assert exact.status is SearchStatus.FOUND
     assert exact.contacts["p->b"].push > 0.0
     assert exact.index == index
-
-
-CROWD = Scene(
-    name="crowd",
-    load_parameters=4,
-    beams=(
-        BeamSpec(
-            name="b", start=(0.0, 0.0), end=(11.0, 0.0), clamped=("start", "end"), width=0.2, height=0.1,
-            youngs_modulus=1e7, poissons_ratio=0.3,
-        ),
-    ),
-    pins=tuple(
-        PinSpec(name=f"p{k}", start=(k + 0.03 * math.sin(k), 0.05 * (-1) ** k), displacement=(0.05, -0.12 * (-1) ** k))
-        for k in range(1, 11)
-    ),
-    contacts=tuple(
-        ContactSpec(node=f"p{k}", beam="b", side="left" if k % 2 == 0 else "right", surface="face") for k in range(1, 11)
-    ),
-)  # fmt: skip
-"""Ten pins on both sides of one beam, in turn."""
-
-
-def test_ten_contacts() -> None:
-    answer = solve(CROWD, "tsm", Options(element="exact"))
-    assert answer.completed, answer.message
-    exact = equilibrium(CROWD, answer_state(answer, CROWD, -1))
-    assert exact.status is SearchStatus.FOUND
-    assert len(exact.contacts) == 10
-    assert exact.index == 0
-    for pair, here in exact.contacts.items():
-        assert here.push == pytest.approx(answer.contacts[pair].force[-1], rel=1e-8)
-        assert abs(here.drag) < 1e-10 * here.push

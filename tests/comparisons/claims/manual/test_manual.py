@@ -11,11 +11,9 @@ import numpy as np
 import pytest
 
 from comparisons.claims.claim import Allowance, Quantity, StoppedError, Verdict
-from comparisons.claims.junit import JUnitCase, junit_text
 from comparisons.claims.manual import Case, Problem, Trial, write_manual
 from comparisons.claims.manual import problems as manual_problems
 from comparisons.claims.manual.elastica import identity
-from comparisons.claims.manual.frames import toggle
 from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.loads import dead_load, roll_up
 from comparisons.claims.manual.pictures import STYLES
@@ -24,7 +22,6 @@ from comparisons.claims.manual.record import Curve, Measured, Picture
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.claims.manual.text import junit_cases, markdown
 from comparisons.cli import main
-from comparisons.files import OutputError
 from comparisons.models import solve
 from comparisons.scene import Scene, load_scene
 
@@ -93,26 +90,6 @@ def test_a_failure_names_the_worst_quantity_with_its_numbers():
 def test_a_model_must_answer_every_quantity():
     with pytest.raises(ValueError, match="argument 2 is shorter"):
         judged((2.0,))
-
-
-def test_junit_is_well_formed_whatever_the_text():
-    odd = JUnitCase(classname="a<b", name='"c" & d', seconds=0.25, failure="x > y & |z| < 1")
-    text = junit_text("s", (case for case in (odd, JUnitCase(classname="a", name="b", seconds=0.5))))
-    root = ET.fromstring(text)  # noqa: S314 our own text
-    assert text.startswith('<?xml version="1.0" encoding="utf-8"?>\n')
-    assert (root.tag, root.get("name"), root.get("tests"), root.get("failures")) == (
-        "testsuite",
-        "s",
-        "2",
-        "1",
-    )
-    assert float(root.get("time", "nan")) == 0.75
-    first, second = root.findall("testcase")
-    assert (first.get("classname"), first.get("name")) == ("a<b", '"c" & d')
-    found = first.find("failure")
-    assert found is not None
-    assert found.get("message") == "x > y & |z| < 1"
-    assert second.find("failure") is None
 
 
 def test_one_junit_check_for_each_case_and_model():
@@ -208,20 +185,6 @@ def test_a_name_that_no_problem_has_is_bad_input(tmp_path: Path, capsys):
     assert not (tmp_path / "m").exists()
 
 
-@pytest.mark.parametrize("option", ["--out", "--junit"])
-def test_a_place_that_cannot_be_written_in_is_told_before_anything_is_solved(
-    option: str, tmp_path: Path, monkeypatch, capsys
-):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(manual_problems, "PROBLEMS", {"none": pytest.fail})
-    (tmp_path / "file").write_text("kept")
-    assert main(["manual", option, "file/below"]) == 2
-    assert len(capsys.readouterr().err.splitlines()) == 1
-    assert (tmp_path / "file").read_text() == "kept"
-    with pytest.raises(OutputError, match="cannot be written"):
-        write_manual(tmp_path / "file", pytest.fail, QUICK)
-
-
 def test_a_scene_that_is_moved_is_the_scene():
     """Turned by a quarter, mirrored, reversed: beams, pins and sides are where they must be."""
     scene = ks("ks-face", 4)
@@ -236,17 +199,6 @@ def test_a_scene_that_is_moved_is_the_scene():
     moments = [solve(one, "rod").supports["cantilever.start"].moment for one in (scene, turned, image)]
     assert moments[1] == pytest.approx(moments[0], rel=1e-9)
     assert moments[2] == pytest.approx(-moments[0], rel=1e-12)
-
-
-def test_a_limit_that_is_not_reached_is_named(monkeypatch):
-    """A path that ends before its second limit point."""
-    from comparisons.claims.manual import frames
-
-    short = frames.Path
-    monkeypatch.setattr(frames, "Path", lambda **given: short(**{**given, "steps": 4}))
-    case, _ = answered(toggle(), "t.svg")
-    assert not case.passed
-    assert all("0 limit points of 2" in item.stopped for item in case.judgements)
 
 
 FAST = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.claims.paper.approach import NEAREST, Approach, approaches
-from comparisons.claims.paper.critical_area import SCENE, CriticalAreas, Measured
+from comparisons.claims.paper.critical_area import SCENE
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 
@@ -38,16 +38,3 @@ def test_the_way_ends_where_the_pin_slips_off():
     assert 1.8 * last.load_parameter[-1] == pytest.approx(1.4716026278, rel=2e-5)
     assert np.all(np.diff(last.load_parameter) > 0)
     assert np.all(np.diff(last.ratio) < 0)
-
-
-def test_contact_inside_the_last_element_meets_only_the_tip():
-    assert [way.node for way in ways("timoshenko", 1e-8, start=4.4)] == [4.5]
-
-
-def test_no_equilibrium_is_a_whole_element():
-    measured = Measured(
-        element="timoshenko", start=4.05, tolerance=1e-9, node=4.25,
-        displacement=np.zeros(0), ratio=np.zeros(0), smallest=np.nan,
-    )  # fmt: skip
-    found = CriticalAreas(tolerances=(1e-9,), measured=(measured,), floors=())
-    assert found.areas("timoshenko", 1e-9) == pytest.approx([1.0])

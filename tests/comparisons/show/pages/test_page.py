@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons.cli import main
 from comparisons.errors import error_histories, errors
 from comparisons.models import MODELS, solve
 from comparisons.response import SLIPS
 from comparisons.scene import load_scene
-from comparisons.show.pages import Section, motion_section, page, picture, table, tracks
+from comparisons.show.pages import Section, motion_section, page, table, tracks
 from comparisons.show.pages.states import band, states_section
 from comparisons.show.palette import colour
 from tests.comparisons.show.pages.markup import block, check_alone
@@ -104,12 +103,6 @@ def test_the_page_begins_with_the_findings(compared: Path) -> None:
     assert lead[1].endswith("The referee certified every answer.")
 
 
-@pytest.mark.slow
-def test_the_page_of_ks_is_small(tmp_path: Path) -> None:
-    assert main(["compare", "ks-cantilever", "--out", str(tmp_path)]) == 0
-    assert 3e5 < (tmp_path / "report.html").stat().st_size < 3e6
-
-
 def test_bands_of_stick_and_slip_differ_without_colour() -> None:
     """The slip to the start is hatched."""
     scene = replace(load_scene("ks-friction"), load_parameters=4)
@@ -137,16 +130,6 @@ def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
     assert "<td>0.123</td>" in html
     assert "<td>-</td>" in html
     assert block(html) == {"data": {"text": "</script><b>", "nan": [None, 1.0]}}
-
-
-def test_sections_of_one_title_are_refused() -> None:
-    with pytest.raises(ValueError, match="different titles"):
-        page("t", "", [Section(title="Same", html=""), Section(title="same!", html="")])
-
-
-def test_a_picture_is_part_of_the_page(tmp_path: Path) -> None:
-    (tmp_path / "a.svg").write_text("<svg/>")
-    assert 'src="data:image/svg+xml;base64,PHN2Zy8+"' in picture(tmp_path / "a.svg", "what")
 
 
 def test_a_run_that_stopped_is_shown_as_far_as_it_came() -> None:
