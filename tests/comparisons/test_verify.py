@@ -175,6 +175,19 @@ def test_a_motion_below_the_resolution_is_refused(model: str) -> None:
     assert "pin moves by 1e-18" in response.message
 
 
+def test_a_round_pin_that_rubs_is_in_balance() -> None:
+    """Its tangential force acts on its surface, with a moment about its centre that statics alone would not see the sign of."""
+    beam = replace(SCENE.beams[0], width=0.1, height=0.1)
+    pin = PinSpec(name="pin", path=((0.7, -0.1), (0.69, -0.05)), radius=0.1)
+    contact = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
+    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(contact,), load_parameters=1)
+    response = solve(scene, "tsm", Options(element="exact"))
+    assert response.completed, response.message
+    rubs = response.contacts["pin->cantilever"].friction
+    assert rubs is not None
+    assert abs(rubs.tangential[-1]) > 0.1 * response.contacts["pin->cantilever"].force[-1]
+
+
 def test_what_is_round_off_has_the_units_of_its_quantity() -> None:
     """A metre is a thousand millimetres, and so is every length, with the force left as it is."""
     unit = 1e3

@@ -9,6 +9,8 @@ import pytest
 
 import tsm
 from tests.tsm.structures import SECTION, cantilever
+from tsm.elements.curve import Curve
+from tsm.projection import Projection
 
 
 def kinds(result):
@@ -236,6 +238,50 @@ def test_two_pins_on_one_beam():
     assert result.contacts["q->b"].force[-1] > 0
     total = -result.supports["b.start"].force[-1]
     assert np.hypot(*total) < result.contacts["p->b"].force[-1]
+
+
+def test_projection_is_the_closest_point():
+    """Against a search over a fine division of the elements' curves."""
+    structure = cantilever(((0.8, 0.0), (0.8, 0.3)))
+    result = tsm.solve(structure, TENTHS)
+    model, state = result.model, result.equilibria[-1].state
+    pair, xi = model.pairs[0], np.linspace(0, 1, 2001)
+    lines = []
+    for e in range(10):
+        x = state.q[model.dofs[:, e]]
+        curve = Curve(model.element[e], x)
+        d = np.array([curve.dx, curve.dy])
+        across = np.outer(curve.deflection(xi)[0], (-d[1], d[0]))
+        lines.append(model.element_start[e] + x[:2] + np.outer(xi, d) + across)
+    arc, xy = np.add.outer(np.arange(10), xi).ravel() / 10, np.concatenate(lines)
+    for target in ((0.5, -0.3), (0.3, 0.5), (0.9, 0.0)):
+        moved = tsm.Pin(name="p", path=(target, (9.0, 9.0)))
+        seen = pair.group.project(
+            replace(pair, pin=moved), replace(state, load_parameter=0.0, touches=(None,))
+        )
+        distance = np.hypot(*(xy - np.array(target)).T)
+        nearest = int(np.argmin(distance))
+        assert abs(seen.gap) == pytest.approx(distance[nearest], abs=1e-7)
+        assert (seen.element + seen.xi) / 10 == pytest.approx(arc[nearest], abs=1e-3)
+        assert isinstance(seen, Projection)
+
+
+@pytest.mark.parametrize("elements", [1, 3])
+def test_projection_on_exact_elements_is_the_closest_point(elements):
+    """On a beam rolled up to three quarters of a circle, from points nearest to any part of it."""
+    turn = 1.5 * np.pi
+    radius = 1 / turn
+    apart = cantilever(((2.0, 0.0), (2.0, 0.1)), elements=elements, element="exact")
+    rolled = replace(apart, loads=(tsm.Load(beam="b", end="end", moment=turn * SECTION.EI),))
+    result = tsm.solve(rolled, TENTHS)
+    model, state = result.model, result.equilibria[-1].state
+    for angle in turn * np.array([0.02, 0.2, 0.45, 0.7, 0.97]):
+        for distance in (0.3 * radius, 1.1 * radius):
+            point = distance * np.sin(angle), radius - distance * np.cos(angle)
+            pair = replace(model.pairs[0], pin=tsm.Pin(name="p", path=(point, (9.0, 9.0))))
+            seen = pair.group.project(pair, replace(state, load_parameter=0.0))
+            assert (seen.element + seen.xi) / elements == pytest.approx(angle / turn, abs=1e-9)
+            assert seen.gap == pytest.approx(distance - radius, abs=1e-9)
 
 
 def test_bad_structures_are_refused():

@@ -39,7 +39,7 @@ def test_the_tangent_is_the_derivative(name: str) -> None:
 
     Unknowns inside exact elements follow the others to second order, so central differences see the condensed tangent.
     """
-    result = tsm.solve(SCENES[name](), np.array([0.4, 0.64, 0.9]))
+    result = tsm.solve(SCENES[name](), np.array([0.4, 0.64]))
     newton = Newton(Model(result.model.structure), tsm.Settings())
     model = newton.model
     for equilibrium in result.equilibria:
@@ -47,7 +47,7 @@ def test_the_tangent_is_the_derivative(name: str) -> None:
         assert any(state.touches)
         system = newton.assembler.linearise(state)
         matrix = newton.assembler.whole(system.tangent).toarray() / model.row_units[:, None] * model.units
-        for seed in range(3):
+        for seed in range(2):
             way = np.random.default_rng(seed).standard_normal(len(model.units))
             dt = 0.0 if seed else 1.0
             ends = [

@@ -77,6 +77,7 @@ def test_families_are_refined_alike() -> None:
     assert {family(case) for case in beams} == {"TSM mixed"}
 
 
+@pytest.mark.slow
 def test_the_rod_is_the_reference_and_exact_elements_agree(trade: Trade) -> None:
     assert trade.reference.name == "exact rod"
     assert trade.reference.uncertainty["path"]["force"] < 1e-10
@@ -99,6 +100,7 @@ def test_two_beams_have_the_exact_rods_as_reference_and_none_if_these_stop() -> 
         best_reference(scene, {case: changed(one, completed=False) for case, one in found.items()})
 
 
+@pytest.mark.slow
 def test_what_stopped_is_listed_and_not_ranked(trade: Trade) -> None:
     assert "LEFT_OUT" in {point.measured.response.status for point in trade.stopped}
     assert len(setting_rows(trade)) == len(trade.points)
@@ -135,6 +137,7 @@ def synthetic(trade: Trade) -> Trade:
     return replace(trade, points=points, limit=replace(trade.reference, uncertainty=known))
 
 
+@pytest.mark.slow
 def test_cheapest_settings_and_their_ratio(trade: Trade) -> None:
     made = synthetic(trade)
     path = [cheapest(made, "path", "force", target) for target in TARGETS]
@@ -152,6 +155,7 @@ def test_cheapest_settings_and_their_ratio(trade: Trade) -> None:
     assert cheapest(made, "end", "force", 1e-3).ratio == 2.5
 
 
+@pytest.mark.slow
 def test_front_ends_at_the_uncertainty(trade: Trade) -> None:
     made = synthetic(trade)
     beams = front(made, "tsm", "path", "force", "seconds")

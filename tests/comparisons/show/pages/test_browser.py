@@ -14,6 +14,7 @@ from comparisons.show.pages import Section, motion_section, page, tracks
 from tests.comparisons.show.pages.conftest import STEPS, Browser
 from tests.comparisons.show.specimen import SPECIMEN
 
+pytestmark = pytest.mark.slow
 MOVED = SupportSpec(beam="hook", end="start", kind="clamped", displacement=(0.0, 3.0))
 
 HELPERS = """
