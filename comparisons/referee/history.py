@@ -80,7 +80,7 @@ class History:
         self._followed: set[tuple[str, int, float]] = set()
         """Where sticks began, the places up to which they were followed, and from where they were."""
         changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
-        times = sorted([0.0, *changes, *corners(scene), float(response.load_parameter[-1])])
+        times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
         self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
         self._sought: set[tuple[str, int]] = set()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 import time
@@ -17,12 +18,30 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.translate import to_solid, to_structure
 from comparisons.referee import answer_state, certify, equilibrium
-from comparisons.scene import load_scene
+from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from fem_reference.tangent import linearise
 from tests.benchmarks.measure import Gate, seconds
-from tests.comparisons.referee.test_index import CROWD
 from tests.fem_reference import bilinear_reference as forms
 from tsm import path
+
+CROWD = Scene(
+    name="crowd",
+    load_parameters=4,
+    beams=(
+        BeamSpec(
+            name="b", start=(0.0, 0.0), end=(11.0, 0.0), clamped=("start", "end"), width=0.2, height=0.1,
+            youngs_modulus=1e7, poissons_ratio=0.3,
+        ),
+    ),
+    pins=tuple(
+        PinSpec(name=f"p{k}", start=(k + 0.03 * math.sin(k), 0.05 * (-1) ** k), displacement=(0.05, -0.12 * (-1) ** k))
+        for k in range(1, 11)
+    ),
+    contacts=tuple(
+        ContactSpec(node=f"p{k}", beam="b", side="left" if k % 2 == 0 else "right", surface="face") for k in range(1, 11)
+    ),
+)  # fmt: skip
+"""Ten pins on both sides of one beam, in turn."""
 
 
 def index_and_certificate(gates: list[Gate], times: dict[str, float]) -> None:
@@ -140,7 +159,7 @@ PEAK = """
 import resource
 import numpy as np
 import fem_reference
-from comparisons.scene import load_scene
+from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene, load_scene
 from comparisons.models.translate import to_solid
 fem_reference.solve(to_solid(load_scene("ks-cantilever"), mesh=(1000, 20)), np.array([0.02]))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
@@ -65,6 +66,40 @@ def test_work_of_loads_along_the_beam_is_the_strain_energy():
     (group,) = result.model.groups
     full = np.array([group.load_work(e.state) / e.state.load_parameter for e in result.equilibria])
     assert result.strain_energy[-1] == pytest.approx(full[-1] - weight @ full[:-1] / 2, rel=1e-11)
+
+
+def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
+    """A bar pushed down through its support by a free mast: the load on the mast does the same work as one on the bar."""
+    section, load, high = tsm.Section(EA=100.0, GA=40.0, EI=30.0), 5.0, 0.4
+    whole = math.hypot(1.0, high)
+
+    def force(y):
+        return section.EA * (1.0 / math.hypot(1.0, y) - 1.0 / whole) * y
+
+    def potential(y):
+        return section.EA / (2 * whole) * (math.hypot(1.0, y) - whole) ** 2 + limit * (y - high)
+
+    fold = math.sqrt(whole ** (2 / 3) - 1)
+    limit = force(fold)
+    rest = brentq(lambda y: force(y) - limit, -3.0, -high, xtol=1e-14)
+    structure = tsm.Structure(
+        beams=(
+            tsm.Beam(name="bar", start=(0, 0), end=(1, high), element="exact", section=section, elements=1),
+            tsm.Beam(
+                name="mast", start=(1, high), end=(1, 1 + high), element="exact", section=section, elements=1
+            ),
+        ),
+        supports=(
+            tsm.Support(beam="bar", end="start", rotation=None),
+            tsm.Support(beam="mast", end="start", uy=None),
+        ),
+        hinges=(tsm.Hinge(beam="bar", end="end"),),
+        line_loads=(tsm.LineLoad(beam="mast", force=((0.0, -load),)),),
+    )
+    (snap,) = tsm.solve(structure, np.linspace(0.1, 1, 5), tsm.Settings(branch="stable")).events
+    assert snap.load_parameter * load == pytest.approx(limit, rel=1e-8)
+    # the fall begins a little beyond the limit
+    assert snap.released == pytest.approx(potential(fold) - potential(rest), rel=1e-3)
 
 
 @pytest.mark.slow

@@ -53,6 +53,20 @@ def test_it_ends_where_the_path_ends() -> None:
     assert not rods.index.any()
 
 
+def test_it_may_end_before_the_first_load_parameter() -> None:
+    """The strut buckles at once, beside a contact with friction that is still open."""
+    beam = KS.beams[0]
+    load = LoadSpec(beam=beam.name, end="end", force=(-beam.EI * (10.0 / beam.length) ** 2, 0.0))
+    aside = replace(KS.pins[0], start=(0.5 * beam.length, -beam.length))
+    rubbing = tuple(replace(spec, friction=0.3) for spec in KS.contacts)
+    scene = replace(KS, pins=(aside,), contacts=rubbing, loads=(load,), load_parameters=2)
+    rods = solve(scene, "rod")
+    assert (rods.status, rods.completed, len(rods.load_parameter)) == ("BIFURCATION", False, 0)
+    friction = rods.contacts[PAIR].friction
+    assert friction is not None
+    assert len(friction.dissipated) == 0
+
+
 def test_an_answer_that_the_referee_refuses_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The forces of the third load parameter have the wrong sign: two equilibria are left."""
     answer = TSM.solve(TWO_SUPPORTS, TSM.reference, unwatched)
