@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems.frames import LEE_UNIT, lee_limit, lee_scene, toggle_limits, toggle_scene
+from comparisons.claims.problems.frames import LEE_LIMIT, LEE_UNIT, TOGGLE_LIMITS, lee_scene, toggle_scene
 from tests.verification.structures import cantilever, divided, limit_points, moved, swapped
 
 STIFF = tsm.Section(EA=1e8, GA=1e8, EI=1.0)
@@ -43,7 +43,7 @@ def test_roll_up(turns, stated):
 def test_lees_frame(stated):
     """Limit load P L^2/EI = 18.557 (Lee, Manuel & Rossow 1968; Simo & Vu-Quoc 1986 give 18.532 kN/10); snaps through and back."""
     found = [limit_points(divided(lee_scene(), n), 0.3, 120)[0] * 0.1 * LEE_UNIT for n in (4, 8, 16)]
-    assert found[-1] == pytest.approx(lee_limit(), rel=1e-6)
+    assert found[-1] == pytest.approx(LEE_LIMIT, rel=1e-6)
     stated("lee.mixed", found[-1])
     assert found[-1] == pytest.approx(18.557, rel=1e-3)  # the literature's
     assert np.diff(found) == pytest.approx(0, abs=3e-3)
@@ -54,7 +54,7 @@ def test_lees_frame(stated):
 def test_williams_toggle(stated):
     """Both limit points, 33.87 near v = .235 and 31.28 near v = .39 (Wood & Zienkiewicz 1977, by finite elements)."""
     found = [limit_points(divided(toggle_scene(), n), 0.01, 60) for n in (8, 16)]
-    assert found[-1] == pytest.approx(toggle_limits(), rel=1e-5)
+    assert found[-1] == pytest.approx(TOGGLE_LIMITS, rel=1e-5)
     stated("toggle.mixed", *found[-1])
     assert found[-1] == pytest.approx([33.87, 31.28], rel=1e-3)  # the literature's
     assert found[0] == pytest.approx(found[1], rel=1e-3)

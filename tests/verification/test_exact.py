@@ -7,7 +7,7 @@ import pytest
 
 import tsm
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths, single
-from comparisons.claims.problems.frames import LEE_UNIT, lee_limit, lee_scene
+from comparisons.claims.problems.frames import LEE_LIMIT, LEE_UNIT, lee_scene
 from comparisons.exact import elastica
 from comparisons.exact.end_loads import tip_under_dead_load
 from comparisons.models import solve as solve_scene
@@ -256,7 +256,7 @@ def test_lees_frame(stated):
     found = limit_load("exact", 1)
     assert found == pytest.approx(limit_load("exact", 1, 1e-13), rel=1e-8)
     assert found == pytest.approx(limit_load("exact", 4), rel=1e-8)
-    assert found == pytest.approx(lee_limit(), abs=1e-8)
+    assert found == pytest.approx(LEE_LIMIT, abs=1e-8)
     stated("lee.exact", found)
     coarse, fine = limit_load("mixed", 8), limit_load("mixed", 16)
     assert abs(found - fine) <= 1e-5

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
-from comparisons.claims.problems.frames import exact_path, toggle_scene
+from comparisons.claims.problems.frames import toggle_scene
 from comparisons.exact.elastica import elastica_under_pin
 from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.rod import rod_under_pin
@@ -14,6 +14,7 @@ from comparisons.exact.tied import rod_with_tied_tip
 from comparisons.models import solve
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from tests.oracles.frames import toggle
 
 STIFF = 1e10 * 12.0 / 0.02**2
 """EA and GA over EI: KS's times 1e10, the elastica."""
@@ -157,7 +158,7 @@ def test_a_toggle_beyond_its_limit_to_1e_11(deflection: float) -> None:
     frame = toggle_scene()
     apex = frame.beams[0].end
     span, rise = apex
-    load = exact_path(frame, tuple(np.linspace(0.0, deflection, 11)[1:].tolist()))[-1, 1]
+    load = toggle().load(np.linspace(0.0, deflection, 11)[1:])[-1]
     scene = replace(frame, load_parameters=1, loads=(replace(frame.loads[0], force=(0.0, -float(load))),))
     arc, x = np.linspace(0.0, np.hypot(span, rise), 41), np.linspace(0.0, 1.0, 41)
     smooth = x**2 * (3.0 - 2.0 * x)

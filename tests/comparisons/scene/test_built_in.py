@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.exact.chain import Chain, load_path
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
 from comparisons.response import Response
 from comparisons.scene import Scene, built_in_scenes, load_scene
+from tests.oracles.frames import Frame
 from tests.verification.rod_by_shooting import Rod, free, pinned
 from tsm.elements import EXACT, MIXED
 
@@ -222,8 +222,8 @@ def test_crossed_beams_with_an_upright_strut() -> None:
     )
     (contact,) = answer(upright).contacts.values()
     joints = ((0.0, 0.0), (100.0, 0.0), (200.0, 0.0))
-    chain = Chain(joints=joints, loaded=1, clamped=True, EA=lower.EA, GA=lower.GA, EI=lower.EI)
-    down_to = [0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5]
+    frame = Frame(joints=joints, loaded=1, clamped=True, EA=lower.EA, GA=lower.GA, EI=lower.EI)
+    down_to = [0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 1.75]
     sunk = down - contact.force[-1] * 99.0 / upper.EA
-    assert contact.force[-1] == pytest.approx(load_path(chain, [*down_to, sunk])[-1], rel=1e-9)
+    assert contact.force[-1] == pytest.approx(frame.load([*down_to, sunk])[-1], rel=1e-9)
     assert contact.arc_position[-1] == pytest.approx(100.0, abs=1e-9)

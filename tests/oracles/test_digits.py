@@ -1,0 +1,24 @@
+"""The exact values that the manual states are computed anew by oracles, which share nothing with the models."""
+
+from collections.abc import Callable, Sequence
+
+import pytest
+
+# the table of problems, whose stated digits are the subject
+from comparisons.claims.manual.problems import PROBLEMS
+from tests.oracles import frames
+
+ORACLES: dict[str, Callable[[], Sequence[float]]] = {
+    "lees-frame": lambda: [frames.lee_limit()],
+    "williams-toggle": frames.toggle_limits,
+    "portal-frame": lambda: [frames.portal_sway()],
+}
+"""The exact values of problems, in order."""
+
+
+@pytest.mark.parametrize("name", ORACLES)
+def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:
+    problem = PROBLEMS[name]()
+    for quantity, value in zip(problem.quantities, ORACLES[name](), strict=True):
+        scale = abs(quantity.exact) if quantity.scale is None else quantity.scale
+        assert abs(value - quantity.exact) <= problem.uncertainty * scale, quantity.name
