@@ -29,7 +29,7 @@ MODELS = {
     "solid": ("--model", "solid"),
 }
 SOURCES = {
-    "clamped-column": "tests/comparisons/exact/test_end_loads.py, Reissner's column by quadrature",
+    "clamped-column": "tests/oracles/elastica.py, the elastica by elliptic integrals",
     "double-beam": "tests/comparisons/exact/test_coupled.py, two rods by quadrature",
     "heavy-strip": "tests/verification/rod_by_shooting.py, shooting",
     "hinged-truss": "tests/comparisons/scene/test_built_in.py, closed form",
@@ -39,7 +39,7 @@ SOURCES = {
     "sleeve": "tests/comparisons/scene/test_built_in.py, closed form",
     "straightened-arc": "tests/comparisons/scene/test_built_in.py, closed form",
     "tapered-spring": "tests/verification/rod_by_shooting.py, shooting",
-    "tip-load": "tests/comparisons/exact/test_end_loads.py, Reissner's column by quadrature",
+    "tip-load": "tests/oracles/elastica.py, the elastica by elliptic integrals",
 }
 """The scenes, each with the program that redoes its digits beside the referee, whose answer stands in its file."""
 SLOW = {"clamped-column", "double-beam", "hysteresis-stages", "ks-friction", "tapered-spring"}

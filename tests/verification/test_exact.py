@@ -9,10 +9,10 @@ import tsm
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths, single
 from comparisons.claims.problems.frames import LEE_LIMIT, LEE_UNIT, lee_scene
 from comparisons.exact import elastica
-from comparisons.exact.end_loads import tip_under_dead_load
 from comparisons.models import solve as solve_scene
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
+from tests.oracles.elastica import tip_under_dead_load
 from tests.verification.structures import (
     KS,
     KS_PATH,

@@ -11,7 +11,6 @@ from comparisons.claims.claim import Allowance, Finding
 from comparisons.claims.extremes.allowance import LARGEST, allowance
 from comparisons.claims.extremes.units import in_units_of
 from comparisons.errors import difference
-from comparisons.exact.end_loads import tip_under_moment
 from comparisons.models import MODELS, TSM
 from comparisons.models.theory import FLOOR, bending, chord_term, element_lengths, ordinal
 from comparisons.response import Array, Response
@@ -131,18 +130,17 @@ class Circle:
     def finding(self, case: Case, own: Response, _: Results) -> Finding:
         """Return the largest error of the tip's position over the length."""
         beam, load = case.scene.beams[0], case.scene.loads[0]
-        exact = [
-            tip_under_moment(load.moment * float(t), EI=beam.EI, length=beam.length)
-            for t in own.load_parameter
-        ]
-        error = float(np.hypot(*(own.tips[beam.name] - np.array(exact)).T).max(initial=0.0)) / beam.length
+        angle = load.moment * beam.length / beam.EI * own.load_parameter
+        half = angle / (2.0 * np.pi)
+        exact = np.stack([np.sinc(2.0 * half), np.sin(angle / 2.0) * np.sinc(half)], axis=1)
+        error = float(np.hypot(*(own.tips[beam.name] / beam.length - exact).T).max(initial=0.0))
         longest = element_lengths(case.scene, case.options)[0]
         turn = load.moment * longest * beam.length / beam.EI * own.load_parameter
         kind = TSM.element(case.options)
         term, why = 0.0 * turn, "accuracy of the integration"
         if isinstance(kind, ClosedForm):
             term, why = chord_term(turn, kind.order), f"{ordinal(kind.order)} order of the element"
-        distance = np.hypot(*np.array(exact).reshape(-1, 2).T) / beam.length
+        distance = np.hypot(*exact.T)
         allowed = FLOOR + NEXT_TERM * float((term * distance).max(initial=0.0))
         return Finding(name="circle", error=error, allowed=allowed, why=why)
 

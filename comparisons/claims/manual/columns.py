@@ -24,7 +24,6 @@ from comparisons.claims.manual.models import (
 )
 from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import MM, UNIT, rigid
-from comparisons.exact.end_loads import tip_under_thrust
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec, load_scene
 
@@ -186,9 +185,11 @@ NEARLY_RIGID = 1e8
 """EA and GA over EI/L^2 of a column that neither stretches nor shears: round-off in the axial force grows with this ratio."""
 SHORTER = "the column shortens and shears by P/EA = P/GA, below 1e-7, which its side-sway amplifies"
 IMPERFECT = (
-    "elastica by elliptic integrals (comparisons.exact.end_loads.tip_under_thrust); without the moment it is the column of Timoshenko and Gere, Theory "
+    "elastica by elliptic integrals (tests/oracles/elastica.py); without the moment it is the column of Timoshenko and Gere, Theory "
     "of Elastic Stability, 1961, sec. 2.7"
 )
+HEIGHT, SIDEWAYS = 0.137580063666666, 0.804166309778207
+"""Place of the head over L with P L^2/EI = 80/17.5 and M L/EI = .08/17.5; `tests/oracles/elastica.py` computes it."""
 STRIP_COLUMN = "EI = 175,000 N mm^2, neither stretch nor shear (EA = GA = 1e8 EI/L^2 in their place)"
 
 
@@ -196,7 +197,6 @@ def clamped_column() -> Problem:
     """Clamped column with an imperfection, beyond its buckling load."""
     scene = rigid(load_scene("clamped-column"), NEARLY_RIGID)
     load, length = scene.loads[0], scene.beams[0].length
-    height, aside, _ = tip_under_thrust(-load.force[1], load.moment, EI=scene.beams[0].EI, length=length)
 
     def read(response: Response) -> tuple[float, float, float]:
         x, y = response.tips["column"][-1]
@@ -212,9 +212,9 @@ def clamped_column() -> Problem:
         "moment of 8 N mm, the imperfection.",
         source=IMPERFECT,
         quantities=(
-            Quantity(name="y/L of the head", exact=float(height) / length, scale=1.0),
-            Quantity(name="x/L of the head", exact=-float(aside) / length, scale=1.0),
-            Quantity(name="M of the clamp [N mm]", exact=float(load.force[1] * aside) - load.moment),
+            Quantity(name="y/L of the head", exact=HEIGHT, scale=1.0),
+            Quantity(name="x/L of the head", exact=-SIDEWAYS, scale=1.0),
+            Quantity(name="M of the clamp [N mm]", exact=load.force[1] * length * SIDEWAYS - load.moment),
         ),
         trials=(
             on_scene(EXACT, 1e-6, SHORTER, read),
@@ -228,10 +228,7 @@ def clamped_column() -> Problem:
 def pinned_column() -> Problem:
     """Column between hinges with an imperfection, beyond its buckling load."""
     scene = rigid(load_scene("pinned-column"), NEARLY_RIGID)
-    load, length = scene.loads[1], scene.beams[0].length
-    shortening, aside, _ = tip_under_thrust(
-        -load.force[1], load.moment, EI=scene.beams[0].EI, length=length / 2.0
-    )
+    length = scene.beams[0].length
 
     def read(response: Response) -> tuple[float, float]:
         line = response.axis_line("column", len(response.load_parameter) - 1)[1]
@@ -247,10 +244,8 @@ def pinned_column() -> Problem:
         "load, and with it two moments of 8 N mm at its ends, the imperfection.",
         source=f"half of the column is a clamped one; {IMPERFECT}",
         quantities=(
-            Quantity(name="y/L of the upper end", exact=2.0 * float(shortening) / length, scale=1.0),
-            Quantity(
-                name="distance of the middle from the y axis over L", exact=float(aside) / length, scale=1.0
-            ),
+            Quantity(name="y/L of the upper end", exact=HEIGHT, scale=1.0),
+            Quantity(name="distance of the middle from the y axis over L", exact=SIDEWAYS / 2.0, scale=1.0),
         ),
         trials=(
             on_scene(EXACT, 1e-6, SHORTER, read),

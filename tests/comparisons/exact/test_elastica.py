@@ -12,7 +12,6 @@ from comparisons.exact.elastica import (
     slip_off_displacement,
     three_point_bending_limit,
 )
-from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.outcome import Outcome
 
 KS_END = (0.0, 2.0 / np.pi)
@@ -91,38 +90,6 @@ def test_contact_force_has_a_maximum_on_a_vertical_path():
     assert max(F[0], F[2]) < limit.load
 
 
-@pytest.mark.parametrize(
-    ("load", "deflection"), [(1, 0.3017207738), (2, 0.4934574804), (5, 0.7137915236), (10, 0.8106090249)]
-)
-def test_tip_load(load, deflection):
-    assert tip_under_dead_load(load)[1] == pytest.approx(deflection, abs=6e-11)
-
-
-@pytest.mark.parametrize("load", [1e-3, 1.0, 30.0, 1e4])
-def test_tip_load_against_integration(load):
-    """Shooting backwards from the tip, whose rotation follows from x by the energy integral."""
-    tip = tip_under_dead_load(load)
-    theta0 = np.arcsin(load * tip[0] ** 2 / 2.0)
-    solution = solve_ivp(
-        lambda _, state: [state[1], -load * np.cos(state[0]), np.cos(state[0]), np.sin(state[0])],
-        (0.0, -1.0),
-        [theta0, 0.0, *tip],
-        method="DOP853",
-        rtol=1e-13,
-        atol=1e-15,
-    )
-    if load < 1e3:  # the clamp angle is a difference of exponentials of sqrt(load) beyond
-        np.testing.assert_allclose(solution.y[[0, 2, 3], -1], 0.0, atol=1e-10)
-    else:
-        np.testing.assert_allclose(tip, [np.sqrt(2.0 / load), 1.0], rtol=0.01)
-
-
-@pytest.mark.parametrize("t", [0.3, np.pi, 2 * np.pi, 4 * np.pi])
-def test_roll_up(t):
-    tip = tip_under_moment(2.0 * t, EI=6.0, length=3.0)
-    np.testing.assert_allclose(tip, 3.0 * np.array([np.sin(t), 1.0 - np.cos(t)]) / t, atol=1e-15)
-
-
 @pytest.mark.parametrize("pin", [KS_END, (1.0, 2.0), (1.0, 0.1), (-0.05, 0.5)])
 def test_against_integration_from_the_clamp(pin):
     state = elastica_under_pin(*pin, length=3.0)
@@ -192,7 +159,6 @@ def test_a_direction_of_the_pin_has_one_solution_below_the_fold_and_one_beyond()
         (lambda: elastica_under_pin(0.5, 0.1, EI=-1.0), "EI = -1.0: must be positive"),
         (lambda: elastica_under_pin(0.5, 0.1, length=0.0), "length = 0.0: must be positive"),
         (lambda: slip_off_displacement(1.0), "x = 1.0: must lie between"),
-        (lambda: tip_under_dead_load(2e5), "must not exceed 1e5"),
     ],
 )
 def test_bad_input(call, message):

@@ -8,12 +8,12 @@ import pytest
 from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
 from comparisons.claims.problems.frames import toggle_scene
 from comparisons.exact.elastica import elastica_under_pin
-from comparisons.exact.end_loads import tip_under_dead_load, tip_under_moment
 from comparisons.exact.rod import rod_under_pin
 from comparisons.exact.tied import rod_with_tied_tip
 from comparisons.models import solve
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from tests.oracles.elastica import tip_under_dead_load
 from tests.oracles.frames import toggle
 
 STIFF = 1e10 * 12.0 / 0.02**2
@@ -86,7 +86,7 @@ def test_roll_up_by_a_moment_to_1e_12() -> None:
     arc = np.linspace(0.0, 1.0, 81)[1:]
     circle = np.stack([np.sin(6.0 * arc), 1.0 - np.cos(6.0 * arc)], axis=1) / 6.0
     exact = found(scene, at(1.0, np.vstack([[0.0, 0.0], circle])))
-    np.testing.assert_allclose(exact.ends["beam.end"], tip_under_moment(moment), rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(exact.ends["beam.end"], [0.0, 0.0], rtol=0.0, atol=1e-12)
     assert exact.strain_energy == pytest.approx(moment**2 / 2.0, rel=1e-12)
 
 
