@@ -3,15 +3,29 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from comparisons.exact.graded import integrals
 from comparisons.exact.reissner import Flexibility
 
 Array = NDArray[Any]  # real or complex: derivatives are complex steps
 
+
+def integrals(x: Array, points: int) -> Array:
+    """Return the matrix from values at Gauss points of (0, 1) to the integrals over xi from 0 to `(1 + x)/2`, x (k,).
+
+    Legendre's polynomial `P_k` has the integral `(P_k+1 - P_k-1)/(2 k + 1)`.
+    """
+    nodes, w = legendre.leggauss(points)
+    degree = np.arange(points)
+    coefficients = (2 * degree[:, None] + 1) / 2.0 * legendre.legvander(nodes, points - 1).T * w
+    P = legendre.legvander(x, points)
+    primitive = np.column_stack([x + 1.0, (P[:, 2:] - P[:, :-2]) / (2 * np.arange(1, points) + 1)])
+    return np.asarray(primitive @ coefficients / 2.0)
+
+
 _POINTS, _PICARD = 36, 24
-_INTEGRATION = integrals(np.append(np.polynomial.legendre.leggauss(_POINTS)[0], 1.0), _POINTS)
+_INTEGRATION = integrals(np.append(legendre.leggauss(_POINTS)[0], 1.0), _POINTS)
 """Integrals from 0 to the Gauss points of (0, 1), and in the last row to 1."""
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from comparisons.exact.elastica import ElasticaState, elastica_under_pin
 from comparisons.exact.outcome import Outcome
-from comparisons.exact.rod import RodPath, rod_under_pin
-from comparisons.exact.tied import TiedPath, rod_with_tied_tip
+from comparisons.exact.rod import rod_under_pin
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.rod import ELASTICA, ROD
@@ -29,7 +28,7 @@ POINTS = 401
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LocalStates:
-    """States of a cantilever in its local frame (`RodScene`), one for each load parameter; the pin or the tied tip exerts the force.
+    """States of a cantilever in its local frame (`RodScene`), one for each load parameter; the pin exerts the force.
 
     `visited` has one outcome for each point of the path, and `hits` the indices of the points that belong to load parameters.
     """
@@ -58,25 +57,19 @@ def solve_rod(scene: Scene, local: RodScene) -> Response:
     """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
     beam, hits = local.beam, local.hits
     stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI, "length": beam.length}
-    path: TiedPath | RodPath
     began = perf_counter()
-    if local.contact is None:
-        path = rod_with_tied_tip(local.path, **stiffness)
-        arc_position = np.full(len(path.force), beam.length)
-    else:
-        path = rod_under_pin(local.path, offset=local.offset, **stiffness)
-        arc_position = path.arc_position
+    path = rod_under_pin(local.path, offset=local.offset, **stiffness)
     seconds = perf_counter() - began
     states = LocalStates(
         visited=path.outcome,
         hits=hits,
         force=path.force[hits],
-        arc_position=arc_position[hits],
+        arc_position=path.arc_position[hits],
         clamp_moment=path.clamp_moment[hits],
         tip=path.tip[hits],
         iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
-        slip_off=path.slip_off if isinstance(path, RodPath) else np.nan,
+        slip_off=path.slip_off,
     )
     return local_response(ROD.name, scene, local, states, unknowns=path.unknowns.shape[1], seconds=seconds)
 
@@ -93,8 +86,6 @@ def elastica_scene(scene: Scene) -> RodScene:
     if unknown is not None:
         raise ModelError(unknown)
     local = to_rod(scene)
-    if local.contact is None:
-        raise ModelError("the elastica is pushed by a pin, the scene moves the beam's end")
     if local.contact.friction:
         raise ModelError("the elastica has no friction here, the scene has some")
     if local.offset:
@@ -139,12 +130,12 @@ def local_response(
     """Return the response in the scene's frame, up to the last load parameter at which an equilibrium was found."""
     name, length = local.beam.name, local.beam.length
     times = np.array(scene.times)
-    stop, reached = _end(states, times, keep=local.contact is not None and local.contact.keep)
+    stop, reached = _end(states, times, keep=local.contact.keep)
     met = _end_contact(scene, local, states)
     if times[:reached].max(initial=0.0) >= met or (stop == "LOST" and met <= times[reached]):
         stop, reached = "END_CONTACT", int(np.searchsorted(times, met))
     when = f" at load parameter {times[reached]:.6g}" if stop else ""
-    if stop == "END_CONTACT" and local.contact is not None:
+    if stop == "END_CONTACT":
         end = "start" if local.from_end else "end"
         when = f": {local.contact.node} meets the {end} of {name} at load parameter {met:.9g}"
 
@@ -163,10 +154,6 @@ def local_response(
     support = SupportHistory(
         force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
     )
-    clamp, tip = (f"{name}.{end}" for end in (("end", "start") if local.from_end else ("start", "end")))
-    supports = {clamp: support}
-    if local.contact is None:
-        supports[tip] = SupportHistory(force=-support.force, moment=np.zeros(reached))
     return Response(
         model=model,
         scene=scene.name,
@@ -175,7 +162,7 @@ def local_response(
         completed=stop is None,
         load_parameter=times[:reached],
         contacts=_contacts(scene, local, states, reached),
-        supports=supports,
+        supports={f"{name}.{local.clamp}": support},
         tips={name: local.position(states.tip[:reached])},
         newton_iterations=states.iterations[:reached],
         cutbacks=0,
@@ -204,7 +191,7 @@ def _end(states: LocalStates, times: Array, *, keep: bool) -> tuple[str | None, 
 
 def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
     """Load parameter at which the pin meets the tip while the rod is straight, or rolls onto its corner; inf if it does not."""
-    if local.contact is None or not local.offset:
+    if not local.offset:
         return math.inf
     radius, path = scene.radius(local.contact), local.path - [local.beam.length, 0.0]
     tip = BeamEnd("", (0.0, 0.0), (-1.0, 0.0), local.offset - radius, radius)
@@ -222,8 +209,6 @@ def _end_contact(scene: Scene, local: RodScene, states: LocalStates) -> float:
 
 
 def _contacts(scene: Scene, local: RodScene, states: LocalStates, reached: int) -> dict[str, ContactHistory]:
-    if local.contact is None:
-        return {}
     outcome = np.array(states.visited, dtype=object)[states.hits[:reached]]
     closed, slipped = outcome == Outcome.CONTACT, outcome == Outcome.SLIPPED
     below = -local.points[:reached, 1] - local.offset

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Rod(Model):
-    """Reissner's rods, which stretch and shear: one by quadrature under one pin or with a tied tip, any others by the referee."""
+    """Reissner's rods, which stretch and shear: one by quadrature under one pin, any others by the referee."""
 
     name = "rod"
     label = "exact rod"
@@ -30,7 +30,7 @@ class Rod(Model):
         return Options()
 
     def by_referee(self, scene: Scene) -> bool:
-        """Whether the scene is not one rod under one pin or with a tied tip."""
+        """Whether the scene is not one rod under one pin."""
         from comparisons.models.translate import to_rod
 
         try:

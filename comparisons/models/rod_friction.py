@@ -24,7 +24,6 @@ STOPS = {
 def solve_rod_with_friction(scene: Scene, local: RodScene) -> Response:
     """Solve `scene` as a Reissner rod under a pin with friction; `local` is the scene in the rod's frame."""
     beam, hits, contact = local.beam, local.hits, local.contact
-    assert contact is not None, "friction belongs to a contact"
     radius = scene.radius(contact)
     began = perf_counter()
     path = rod_with_friction(
@@ -82,7 +81,6 @@ def _outcome(state: FrictionState) -> Outcome:
 
 def _events(path: FrictionPath, local: RodScene) -> tuple[ContactEvent, ...]:
     """Return the located changes of state."""
-    assert local.contact is not None, "friction belongs to a contact"
     found = []
     for event in path.events:
         kind = "stick" if event.after is FrictionState.STICK else "slip"

@@ -26,7 +26,7 @@ REFEREE: Final[frozenset[str]] = frozenset(SPECIAL)
 RODS: Final[frozenset[str]] = REFEREE & BEAMS
 """Keys that the exact rods state: the referee solves them along the path that exact elements follow."""
 ONE_ROD: Final[frozenset[str]] = frozenset()
-"""Keys that the exact answers by quadrature state, for one beam under a pin or with a tied tip."""
+"""Keys that the exact answers by quadrature state, for one beam under a pin."""
 PROGRAMS: Final[frozenset[str]] = frozenset()
 """Keys that the resolved scene states, which programs of others read."""
 MATERIAL: Final = frozenset({"turn"})

@@ -2,17 +2,28 @@
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
 import pytest
 
 # the table of problems, whose stated digits are the subject
 from comparisons.claims.manual.problems import PROBLEMS
+from comparisons.scene import load_scene
 from tests.oracles import elastica, frames
+from tests.oracles.tied import rod_with_tied_tip
 
 
 def column() -> tuple[float, float]:
     """Place of the head of the clamped column over its length."""
     x, y, _ = elastica.tip_under_thrust(80.0 / 17.5, 0.08 / 17.5)
     return float(x), float(y)
+
+
+def tied() -> list[float]:
+    """Force on the tip half way and at the end, and moment of the clamp at the end."""
+    beam = load_scene("ks-tied-tip").beams[0]
+    points = [(1.0, 0.0), (0.5, 1.0 / np.pi), (0.0, 2.0 / np.pi)]
+    path = rod_with_tied_tip(points, EA=beam.EA / beam.EI, GA=beam.GA / beam.EI, EI=1.0)
+    return [*np.hypot(*path.force[1:].T), path.clamp_moment[-1]]
 
 
 ORACLES: dict[str, Callable[[], Sequence[float]]] = {
@@ -22,6 +33,7 @@ ORACLES: dict[str, Callable[[], Sequence[float]]] = {
     "lees-frame": lambda: [frames.lee_limit()],
     "williams-toggle": frames.toggle_limits,
     "portal-frame": lambda: [frames.portal_sway()],
+    "ks-tied-tip": tied,
 }
 """The exact values of problems, in order."""
 

@@ -146,7 +146,6 @@ def ks_biot() -> Problem:
 def ks_tied() -> Problem:
     """The main scene's other reading: the point is tied to the tip."""
     scene = load_scene("ks-tied-tip")
-    rod = answered(scene, ROD)
     beam = scene.beams[0]
 
     def read(response: Response) -> list[float]:
@@ -156,6 +155,7 @@ def ks_tied() -> Problem:
             float(clamp.moment[-1] * beam.length / beam.EI),
         ]
 
+    exact = (19.7787697911997, 8.98941070906149, -1.77086483545219)
     names = ("F L^2/EI at t = .5", "F L^2/EI at t = 1", "M L/EI of the clamp at t = 1")
     return Problem(
         name="ks-tied-tip",
@@ -164,14 +164,14 @@ def ks_tied() -> Problem:
         uncertainty=1e-11,
         scene=scene,
         statement=f"{KS_TEXT.replace('A frictionless pin', 'Its tip, free to turn,')}; it buckles in the first step, at t = .0007.",
-        source="Reissner's rod by spectral collocation (comparisons.exact.tied, which shares nothing with the models)",
-        quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, read(rod), strict=True)),
+        source="Reissner's rod by spectral collocation (tests/oracles/tied.py, which shares nothing with the models)",
+        quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, exact, strict=True)),
         trials=(
             on_scene(EXACT, 1e-8, CLOSED, read, TIMES[1::2]),
             on_scene(mixed(20), 1e-5, FOURTH, read, TIMES[1::2]),
             on_scene(paper(20), 1e-2, SECOND, read, TIMES[1::2]),
         ),
-        picture=Picture(curves=(*undeformed(scene), deflected(scene, rod, ANSWER, TIMES[1::2]))),
+        picture=Picture(curves=undeformed(scene)),
     )
 
 

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.models.options import ModelError
-from comparisons.models.translate.one_beam import one_beam_under_a_pin, one_beam_with_tied_tip
-from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, Scene, SupportSpec
 from comparisons.scene.keys import ONE_ROD, unstated
 
 Array = NDArray[np.float64]
@@ -15,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class RodScene:
-    """One cantilever under one pin or with its tip tied to a moving point, and the way back to the scene's frame.
+    """One cantilever under one pin, and the way back to the scene's frame.
 
     Attributes
     ----------
@@ -23,12 +22,12 @@ class RodScene:
         The cantilever.
     clamp : {"start", "end"}
         The beam's clamped end.
-    contact : ContactSpec or None
-        The contact pair, None if the tip is tied.
+    contact : ContactSpec
+        The contact pair.
     offset : float
         Distance of the contact surface from the axis.
     path : ndarray, shape (p, 2)
-        Positions of the pin or of the tied tip in the local frame: at the start, at the scene's load parameters and at
+        Positions of the pin in the local frame: at the start, at the scene's load parameters and at
         the corners of the path.
     hits : ndarray of int, shape (s,)
         Indices of the points of `path` that belong to the load parameters.
@@ -38,7 +37,7 @@ class RodScene:
 
     beam: BeamSpec
     clamp: str
-    contact: ContactSpec | None
+    contact: ContactSpec
     offset: float
     path: Array
     hits: NDArray[np.int64]
@@ -57,7 +56,7 @@ class RodScene:
 
     @property
     def points(self) -> Array:
-        """The pin or the tied tip at the scene's load parameters (s, 2)."""
+        """The pin at the scene's load parameters (s, 2)."""
         return self.path[self.hits]
 
     def position(self, local: Array) -> Array:
@@ -83,14 +82,12 @@ def to_rod(scene: Scene) -> RodScene:
     Raises
     ------
     ModelError
-        Unless the scene is one beam, clamped at one end, under one pin or with a pinned support that moves its other end.
+        Unless the scene is one beam, clamped at one end, under one pin.
     """
     unknown = unstated(scene, "the exact rod", ONE_ROD)
     if unknown is not None:
         raise ModelError(unknown)
-    if not (scene.pins or scene.contacts):
-        return _tied(scene)
-    clamp = one_beam_under_a_pin(scene, "the exact models have")
+    clamp = _clamp(scene)
     pin, contact = scene.pins[0], scene.contacts[0]
     origin, axes = _frame(
         scene, clamp.end, mirrored=contact.side == ("left" if clamp.end == "start" else "right")
@@ -108,22 +105,21 @@ def to_rod(scene: Scene) -> RodScene:
     )
 
 
-def _tied(scene: Scene) -> RodScene:
-    clamp, tied = one_beam_with_tied_tip(scene, "the exact models have")
-    origin, axes = _frame(scene, clamp.end, mirrored=False)
-    ux, uy, _ = tied.motion
-    stations = np.array([0.0, *scene.times])
-    tip = np.array([scene.beams[0].length, 0.0])
-    return RodScene(
-        beam=scene.beams[0],
-        clamp=clamp.end,
-        contact=None,
-        offset=0.0,
-        path=tip + np.outer(stations, np.array([ux, uy], dtype=np.float64) @ axes),
-        hits=np.arange(1, len(stations)),
-        origin=origin,
-        axes=axes,
-    )
+def _clamp(scene: Scene) -> SupportSpec:
+    """Return the clamp of the single beam that a single pin touches."""
+    have, beam = "the exact models have", scene.beams[0]
+    if max(len(scene.beams), len(scene.pins), len(scene.contacts)) > 1:
+        raise ModelError(f"{have} one beam, one pin and one contact")
+    if scene.loads:
+        raise ModelError(f'{have} no dead loads, the scene loads "{scene.loads[0].node}"')
+    clamp, *others = scene.supports_of(beam.name)
+    if len(clamp.held) < 3:
+        raise ModelError(f'{have} one end clamped, none of beam "{beam.name}" is')
+    if scene.prescribed_motions[clamp.node].moves:
+        raise ModelError(f'{have} the clamp at rest, "{clamp.node}" moves')
+    if others:
+        raise ModelError(f'{have} one support, beam "{beam.name}" has two')
+    return clamp
 
 
 def _frame(scene: Scene, clamp: str, *, mirrored: bool) -> tuple[Array, Array]:

@@ -9,12 +9,12 @@ from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
 from comparisons.claims.problems.frames import toggle_scene
 from comparisons.exact.elastica import elastica_under_pin
 from comparisons.exact.rod import rod_under_pin
-from comparisons.exact.tied import rod_with_tied_tip
 from comparisons.models import solve
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
 from tests.oracles.elastica import tip_under_dead_load
 from tests.oracles.frames import toggle
+from tests.oracles.tied import rod_with_tied_tip
 
 STIFF = 1e10 * 12.0 / 0.02**2
 """EA and GA over EI: KS's times 1e10, the elastica."""
