@@ -7,8 +7,10 @@ import pytest
 
 # the table of problems, whose stated digits are the subject
 from comparisons.claims.manual.problems import PROBLEMS
+from comparisons.claims.problems.double_beam import HAND_OVER
 from comparisons.scene import load_scene
 from tests.oracles import elastica, frames
+from tests.oracles.coupled import pair_of
 from tests.oracles.tied import rod_with_tied_tip
 
 
@@ -26,6 +28,14 @@ def tied() -> list[float]:
     return [*np.hypot(*path.force[1:].T), path.clamp_moment[-1]]
 
 
+def pair() -> list[float]:
+    """Forces at the depth .31 m, and the depths of the events."""
+    both = pair_of(load_scene("double-beam"))
+    stage = both.stage([0.31])
+    forces = np.hypot(*stage.pin_force[0]), np.hypot(*stage.tip_force[0])
+    return [*forces, stage.touch_depth, stage.end_depth, both.slip_off()]
+
+
 ORACLES: dict[str, Callable[[], Sequence[float]]] = {
     "dead-load": lambda: [elastica.tip_under_dead_load(load)[1] for load in (1.0, 2.0, 5.0, 10.0)],
     "clamped-column": lambda: [column()[0], -column()[1], -8.0 - 8000.0 * column()[1]],
@@ -34,6 +44,7 @@ ORACLES: dict[str, Callable[[], Sequence[float]]] = {
     "williams-toggle": frames.toggle_limits,
     "portal-frame": lambda: [frames.portal_sway()],
     "ks-tied-tip": tied,
+    "double-beam": pair,
 }
 """The exact values of problems, in order."""
 
@@ -44,3 +55,10 @@ def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:
     for quantity, value in zip(problem.quantities, ORACLES[name](), strict=True):
         scale = abs(quantity.exact) if quantity.scale is None else quantity.scale
         assert abs(value - quantity.exact) <= problem.uncertainty * scale, quantity.name
+
+
+def test_the_pin_is_handed_over_wherever_it_comes_down() -> None:
+    for place, depth in HAND_OVER.items():
+        assert pair_of(load_scene("double-beam"), place).stage([]).end_depth == pytest.approx(
+            depth, rel=1e-10
+        )

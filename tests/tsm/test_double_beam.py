@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, single
+from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
+from tests.oracles.coupled import pair_of
 
 STEPS = 76
 SCENE = load_scene("double-beam")
+PAIR = pair_of(SCENE)
 
 
 def double_beam(elements=10, element="mixed", x=0.8):
@@ -48,7 +50,7 @@ def test_events_in_order(result):
 def test_coupled_stage_matches_the_coupled_rods(result):
     depths = 0.76 * result.load_parameter
     stage = (depths > 0.15) & (depths < 0.535)
-    exact = coupled(SCENE, depths[stage])
+    exact = PAIR.stage(depths[stage])
     assert result.contacts[UPPER].force[stage] == pytest.approx(np.hypot(*exact.pin_force.T), rel=1e-6)
     assert result.contacts[TIP].force[stage] == pytest.approx(np.hypot(*exact.tip_force.T), rel=1e-6)
     touch = found(result, tsm.EventKind.TOUCH, TIP)
@@ -61,11 +63,11 @@ def test_single_stages_match_the_exact_rod(result):
     depths = 0.76 * result.load_parameter
     before, after = depths < 0.149, (depths > 0.54) & (depths < 0.73)
     for stage, pair, offset in ((before, UPPER, 0.0), (after, LOWER, 0.2)):
-        exact = single(SCENE, depths[stage] - offset)
+        exact = PAIR.single(depths[stage] - offset)
         assert result.contacts[pair].force[stage] == pytest.approx(exact.magnitude[1:], rel=1e-6)
         assert result.contacts[pair].arc_position[stage] == pytest.approx(exact.arc_position[1:], abs=2e-7)
     leave = found(result, tsm.EventKind.SLIP_OFF, LOWER)
-    assert depth(leave) - 0.2 == pytest.approx(0.6 * single(SCENE, [0.6]).slip_off, abs=3e-7)
+    assert depth(leave) - 0.2 == pytest.approx(PAIR.slip_off() - 0.2, abs=3e-7)
 
 
 @pytest.mark.slow
@@ -83,7 +85,7 @@ def test_what_stops_the_papers_element():
 @pytest.mark.parametrize("elements", [3, 10, 40])
 def test_refinement_against_the_coupled_rods(elements, stated):
     t = np.array([0.31, 0.45]) / 0.76
-    exact = coupled(SCENE, 0.76 * t)
+    exact = PAIR.stage(0.76 * t)
     contacts = tsm.solve(double_beam(elements), t).contacts
     pairs = ((TIP, exact.tip_force), (UPPER, exact.pin_force))
     errors = [contacts[pair].force / np.hypot(*force.T) - 1 for pair, force in pairs]

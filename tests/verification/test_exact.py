@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths, single
+from comparisons.claims.problems.double_beam import EVENTS, LOWER, TIP, UPPER
 from comparisons.claims.problems.frames import LEE_LIMIT, LEE_UNIT, lee_scene
 from comparisons.exact import elastica
 from comparisons.models import solve as solve_scene
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
+from tests.oracles.coupled import pair_of
 from tests.oracles.elastica import tip_under_dead_load
 from tests.verification.structures import (
     KS,
@@ -139,8 +140,8 @@ def test_double_beam_stages(double, stated):
     assert essentials(double) == DOUBLE_BEAM_EVENTS
     depth = 0.76 * double.load_parameter
     stage = (depth > 0.15) & (depth < 0.537)
-    scene = load_scene("double-beam")
-    exact = coupled(scene, depth[stage])
+    pair = pair_of(load_scene("double-beam"))
+    exact = pair.stage(depth[stage])
     pin, tip = double.contacts[UPPER], double.contacts[TIP]
     differences = (
         pin.force[stage] / np.hypot(*exact.pin_force.T) - 1,
@@ -163,11 +164,11 @@ def test_double_beam_stages(double, stated):
         (depth < 0.149, UPPER, 0.0),
         ((depth > 0.54) & (depth < 0.735), LOWER, 0.2),
     ):
-        rod = single(scene, depth[stage] - above)
+        rod = pair.single(depth[stage] - above)
         assert double.contacts[name].force[stage] == pytest.approx(rod.magnitude[1:], rel=1e-9)
         assert double.contacts[name].arc_position[stage] == pytest.approx(rod.arc_position[1:], abs=1e-9)
     leave = 0.76 * double.events[-1].load_parameter - 0.2
-    assert leave == pytest.approx(event_depths(scene, exact)["slip-off"] - 0.2, rel=1e-9)
+    assert leave == pytest.approx(EVENTS["slip-off"] - 0.2, rel=1e-9)
     assert np.abs(double.tips["lower"][depth > 0.74] - [1.0, -0.2]).max() <= 1e-9
 
 

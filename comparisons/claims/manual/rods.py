@@ -24,7 +24,7 @@ from comparisons.claims.manual.models import (
 )
 from comparisons.claims.manual.record import Picture, Problem
 from comparisons.claims.manual.scenes import PAIR, cantilever, ks, under_pin
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths
+from comparisons.claims.problems.double_beam import EVENTS, FORCES, LOWER, TIP, UPPER
 from comparisons.exact.rod import rod_under_pin
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
@@ -254,7 +254,6 @@ def slip_off_41() -> Problem:
 def double_beam() -> Problem:
     """Two cantilevers, a pin that is handed over from one to the other."""
     scene = load_scene("double-beam")
-    both = coupled(scene, [0.31])
 
     def read(response: Response) -> Sequence[float]:
         assert response.events is not None, "the beams locate events"
@@ -263,11 +262,7 @@ def double_beam() -> Problem:
         events = (("touch", TIP), ("slip-off", UPPER), ("slip-off", LOWER))
         return [*forces, *(happened.get(event, np.nan) for event in events)]
 
-    exact = (
-        float(np.hypot(*both.pin_force[0])),
-        float(np.hypot(*both.tip_force[0])),
-        *event_depths(scene, both).values(),
-    )
+    exact = (*FORCES, *EVENTS.values())
     names = (
         "force of the pin at .31 m [N]",
         "force between the beams at .31 m [N]",
@@ -284,7 +279,7 @@ def double_beam() -> Problem:
         statement="Nizam et al., section 4.3, with sizes of this project: two cantilevers, L = 1 m, .2 m apart, A = 3e-4 m^2, I = 2.2e-8 m^4, "
         "E = 2e7 N/m^2, G = 7.142e6 N/m^2, effective shear area A. A frictionless pin presses the upper one down at x = .8 m; its tip meets the lower one, "
         "the pin passes to that and leaves it.",
-        source="two coupled Reissner rods by spectral collocation and quadratures (comparisons.exact.coupled), then a single one",
+        source="two coupled Reissner rods by spectral collocation and quadratures (tests/oracles/coupled.py), then a single one",
         quantities=tuple(Quantity(name=n, exact=v) for n, v in zip(names, exact, strict=True)),
         trials=(
             on_scene(EXACT, 1e-8, CLOSED, read, (52 / 76,)),

@@ -6,7 +6,7 @@ from comparisons.claims.paper.cantilever_shapes import ELEMENTS, Lifts
 from comparisons.claims.paper.double_beam import Attempt, DoubleBeam
 from comparisons.claims.paper.ks_shapes import Run8, Shapes
 from comparisons.claims.paper.verdict import Judgement, Verdict, claim, holds, over_readings, percent
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
+from comparisons.claims.problems.double_beam import EVENTS, LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from tsm.elements import TIMOSHENKO
 
@@ -145,7 +145,7 @@ def _located(found: DoubleBeam, kind: str, pair: str, exact: str) -> tuple[bool,
     events = found.events_of(kind, pair)
     if not events:
         return False, f"no {kind} of {pair}"
-    depth, wanted = events[0].depth, found.exact_events[exact]
+    depth, wanted = events[0].depth, EVENTS[exact]
     return abs(
         depth - wanted
     ) < LOCATED, f"{kind} of {pair} at depth {depth:.6f} m, exact rods {wanted:.6f} m"
@@ -154,7 +154,7 @@ def _located(found: DoubleBeam, kind: str, pair: str, exact: str) -> tuple[bool,
 def begins(found: DoubleBeam) -> Judgement:
     """Judge whether both contacts of stage (b) come about."""
     ok, number = _located(found, "touch", TIP, "touch")
-    coupled = (found.depth > found.exact_events["touch"]) & (found.depth < found.exact_events["hand-over"])
+    coupled = (found.depth > EVENTS["touch"]) & (found.depth < EVENTS["hand-over"])
     pressed = [bool(np.isfinite(found.histories[pair].arc[coupled]).all()) for pair in (UPPER, TIP)]
     return holds(
         ok and all(pressed),
@@ -171,7 +171,7 @@ def hands_over(found: DoubleBeam) -> Judgement:
     return holds(
         ok and bool(found.events_of("touch", LOWER)),
         f"{number}; the upper beam releases {released:.4f} N m; tip force up to then {np.nanmax(last):.3f} N",
-        f"What ends the coupled stage is '{found.end}': the tip still presses on the lower beam, and the pin takes over its place and force.",
+        "What ends the coupled stage is the pin at the tip: the tip still presses on the lower beam, and the pin takes over its place and force.",
     )
 
 
@@ -216,8 +216,8 @@ def simultaneous(found: DoubleBeam) -> Judgement:
     deepest = max(attempt.depth for attempt in _attempts(found))
     checks = [check for check in found.checks if check.stage == "coupled"]
     return holds(
-        deepest > found.exact_events["touch"] + LOCATED,
-        f"both contacts closed from depth {found.exact_events['touch']:.3f} m on; Timoshenko follows them to {deepest:.2f} m; mixed is within "
+        deepest > EVENTS["touch"] + LOCATED,
+        f"both contacts closed from depth {EVENTS['touch']:.3f} m on; Timoshenko follows them to {deepest:.2f} m; mixed is within "
         f"{max(check.force for check in checks):.0e} of the force of two exact rods in contact",
         "Two rods, two contacts, one of them between the beams.",
     )

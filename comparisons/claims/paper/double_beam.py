@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER, coupled, event_depths, single, spacing
-from comparisons.models import TSM, solve
+from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
+from comparisons.models import ROD, TSM, solve
 from comparisons.models.options import Options
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
@@ -19,7 +19,7 @@ SCENE = "double-beam"
 PAIRS = (UPPER, TIP, LOWER)
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
-TRIED = (0.8, 0.81)
+TRIED = tuple(HAND_OVER)
 """Places of the pin [m] at which the paper's elements are tried: on a beam node, and a tenth of an element beside it."""
 
 
@@ -116,10 +116,6 @@ class DoubleBeam:
         By pair.
     events : tuple of Happened
         In order.
-    exact_events : dict of float
-        Depths [m] of the touch of the tips, of the hand-over and of the last slip-off, by the exact rods.
-    end : str
-        What ends the coupled stage of the exact rods.
     checks : tuple of Check
         By stage and pair.
     stages : tuple of Stage
@@ -135,8 +131,6 @@ class DoubleBeam:
     depth: Array
     histories: dict[str, History]
     events: tuple[Happened, ...]
-    exact_events: dict[str, float]
-    end: str
     checks: tuple[Check, ...]
     stages: tuple[Stage, ...]
     iterations: int
@@ -166,17 +160,16 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
     travel = abs(scene.pins[0].points[1][1])
     depth = travel * response.load_parameter
     report("exact rods")
-    exact, exact_events, end = _exact(finer, depth)
+    exact = solve(finer, ROD.name)
     histories = {}
     for pair in PAIRS:
         contact = response.contacts[pair]
-        force, arc = exact[pair]
-        closed = np.isfinite(contact.arc_position)
+        rods, closed = exact.contacts[pair], np.isfinite(contact.arc_position)
         histories[pair] = History(
             force=np.where(closed, contact.force, np.nan),
             arc=contact.arc_position,
-            exact_force=force,
-            exact_arc=arc,
+            exact_force=np.where(np.isfinite(rods.arc_position), rods.force, np.nan),
+            exact_arc=rods.arc_position,
         )
     events = tuple(
         Happened(
@@ -201,40 +194,23 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
         depth=depth,
         histories=histories,
         events=events,
-        exact_events=exact_events,
-        end=end,
-        checks=_checks(depth, histories, exact_events),
-        stages=_stages(depth, exact_events),
+        checks=_checks(depth, histories),
+        stages=_stages(depth),
         iterations=own.iterations,
         seconds=own.wall_seconds,
         attempts=attempts,
-        stopped=tuple(f"mixed: {one.status}: {one.message}" for one in (own, response) if not one.completed),
+        stopped=tuple(
+            f"{name}: {one.status}: {one.message}"
+            for name, one in (("mixed", own), ("mixed", response), ("exact rods", exact))
+            if not one.completed
+        ),
         scene=finer,
         response=response,
     )
 
 
-def _exact(scene: Scene, depth: Array) -> tuple[dict[str, tuple[Array, Array]], dict[str, float], str]:
-    """Force and arc position by pair, the depths of the events, and what ends the coupled stage."""
-    stage = coupled(scene, depth)
-    before, after = depth < stage.touch_depth, depth > stage.end_depth
-    both = ~before & ~after
-    exact = {pair: (np.full(len(depth), np.nan), np.full(len(depth), np.nan)) for pair in PAIRS}
-    for pair, force, arc in (
-        (UPPER, stage.pin_force, stage.pin_arc),
-        (TIP, stage.tip_force, stage.tip_arc),
-    ):
-        exact[pair][0][both], exact[pair][1][both] = np.hypot(*force.T)[both], arc[both]
-    for pair, part, origin in ((UPPER, before, 0.0), (LOWER, after, spacing(scene))):
-        path = single(scene, depth[part] - origin)
-        closed = np.isfinite(path.arc_position[1:])
-        exact[pair][0][part] = np.where(closed, path.magnitude[1:], np.nan)
-        exact[pair][1][part] = path.arc_position[1:]
-    return exact, event_depths(scene, stage), stage.end
-
-
-def _checks(depth: Array, histories: dict[str, History], events: dict[str, float]) -> tuple[Check, ...]:
-    before, after = depth < events["touch"], depth > events["hand-over"]
+def _checks(depth: Array, histories: dict[str, History]) -> tuple[Check, ...]:
+    before, after = depth < EVENTS["touch"], depth > EVENTS["hand-over"]
     parts = (
         ("one rod under the pin", UPPER, before),
         ("coupled", UPPER, ~before & ~after),
@@ -248,9 +224,9 @@ def _checks(depth: Array, histories: dict[str, History], events: dict[str, float
     return tuple(found)
 
 
-def _stages(depth: Array, events: dict[str, float]) -> tuple[Stage, ...]:
+def _stages(depth: Array) -> tuple[Stage, ...]:
     """The paper's stages; none if the run does not reach the last."""
-    touch, over, off = events["touch"], events["hand-over"], events["slip-off"]
+    touch, over, off = EVENTS["touch"], EVENTS["hand-over"], EVENTS["slip-off"]
     if depth[-1] < off:
         return ()
     chosen = (
@@ -273,7 +249,7 @@ def _attempt(scene: Scene, element: str, place: float) -> Attempt:
     travel = abs(pin.points[1][1])
     events = response.events or ()
     reached = float(response.load_parameter[-1]) if len(response.load_parameter) else 0.0
-    over = coupled(scene, [travel], place).end_depth / travel
+    over = HAND_OVER[place] / travel
     return Attempt(
         element=element,
         place=place,

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
+from comparisons.claims.problems.double_beam import TIP, UPPER
 from comparisons.models import TSM, solve
 from comparisons.models.network import solve_network
 from comparisons.models.progress import unwatched
 from comparisons.scene import load_scene
 from comparisons.scene.conditions import LoadSpec, SupportSpec
+from tests.oracles.coupled import pair_of
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR = "pin->cantilever"
@@ -33,7 +34,7 @@ def test_two_beams_in_contact_are_the_coupled_rods() -> None:
     closed = np.flatnonzero((rods.contacts[UPPER].force > 0.0) & (rods.contacts[TIP].force > 0.0))
     assert len(closed) >= 2
     drop = abs(scene.pins[0].points[1][1] - scene.pins[0].points[0][1])
-    exact = coupled(scene, rods.load_parameter[closed] * drop)
+    exact = pair_of(scene).stage(rods.load_parameter[closed] * drop)
     np.testing.assert_allclose(rods.contacts[UPPER].force[closed], np.hypot(*exact.pin_force.T), rtol=1e-9)
     np.testing.assert_allclose(rods.contacts[TIP].force[closed], np.hypot(*exact.tip_force.T), rtol=1e-9)
     np.testing.assert_allclose(rods.contacts[UPPER].arc_position[closed], exact.pin_arc, rtol=1e-9)

@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.claims.problems.double_beam import TIP, UPPER, coupled
+from comparisons.claims.problems.double_beam import TIP, UPPER
 from comparisons.claims.problems.frames import toggle_scene
 from comparisons.exact.elastica import elastica_under_pin
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models import solve
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, answer_state, equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, load_scene
+from tests.oracles.coupled import pair_of
 from tests.oracles.elastica import tip_under_dead_load
 from tests.oracles.frames import toggle
 from tests.oracles.tied import rod_with_tied_tip
@@ -133,7 +134,7 @@ def test_coupled_rods_to_1e_11() -> None:
     beams = solve(scene, "tsm")
     depth = 0.76 * beams.load_parameter
     both = np.flatnonzero((depth > 0.16) & (depth < 0.53))
-    truth = coupled(scene, depth[both])
+    truth = pair_of(scene).stage(depth[both])
     assert len(both) > 3
     for row, k in enumerate(both):
         exact = found(scene, answer_state(beams, scene, int(k)))

@@ -24,7 +24,7 @@ from comparisons.claims.paper.double_beam import Attempt, Check, Happened, Histo
 from comparisons.claims.paper.ks_shapes import Run8
 from comparisons.claims.paper.turned_frame import NAME as TURNED
 from comparisons.claims.paper.verdict import Verdict, in_size, over_readings
-from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
+from comparisons.claims.problems.double_beam import EVENTS, LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from comparisons.quantities import KEPT
 
@@ -194,7 +194,6 @@ def test_slip_offs() -> None:
     assert examples.followed(lifts(1e-3)).verdict is NOT
 
 
-EXACT = {"touch": 0.15, "hand-over": 0.54, "slip-off": 0.74}
 THROUGH = Attempt(
     element=TIMOSHENKO, place=0.81, status="COMPLETED", depth=0.76, passes=5, at_hand_over=False
 )
@@ -210,10 +209,10 @@ def beams(
 ) -> Any:
     """A study whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
     at = {
-        ("touch", TIP): EXACT["touch"],
-        ("slip-off", UPPER): EXACT["hand-over"],
-        ("touch", LOWER): EXACT["hand-over"],
-        ("slip-off", LOWER): EXACT["slip-off"],
+        ("touch", TIP): EVENTS["touch"],
+        ("slip-off", UPPER): EVENTS["hand-over"],
+        ("touch", LOWER): EVENTS["hand-over"],
+        ("slip-off", LOWER): EVENTS["slip-off"],
     }
     events = [
         Happened(
@@ -242,14 +241,12 @@ def beams(
     return SimpleNamespace(
         depth=depth,
         histories=histories,
-        exact_events=EXACT,
         events=tuple(events),
-        end="pin at the tip",
         attempts=attempts,
         checks=(Check(stage="coupled", pair=UPPER, force=1e-7, arc=1e-7),),
         events_of=lambda kind, pair: [one for one in events if (one.kind, one.pair) == (kind, pair)],
         at_hand_over=lambda pair: [
-            one for one in events if one.pair == pair and one.depth == EXACT["hand-over"]
+            one for one in events if one.pair == pair and one.depth == EVENTS["hand-over"]
         ],
     )
 

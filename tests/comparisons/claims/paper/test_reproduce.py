@@ -137,7 +137,6 @@ def test_fig9(tmp_path, stated):
     assert found["exact_events"]["touch"] == pytest.approx(0.149786, abs=1e-6)
     stated("double-beam.hand-over", found["exact_events"]["hand-over"])
     assert found["exact_events"]["slip-off"] == pytest.approx(0.2 + 0.538697355, abs=1e-4)
-    assert found["end"] == "pin at the tip"
     depth = {(event["kind"], event["pair"]): event["depth"] for event in found["events"]}
     assert depth["touch", "upper.end->lower"] == pytest.approx(found["exact_events"]["touch"], abs=1e-5)
     hand_over = depth["touch", "pin->lower"], depth["slip-off", "pin->upper"]
