@@ -1,11 +1,6 @@
 """Exact solutions: the elastica in closed form and the Reissner rod under a pin, without and with friction."""
 
-from comparisons.exact.elastica import ElasticaState, LimitPoint, elastica_under_pin
-from comparisons.exact.friction_elastica import (
-    FrictionalLimit,
-    elastica_with_friction,
-    frictional_three_point_limit,
-)
+from comparisons.exact.elastica import ElasticaState, elastica_under_pin
 from comparisons.exact.friction_result import FrictionEvent, FrictionPath, FrictionState
 from comparisons.exact.friction_rod import Surface, rod_with_friction
 from comparisons.exact.outcome import Outcome
@@ -16,14 +11,10 @@ __all__ = [
     "FrictionEvent",
     "FrictionPath",
     "FrictionState",
-    "FrictionalLimit",
-    "LimitPoint",
     "Outcome",
     "RodPath",
     "Surface",
     "elastica_under_pin",
-    "elastica_with_friction",
-    "frictional_three_point_limit",
     "rod_under_pin",
     "rod_with_friction",
 ]

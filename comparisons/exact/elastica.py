@@ -14,7 +14,6 @@ is a little behind the clamp. The branch below the fold starts at the straight b
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +24,6 @@ from comparisons.exact.checks import require_positive
 from comparisons.exact.outcome import Outcome
 
 Array = NDArray[np.float64]
-
-
-class LimitPoint(NamedTuple):
-    """Maximum of the load along a path of increasing displacement."""
-
-    load: float
-    displacement: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,70 +204,3 @@ def elastica_under_pin(x: float, y: float, *, EI: float = 1.0, length: float = 1
         tip=np.array([x, y]) + (length - s) * tangent,
         length=length,
     )
-
-
-def slip_off_displacement(x: float, *, length: float = 1.0) -> float:
-    """Height at which a pin raised at `x` leaves the beam over its tip.
-
-    There `s = length`, hence `x/length = X(tc)/I0(tc)`.
-
-    Raises
-    ------
-    ValueError
-        If `x` is not between zero and `length`.
-
-    Examples
-    --------
-    >>> round(slip_off_displacement(0.8), 12)
-    0.538697355156
-    """
-    require_positive(length=length)
-    if not 0.0 < x < length:
-        raise ValueError(f"x = {x}: must lie between 0 and length = {length}")
-    tc = float(
-        brentq(lambda tc: _chord(tc, tc)[0] / _integrals(tc)[0] - x / length, 1e-12, fold_angle(), xtol=1e-15)
-    )
-    return float(length * _chord(tc, tc)[1] / _integrals(tc)[0])
-
-
-def _slope_of_x(tc: float) -> float:
-    """Derivative `X'` of the pin's distance in units of `lam`."""
-    return float(np.cos(2 * tc) / np.sqrt(np.sin(tc)) + _integrals(tc)[2] * np.cos(tc))
-
-
-def contact_force_limit(x: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
-    """Largest contact force of a pin raised at `x` under a beam without end, and the height at which it occurs.
-
-    `F = EI X(tc)^2 / (2 x^2)` is stationary at `X' = cos(2 tc)/sqrt(sin tc) + I2 cos tc = 0`.
-
-    Examples
-    --------
-    >>> round(contact_force_limit().load, 9)
-    1.178533619
-    """
-    require_positive(x=x, EI=EI)
-    tc = float(brentq(_slope_of_x, 0.1, 1.5, xtol=1e-15))
-    X, Y = _chord(tc, tc)
-    return LimitPoint(float(EI * X**2 / (2.0 * x**2)), float(x * Y / X))
-
-
-def three_point_bending_limit(half_span: float = 1.0, *, EI: float = 1.0) -> LimitPoint:
-    """Largest mid-span load `P` on a long beam over two frictionless pins, and the deflection at which it occurs.
-
-    Each half is a cantilever under a pin at `half_span`. The load `P = 2 F cos tc = EI cos tc X^2 / half_span^2` is
-    stationary at `2 X' cos tc = X sin tc`.
-
-    Examples
-    --------
-    >>> limit = three_point_bending_limit()
-    >>> round(limit.load, 12), round(limit.displacement, 12)
-    (1.667952108595, 0.476377597825)
-    """
-    require_positive(half_span=half_span, EI=EI)
-
-    def slope(tc: float) -> float:
-        return float(2.0 * _slope_of_x(tc) * np.cos(tc) - _chord(tc, tc)[0] * np.sin(tc))
-
-    tc = float(brentq(slope, 0.1, 1.5, xtol=1e-15))
-    X, Y = _chord(tc, tc)
-    return LimitPoint(float(EI * np.cos(tc) * X**2 / half_span**2), float(half_span * Y / X))

@@ -1,11 +1,93 @@
-"""The elastica with EI = L = 1, clamped at the origin along +x, by elliptic integrals."""
+"""The elastica with EI = L = 1, clamped at the origin along +x: end loads by elliptic integrals, pins by quadrature.
+
+Under a pin the beam carries the force `F (-sin beta, cos beta)` between clamp and pin. It makes the angle `wc = beta - tc` with the
+normal at the pin, where the tangent has the angle tc: 0 without friction, `-sigma atan mu` in slip of the sense sigma. With `u = tc - theta`
+
+    theta'^2 = 2 F (sin(u + wc) - sin wc),   lam = sqrt(1/2F)
+    s, x, y = lam int_0^tc {1, cos, sin}(tc - u) du / sqrt(sin(u + wc) - sin wc)
+
+The substitution `u = A sin^2(psi/2)`, `A = pi - 2 wc`, makes the integrands analytic. The unknowns are `q = psi(clamp)^2` and
+`ell = lam psi(clamp)`.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc, elliprd, elliprf
 
+# `sin x/x` with the exact complex step at zero, which the exact answers of the product have
+from comparisons.exact.reissner import COMPLEX_STEP, sinc
+
 Array = NDArray[np.float64]
+
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(40)
+GAUSS, WEIGHTS = (GAUSS + 1.0) / 2.0, WEIGHTS / 2.0
+
+
+class Loaded(NamedTuple):
+    """Force, tangent angle at the pin, arc position, position of the pin, and stored energy; complex arrays (...)."""
+
+    force: NDArray[np.complex128]
+    angle: NDArray[np.complex128]
+    arc: NDArray[np.complex128]
+    x: NDArray[np.complex128]
+    y: NDArray[np.complex128]
+    energy: NDArray[np.complex128]
+
+
+def loaded(q: ArrayLike, ell: ArrayLike, wc: ArrayLike) -> Loaded:
+    """Integrate from the pin to the clamp at unknowns (...), which may be complex."""
+    q, ell, wc = (np.asarray(value, dtype=np.complex128)[..., None] for value in (q, ell, wc))
+    A, psi, force = np.pi - 2.0 * wc, np.sqrt(q) * GAUSS, q / (2.0 * ell**2)
+    lower, upper = A * np.sin(psi / 2.0) ** 2 / 2.0, A * np.cos(psi / 2.0) ** 2 / 2.0
+    rate = np.sqrt(2.0) * ell * WEIGHTS / np.sqrt(sinc(lower) * sinc(upper))
+    angle = A * np.sin(np.sqrt(q) / 2.0) ** 2
+    theta = angle - 2.0 * lower
+    return Loaded(
+        force=force[..., 0],
+        angle=angle[..., 0],
+        arc=rate.sum(axis=-1),
+        x=(rate * np.cos(theta)).sum(axis=-1),
+        y=(rate * np.sin(theta)).sum(axis=-1),
+        energy=(rate * force * 2.0 * np.sin(lower) * np.sin(upper)).sum(axis=-1),
+    )
+
+
+def greatest(load: Callable[[Loaded], NDArray[np.complex128]], wc: float = 0.0) -> tuple[float, float]:
+    """Greatest load of a pin raised at x = 1 below a beam without end, where lengths are over x, and the height at which it occurs."""
+
+    def rate(q: float) -> float:
+        return float(load(loaded(q + 1j * COMPLEX_STEP, 1.0, wc)).imag / COMPLEX_STEP)
+
+    part = loaded(brentq(rate, 1e-3, 2.5, xtol=1e-15), 1.0, wc)
+    return float(load(part).real), float((part.y / part.x).real)
+
+
+def contact_force_limit() -> tuple[float, float]:
+    """Greatest contact force of a pin raised at x = 1, and its height."""
+    return greatest(lambda part: part.force * part.x**2)
+
+
+def three_point_limit(friction: float = 0.0) -> list[tuple[float, float]]:
+    """Greatest load of one support of a long beam over two, half a span of 1 apart from its middle, and the deflection.
+
+    The first is that while the beam is drawn in between the supports, the second that while it is pushed back.
+    """
+    angle = np.arctan(friction)
+    return [
+        greatest(lambda part, wc=wc: np.cos(part.angle + wc) * part.force * part.x**2, wc)
+        for wc in (-angle, angle)
+    ]
+
+
+def slip_off_height(x: float) -> float:
+    """Height at which a pin raised at x leaves the beam over its tip."""
+    excess = lambda q: float((loaded(q, 1.0, 0.0).x / loaded(q, 1.0, 0.0).arc).real) - x  # noqa: E731
+    part = loaded(brentq(excess, 1e-9, 7.0, xtol=1e-15), 1.0, 0.0)
+    return float((part.y / part.arc).real)
 
 
 def tip_under_dead_load(load: float) -> Array:

@@ -1,16 +1,20 @@
 """The exact values that the manual states are computed anew by oracles, which share nothing with the models."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 import pytest
 
+from comparisons.claims.manual.friction import COEFFICIENTS, KS_PATH
+
 # the table of problems, whose stated digits are the subject
 from comparisons.claims.manual.problems import PROBLEMS
 from comparisons.claims.problems.double_beam import HAND_OVER
-from comparisons.scene import load_scene
+from comparisons.exact import FrictionPath, rod_with_friction
+from comparisons.scene import BeamSpec, load_scene
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of
+from tests.oracles.friction import elastica_with_friction
 from tests.oracles.tied import rod_with_tied_tip
 
 
@@ -36,7 +40,42 @@ def pair() -> list[float]:
     return [*forces, stage.touch_depth, stage.end_depth, both.slip_off()]
 
 
-ORACLES: dict[str, Callable[[], Sequence[float]]] = {
+def flat(rows: Iterable[Iterable[float]]) -> list[float]:
+    """Return the numbers of all rows."""
+    return [value for row in rows for value in row]
+
+
+def rubbing(beam: BeamSpec, points: Sequence[tuple[float, float]], friction: float) -> FrictionPath:
+    """Return the exact rod with friction, which the product has too."""
+    return rod_with_friction(
+        points, friction=friction, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length
+    )
+
+
+def rubbing_rods() -> Iterator[tuple[float, ...]]:
+    """Yield force, arc position, moment of the clamp and dissipation at the end of the KS path."""
+    for mu in COEFFICIENTS:
+        path = rubbing(load_scene("ks-friction").beams[0], KS_PATH, mu)
+        yield path.magnitude[-1], path.arc_position[-1], path.clamp_moment[-1], path.dissipated[-1]
+
+
+def rubbing_elastica() -> Iterator[tuple[float, ...]]:
+    """Yield force and arc position at the end of the KS path, and the load parameters of stick and slip."""
+    for mu in COEFFICIENTS:
+        path = elastica_with_friction(KS_PATH, friction=mu)
+        yield path.magnitude[-1], path.arc_position[-1], *(event.load_parameter for event in path.events[1:])
+
+
+def hysteresis() -> list[float]:
+    """Forces, arc positions and dissipation of the second cycle, and what is 1 for any material."""
+    scene = load_scene("hysteresis")
+    path = rubbing(scene.beams[0], scene.pins[0].points, scene.contacts[0].friction)
+    F, s, spent, work = path.magnitude, path.arc_position, path.dissipated, path.work
+    lost = spent[5] - spent[3]
+    return [*F[4:], *s[4:], lost, F[4] / F[2], F[5] / F[3], (work[5] - work[3]) / lost]
+
+
+ORACLES: dict[str, Callable[[], Iterable[float]]] = {
     "dead-load": lambda: [elastica.tip_under_dead_load(load)[1] for load in (1.0, 2.0, 5.0, 10.0)],
     "clamped-column": lambda: [column()[0], -column()[1], -8.0 - 8000.0 * column()[1]],
     "pinned-column": lambda: [column()[0], column()[1] / 2.0],
@@ -45,10 +84,18 @@ ORACLES: dict[str, Callable[[], Sequence[float]]] = {
     "portal-frame": lambda: [frames.portal_sway()],
     "ks-tied-tip": tied,
     "double-beam": pair,
+    "force-limit": elastica.contact_force_limit,
+    "three-point-bending": lambda: np.array(elastica.three_point_limit()[0]) * [2.0, 1.0],
+    "slip-off": lambda: [elastica.slip_off_height(0.8)],
+    "three-point-friction": lambda: flat(elastica.three_point_limit(0.2)),
+    "ks-friction-elastica": lambda: flat(rubbing_elastica()),
+    "ks-friction": lambda: flat(rubbing_rods()),
+    "hysteresis": hysteresis,
 }
 """The exact values of problems, in order."""
 
 
+@pytest.mark.slow_at("hysteresis", "ks-friction")
 @pytest.mark.parametrize("name", ORACLES)
 def test_an_oracle_has_the_values_of_the_manual(name: str) -> None:
     problem = PROBLEMS[name]()

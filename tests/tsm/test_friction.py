@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.exact import elastica_with_friction, frictional_three_point_limit
 from tests.fuzz.cantilevers import verdict
+from tests.oracles.elastica import three_point_limit
+from tests.oracles.friction import elastica_with_friction
 from tests.tsm.friction_scenes import LAST, STRIP, Cantilever, drawn, ks
 from tsm.events import EventKind
 
@@ -147,12 +148,9 @@ def test_no_friction_is_the_frictionless_contact(element: str, elements: int) ->
 )
 def test_limit_loads_of_three_point_bending(friction: float) -> None:
     """A half of the beam, its middle held, on a support that rises and goes back."""
-    limit = frictional_three_point_limit(friction)
-    for back, point in ((False, limit.drawn_in), (True, limit.pushed_back)):
-        top = 0.62 if back else point.displacement + 0.02
-        path = (
-            ((1.0, 0.0), (1.0, top), (1.0, point.displacement - 0.05)) if back else ((1.0, 0.0), (1.0, top))
-        )
+    for back, (greatest, place) in enumerate(three_point_limit(friction)):
+        top = 0.62 if back else place + 0.02
+        path = ((1.0, 0.0), (1.0, top), (1.0, place - 0.05)) if back else ((1.0, 0.0), (1.0, top))
         beam = tsm.Beam(name="beam", start=(0, 0), end=(3, 0), section=STIFF, element="exact", elements=1)
         structure = tsm.Structure(
             beams=(beam,),
@@ -163,10 +161,10 @@ def test_limit_loads_of_three_point_bending(friction: float) -> None:
         (pin,) = structure.pins
         begin = pin.corners[0] if back else 0.0
         way = -1 if back else 1
-        here = begin + way * (point.displacement - (top if back else 0.0)) / pin.length
+        here = begin + way * (place - (top if back else 0.0)) / pin.length
         result = tsm.solve(structure, np.array([here - 1e-3, here, here + 1e-3]))
         load = -result.supports["beam.start"].force[:, 1]
-        assert load[1] == pytest.approx(point.load, rel=1e-9)
+        assert load[1] == pytest.approx(greatest, rel=1e-9)
         assert load[0] < load[1] > load[2]
 
 

@@ -32,17 +32,23 @@ from comparisons.claims.manual.scenes import (
     under_pin,
 )
 from comparisons.claims.problems.peaks import summit
-from comparisons.exact import (
-    FrictionPath,
-    elastica_with_friction,
-    frictional_three_point_limit,
-    rod_with_friction,
-)
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
 
-COEFFICIENTS = (0.1, 0.3, 0.5)
 KS_PATH = ((1.0, 0.0), (0.0, 2.0 / np.pi))
+ELASTICA_BY_FRICTION = {
+    0.1: (7.841931727558, 0.873153311584, 0.625520218912, 0.657907419618),
+    0.3: (7.541844254804, 0.847105863940, 0.620650977891, 0.682554111942),
+    0.5: (7.582736946124, 0.831181215881, 0.614238368032, 0.701126617807),
+}
+"""Force and arc position at the end, and load parameters of stick and slip; `tests/oracles/friction.py` computes them."""
+ROD_BY_FRICTION = {
+    0.1: (0.00219358031585571, 0.873335466586381, -0.00100138429587205, 8.87404663866967e-05),
+    0.3: (0.00211030486208590, 0.847142560461239, -0.00116976219266563, 2.33016806724164e-04),
+    0.5: (0.00212228281136253, 0.831119109268655, -0.00129117497499545, 3.51983886357871e-04),
+}
+"""Force, arc position and moment of the clamp at the end, and the energy dissipated; `tests/oracles` holds them."""
+COEFFICIENTS = tuple(ROD_BY_FRICTION)
 SOURCE = (
     "quadratures with the force tilted by the angle of friction, and stick at a held place (comparisons.exact.rod_with_friction, which shares nothing "
     "with the models)"
@@ -74,18 +80,11 @@ def _stick_and_slip(response: Response) -> list[float]:
     return [located.get("stick", np.nan), located.get("slip", np.nan)]
 
 
-def _at_the_end(path: FrictionPath) -> tuple[float, float]:
-    return float(path.magnitude[-1]), float(path.arc_position[-1])
-
-
 def ks_friction_elastica() -> Problem:
     """The main scene's path on the elastica with friction."""
     scene = under_pin(cantilever(), *KS_PATH, load_parameters=20, name="ks-friction-elastica", friction=0.3)
     quantities = []
-    for mu in COEFFICIENTS:
-        path = elastica_with_friction(KS_PATH, friction=mu)
-        force, arc = _at_the_end(path)
-        stick, slip = (event.load_parameter for event in path.events[1:])
+    for mu, (force, arc, stick, slip) in ELASTICA_BY_FRICTION.items():
         quantities += [
             Quantity(name=f"F L^2/EI at t = 1, mu = {mu:g}", exact=force),
             Quantity(name=f"s/L at t = 1, mu = {mu:g}", exact=arc, scale=1.0),
@@ -106,7 +105,7 @@ def ks_friction_elastica() -> Problem:
         statement=f"A cantilever, {ELASTICA_TEXT}; a pin with the coefficient of friction mu starts at its tip (1, 0) and moves straight to (0, 2/pi). It "
         "slides towards the clamp, sticks, and slides towards the tip.",
         source="closed form by integrals of the tangent angle, theta'^2 = (2F/EI)(sin(u + psi) - sin psi) with psi = +-atan mu "
-        "(comparisons.exact.elastica_with_friction)",
+        "(tests/oracles/friction.py)",
         quantities=tuple(quantities),
         trials=(
             _each(EXACT, 1e-8, RIGID, read),
@@ -121,14 +120,12 @@ def ks_friction() -> Problem:
     scene = ks("ks-friction", material="biot-linear")
     beam = scene.beams[0]
     quantities = []
-    for mu in COEFFICIENTS:
-        path = rod_with_friction(KS_PATH, friction=mu, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length)
-        force, arc = _at_the_end(path)
+    for mu, (force, arc, moment, dissipated) in ROD_BY_FRICTION.items():
         quantities += [
             Quantity(name=f"F [N] at t = 1, mu = {mu:g}", exact=force),
             Quantity(name=f"s [m] at t = 1, mu = {mu:g}", exact=arc, scale=beam.length),
-            Quantity(name=f"M [N m] of the clamp at t = 1, mu = {mu:g}", exact=float(path.clamp_moment[-1])),
-            Quantity(name=f"energy dissipated [N m], mu = {mu:g}", exact=float(path.dissipated[-1])),
+            Quantity(name=f"M [N m] of the clamp at t = 1, mu = {mu:g}", exact=moment),
+            Quantity(name=f"energy dissipated [N m], mu = {mu:g}", exact=dissipated),
         ]
 
     def read(response: Response) -> list[float]:
@@ -162,10 +159,16 @@ def ks_friction() -> Problem:
     )
 
 
+LIMITS = {
+    "drawn in": (0.948651379546643, 0.522089479583248),
+    "pushed back": (0.727371650251847, 0.427640054969161),
+}
+"""Greatest load of a support and its place, with the friction .2; `tests/oracles/elastica.py` computes them."""
+
+
 def three_point_friction() -> Problem:
     """Limit loads of three-point bending with friction, drawn in and pushed back."""
     friction, load_parameters = 0.2, 96
-    exact = frictional_three_point_limit(friction)
     built_in = load_scene("three-point-friction")
     scene = replace(rigid(built_in, 10.0 * INFINITE), load_parameters=load_parameters)
     pin, EI = scene.pins[1], scene.beams[0].EI
@@ -181,10 +184,10 @@ def three_point_friction() -> Problem:
     by_mixed = on_scene(mixed(60), 2e-6, f"{FOURTH}; stretch, EA = {INFINITE / 100.0:g} EI/L^2", read)
     stretched = replace(scene, beams=rigid(built_in, INFINITE / 100.0).beams)
     quantities = []
-    for limit, way in ((exact.drawn_in, "drawn in"), (exact.pushed_back, "pushed back")):
+    for way, (load, deflection) in LIMITS.items():
         quantities += [
-            Quantity(name=f"V a^2/EI, {way}", exact=limit.load),
-            Quantity(name=f"deflection over a, {way}", exact=limit.displacement),
+            Quantity(name=f"V a^2/EI, {way}", exact=load),
+            Quantity(name=f"deflection over a, {way}", exact=deflection),
         ]
     return Problem(
         name="three-point-friction",
@@ -194,7 +197,7 @@ def three_point_friction() -> Problem:
         scene=scene,
         statement=f"The beam of three-point-bending, EI = 1,400,000 N mm^2, half span a = 100 mm, neither stretch nor shear (EA = GA = {10 * INFINITE:g} EI/L^2 in "
         f"their place), over supports with the coefficient of friction {friction:g}, which rise by .7 a and go back to .2 a. V is the vertical force of one support.",
-        source="closed form: V = EI cos(tc + psi) X(tc)^2/(2 a^2) at its maximum, psi = -+atan mu (comparisons.exact.frictional_three_point_limit)",
+        source="closed form: V = EI cos(tc + psi) X(tc)^2/(2 a^2) at its maximum, psi = -+atan mu (tests/oracles/elastica.py)",
         quantities=tuple(quantities),
         trials=(
             on_scene(EXACT, 1e-9, READ_OFF, read),
@@ -204,18 +207,16 @@ def three_point_friction() -> Problem:
     )
 
 
+SECOND_CYCLE = {60: (44.8989432868212, 63.9216785602630), 80: (19.1915545096094, 82.9545104380966)}
+"""Force [N] and arc position [mm] by the place of the pin [mm]; `tests/oracles` holds them."""
+DISSIPATED = 322.713530813987
+"""Energy dissipated in the second cycle [N mm]."""
+
+
 def hysteresis() -> Problem:
     """A pin that goes to and fro."""
     scene = load_scene("hysteresis")
-    beam, pin = scene.beams[0], scene.pins[0]
-    path = rod_with_friction(
-        pin.points,
-        friction=scene.contacts[0].friction,
-        EA=beam.EA,
-        GA=beam.GA,
-        EI=beam.EI,
-        length=beam.length,
-    )
+    length = scene.beams[0].length
     legs = np.array([3, 7, 11, 15, 19])
 
     def read(response: Response) -> list[float]:
@@ -243,20 +244,20 @@ def hysteresis() -> Problem:
         source=f"Reissner's rod by {SOURCE}; the closed loop and the balance of energy hold for any material",
         quantities=(
             *(
-                Quantity(name=f"F [N] at x = {x} mm, second cycle", exact=float(path.magnitude[k]))
-                for k, x in ((4, 60), (5, 80))
+                Quantity(name=f"F [N] at x = {x} mm, second cycle", exact=force)
+                for x, (force, _) in SECOND_CYCLE.items()
             ),
             *(
                 Quantity(
                     name=f"s [mm] at x = {x} mm, second cycle",
-                    exact=float(path.arc_position[k]),
-                    scale=beam.length,
+                    exact=arc,
+                    scale=length,
                 )
-                for k, x in ((4, 60), (5, 80))
+                for x, (_, arc) in SECOND_CYCLE.items()
             ),
             Quantity(
                 name="energy dissipated in the second cycle [N mm]",
-                exact=float(path.dissipated[5] - path.dissipated[3]),
+                exact=DISSIPATED,
             ),
             *(
                 Quantity(name=f"F of the second cycle over F of the first, x = {x} mm", exact=1.0)
