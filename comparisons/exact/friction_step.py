@@ -215,7 +215,7 @@ def _up_to_event(
         goes_on = start.t - phase.since > _TOGETHER or ending is Ending.SLIP_OFF
         if before is start and start.margins[k] <= EDGE and goes_on:
             return Step(start, 0.0, 0.0, ending, _held(phase, start))
-        if before.margins[k] <= 0.0:
+        if before.margins[k] <= EDGE:
             return None
         root = _root(at, k, bracket)
         if root is None:
