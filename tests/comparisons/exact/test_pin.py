@@ -1,4 +1,4 @@
-"""The Reissner rod under a pin: shooting, the elastica's limit, energy, events, input."""
+"""The elastica and the Reissner rod under a pin: integration from the clamp, limits, energy, events, input."""
 
 from itertools import pairwise
 
@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 
 from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
+
+# the polar angle of the pin, whose turning point ends the branch of the elastica
+from comparisons.exact.elastica import _polar_angle, fold_angle
 from tests.oracles.elastica import slip_off_height
 from tests.oracles.shooting import RIGID, shot
 
 E, A, INERTIA, HEIGHT = 2.1e4, 4e-4, 0.02**4 / 12.0, 0.02
 SECTION = {"EA": E * A, "GA": 5.0 / 6.0 * E / 2.6 * A, "EI": E * INERTIA}
 KS = {**SECTION, "length": 1.0}
+KS_END = (0.0, 2.0 / np.pi)
 OFFSETS = pytest.mark.parametrize("offset", [0.0, HEIGHT / 2.0])
 OPEN, CONTACT, SLIPPED, LOST = Outcome.OPEN, Outcome.CONTACT, Outcome.SLIPPED, Outcome.LOST
 
@@ -21,24 +25,71 @@ def ks_pins(t, offset=0.0):
     return np.stack([1.0 - t, 2.0 * t / np.pi - offset], axis=1)
 
 
+def arrives(force, moment, loaded, shape, section, atol):
+    """State and tangent at the contact, integrated from the clamp through the points of a shape and the straight tail behind."""
+    start = [0.0, 0.0, 0.0, -moment]
+    end, tangent = shot(force, start, loaded, **section)
+    tail = np.array([np.cos(end[2]), np.sin(end[2])])
+    for arc, point in shape:
+        place = shot(force, start, min(arc, loaded), **section)[0][:2] + max(arc - loaded, 0.0) * tail
+        np.testing.assert_allclose(point, place, rtol=0, atol=atol)
+    return end, tangent + tail
+
+
+@pytest.mark.parametrize("pin", [KS_END, (0.5, 1.0 / np.pi), (1.0, 2.0), (1.0, 0.1), (-0.05, 0.5)])
+def test_integration_from_the_clamp_arrives_at_the_elasticas_contact(pin):
+    state = elastica_under_pin(*pin, EI=2.0, length=3.0)
+    shape = [*zip(np.linspace(0.0, 3.0, 7), state.shape(7), strict=True), (3.0, state.tip)]
+    arc, section = state.arc_position, {**RIGID, "EI": 2.0}
+    end, tangent = arrives(state.force, state.clamp_moment, arc, shape, section, 1e-11)
+    np.testing.assert_allclose(end[:4], [*pin, state.tangent_angle, 0.0], atol=4e-12)
+    assert tangent @ state.force == pytest.approx(0.0, abs=1e-11)
+    assert state.magnitude == pytest.approx(np.hypot(*state.force), rel=1e-14)
+
+
 @OFFSETS
-def test_integration_from_the_clamp_arrives_at_the_contact(offset):
-    """The four conditions of the shooting problem, and the shape."""
-    pins, arc = ks_pins(np.linspace(0.0, 1.0, 8), offset), np.linspace(0.0, 1.0, 9)
+def test_integration_from_the_clamp_arrives_at_the_rods_contact(offset):
+    pins = ks_pins(np.linspace(0.0, 1.0, 8), offset)
     path = rod_under_pin(pins, offset=offset, **KS)
     for k in range(1, len(pins)):
-        force, s = path.force[k], path.arc_position[k]
-        start = [0.0, 0.0, 0.0, -path.clamp_moment[k]]
-        end, before = shot(force, start, s, **SECTION)
-        after, f = np.array([np.cos(end[2]), np.sin(end[2])]), force / path.magnitude[k]
-        assert f @ (before + after) == pytest.approx(0.0, abs=2e-12)
+        rows = path.shape(k, 9)
+        shape = [*zip(np.linspace(0.0, 1.0, 9), rows[:, :2], strict=True), (1.0, path.tip[k])]
+        arc, f = path.arc_position[k], path.force[k] / path.magnitude[k]
+        end, tangent = arrives(path.force[k], path.clamp_moment[k], arc, shape, SECTION, 1e-11)
+        assert f @ tangent == pytest.approx(0.0, abs=2e-12)
         assert end[3] == pytest.approx(0.0, abs=3e-12 * abs(path.clamp_moment[k]))
+        assert [rows[-1, 2], path.tip_rotation[k]] == pytest.approx([end[2]] * 2, abs=1e-11)
         np.testing.assert_allclose(end[:2] - offset * f, pins[k], rtol=0, atol=2e-12)
-        for x, row in zip(arc, path.shape(k, 9), strict=True):
-            place = shot(force, start, min(x, s), **SECTION)[0][:3]
-            place[:2] += max(x - s, 0.0) * after
-            np.testing.assert_allclose(row, place, rtol=0, atol=1e-11)
-        np.testing.assert_allclose(row, [*path.tip[k], path.tip_rotation[k]], rtol=0, atol=1e-14)
+
+
+def test_the_clamp_moment_of_the_elastica_at_the_end_of_the_ks_path_is_pi():
+    assert elastica_under_pin(*KS_END).clamp_moment == pytest.approx(-np.pi, rel=1e-14)
+
+
+def test_a_direction_of_the_pin_has_one_solution_below_the_fold_and_one_beyond():
+    """The polar angle of the pin grows up to the fold, at 2.983418, and falls beyond: the smaller root is the straight beam's branch."""
+    assert fold_angle() == pytest.approx(2.983418, abs=5e-7)
+    below, beyond = np.linspace(1e-3, fold_angle(), 400), np.linspace(fold_angle(), np.pi, 100)
+    assert np.all(np.diff([_polar_angle(angle) for angle in below]) > 0.0)
+    assert np.all(np.diff([_polar_angle(angle) for angle in beyond]) < 0.0)
+    direction = _polar_angle(3.1)
+    assert elastica_under_pin(np.cos(direction) / 2.0, np.sin(direction) / 2.0).tangent_angle < fold_angle()
+
+
+def test_outcomes_of_the_elastica():
+    places = {
+        (0.5, -0.1): OPEN,
+        (1.1, 0.0): OPEN,
+        (1.0, 0.0): CONTACT,
+        (0.9, 0.6): SLIPPED,
+        (-0.1, 0.2): LOST,
+    }
+    assert {place: elastica_under_pin(*place).outcome for place in places} == places
+    assert elastica_under_pin(1.0, 0.0).arc_position == 1.0
+    free = elastica_under_pin(0.9, 0.6)
+    assert free.magnitude == 0.0
+    assert np.isnan(free.arc_position)
+    np.testing.assert_array_equal(free.shape(3), [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
 
 
 @pytest.mark.parametrize("t", [0.05, 0.6, 1.0])
@@ -47,7 +98,6 @@ def test_the_stiff_limit_is_the_elastica(t):
     path, state = rod_under_pin(ks_pins([0.0, t]), **stiff), elastica_under_pin(*ks_pins([t])[0], EI=KS["EI"])
     for name in ("magnitude", "arc_position", "clamp_moment"):
         assert getattr(path, name)[1] == pytest.approx(getattr(state, name), rel=1e-8, abs=0.0)
-    np.testing.assert_allclose(path.shape(1, 51)[:, :2], state.shape(51), atol=1e-8)
     rigid = rod_under_pin([[0.9, 0.0], [0.9, 0.5]], **RIGID, length=1.0)
     assert rigid.slip_off * 0.5 == pytest.approx(slip_off_height(0.9), abs=1e-13)
 
@@ -92,18 +142,15 @@ UP = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1), (0.8, 0.7)]
 )
 def test_a_contact_opens_closes_slips_off_and_is_lost(pins, offset, outcomes):
     """What is closed has the force of a pin that comes there straight from the tip; what is open is straight, what is lost nan."""
-    path = rod_under_pin(pins, offset=offset, **KS)
-    assert path.outcome == tuple(
-        {"o": OPEN, "c": CONTACT, "s": SLIPPED, "l": LOST}[x] for x in outcomes.split()
-    )
+    path, straight = rod_under_pin(pins, offset=offset, **KS), np.outer([0.0, 0.5, 1.0], [1.0, 0.0, 0.0])
+    named = {"o": OPEN, "c": CONTACT, "s": SLIPPED, "l": LOST}
+    assert path.outcome == tuple(named[letter] for letter in outcomes.split())
     for k, outcome in enumerate(path.outcome):
         assert np.isnan(path.arc_position[k]) == (outcome is not CONTACT)
         if outcome is LOST:
             assert np.all(np.isnan([path.magnitude[k], *path.shape(k, 3).ravel()]))
         elif outcome is not CONTACT:
-            np.testing.assert_array_equal(
-                path.shape(k, 3), [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]
-            )
+            np.testing.assert_array_equal(path.shape(k, 3), straight)
             np.testing.assert_array_equal([path.magnitude[k], *path.tip[k]], [0.0, 1.0, 0.0])
         elif path.magnitude[k] > 1e-15:
             direct = rod_under_pin([(1.0, -offset), pins[k]], offset=offset, **KS)
@@ -113,11 +160,11 @@ def test_a_contact_opens_closes_slips_off_and_is_lost(pins, offset, outcomes):
 def test_the_first_slip_off_is_located_on_the_whole_path():
     direct, way = rod_under_pin(UP[:2], **KS).slip_off * 0.8, sum(abs(b[1] - a[1]) for a, b in pairwise(UP))
     assert rod_under_pin(UP, **KS).slip_off * way == pytest.approx(direct, rel=1e-12)
-    close = rod_under_pin([UP[0], (0.8, direct - 0.1 - 1e-9)], **KS)
-    assert 1.0 - 2e-8 < close.arc_position[-1] < 1.0
+    assert 1.0 - 2e-8 < rod_under_pin([UP[0], (0.8, direct - 0.1 - 1e-9)], **KS).arc_position[-1] < 1.0
     assert rod_under_pin([(1.0, -0.1), (1.0, 0.1)], **KS).slip_off == pytest.approx(0.5, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
     """It passes the clamp .05 % of the length above: strains grow without bound, and steps shrink without end."""
     path = rod_under_pin([[0.25, 0.0], [-0.209, 0.001]], EA=3e4, GA=2.5e5, EI=1.0, length=1.0)
@@ -136,8 +183,12 @@ def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
         ({"points": [[0.8, np.nan]]}, "points"),
         ({"points": [0.8, 0.1]}, "points"),
         ({"points": [[0.8, 0.1]]}, "must start below the rod"),
+        ({"x": np.nan, "y": 0.1}, "x = nan: must be finite"),
+        ({"x": 0.5, "y": 0.1, "EI": -1.0}, "EI = -1.0: must be positive"),
     ],
 )
 def test_bad_input(change, message):
     with pytest.raises(ValueError, match=message):
-        rod_under_pin(**({"points": [[0.8, 0.0]], **KS} | change))
+        elastica_under_pin(**change) if "x" in change else rod_under_pin(
+            **{"points": [[0.8, 0.0]], **KS, **change}
+        )
