@@ -1,4 +1,4 @@
-"""Exact solutions: the elastica in closed form and the Reissner rod under a pin, without and with friction."""
+"""Exact solutions under one pin: the elastica in closed form, and the Reissner rod without and with friction."""
 
 from comparisons.exact.elastica import ElasticaState, elastica_under_pin
 from comparisons.exact.friction_result import FrictionEvent, FrictionPath, FrictionState

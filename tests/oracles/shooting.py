@@ -8,6 +8,14 @@ from scipy.integrate import solve_ivp
 
 Array = NDArray[np.float64]
 RIGID = {"EA": np.inf, "GA": np.inf, "EI": 1.0}
+KS = {"EA": 8.4, "GA": 5.0 / 6.0 * 8.4 / 2.6, "EI": 2.8e-4}
+"""Section of the cantilever of Konyukhov and Schweizerhof, whose length is 1."""
+
+
+def ks_pins(t: Sequence[float] | Array, offset: float = 0.0) -> Array:
+    """Return places (s, 2) of their pin."""
+    t = np.asarray(t)
+    return np.stack([1.0 - t, 2.0 * t / np.pi - offset], axis=1)
 
 
 def shot(

@@ -5,24 +5,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from comparisons.exact import Outcome, elastica_under_pin, rod_under_pin
+from comparisons.exact import Outcome, Surface, elastica_under_pin, rod_under_pin, rod_with_friction
 
 # the polar angle of the pin, whose turning point ends the branch of the elastica
 from comparisons.exact.elastica import _polar_angle, fold_angle
 from tests.oracles.elastica import slip_off_height
-from tests.oracles.shooting import RIGID, shot
+from tests.oracles.shooting import KS as SECTION
+from tests.oracles.shooting import RIGID, ks_pins, shot
 
-E, A, INERTIA, HEIGHT = 2.1e4, 4e-4, 0.02**4 / 12.0, 0.02
-SECTION = {"EA": E * A, "GA": 5.0 / 6.0 * E / 2.6 * A, "EI": E * INERTIA}
+HEIGHT = 0.02
 KS = {**SECTION, "length": 1.0}
 KS_END = (0.0, 2.0 / np.pi)
 OFFSETS = pytest.mark.parametrize("offset", [0.0, HEIGHT / 2.0])
 OPEN, CONTACT, SLIPPED, LOST = Outcome.OPEN, Outcome.CONTACT, Outcome.SLIPPED, Outcome.LOST
-
-
-def ks_pins(t, offset=0.0):
-    t = np.asarray(t)
-    return np.stack([1.0 - t, 2.0 * t / np.pi - offset], axis=1)
 
 
 def arrives(force, moment, loaded, shape, section, atol):
@@ -173,22 +168,31 @@ def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("call", "change", "message"),
     [
-        ({"EA": 0.0}, "EA = 0.0: must be positive"),
-        ({"GA": np.nan}, "GA = nan: must be positive"),
-        ({"EI": np.inf}, "EI = inf: must be positive and finite"),
-        ({"length": -1.0}, "length = -1.0: must be positive and finite"),
-        ({"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
-        ({"points": [[0.8, np.nan]]}, "points"),
-        ({"points": [0.8, 0.1]}, "points"),
-        ({"points": [[0.8, 0.1]]}, "must start below the rod"),
-        ({"x": np.nan, "y": 0.1}, "x = nan: must be finite"),
-        ({"x": 0.5, "y": 0.1, "EI": -1.0}, "EI = -1.0: must be positive"),
+        (rod_under_pin, {"EA": 0.0}, "EA = 0.0: must be positive"),
+        (rod_under_pin, {"GA": np.nan}, "GA = nan: must be positive"),
+        (rod_under_pin, {"EI": np.inf}, "EI = inf: must be positive and finite"),
+        (rod_under_pin, {"length": -1.0}, "length = -1.0: must be positive and finite"),
+        (rod_under_pin, {"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
+        (rod_under_pin, {"points": [[0.8, np.nan]]}, "points"),
+        (rod_under_pin, {"points": [0.8, 0.1]}, "points"),
+        (rod_under_pin, {"points": [[0.8, 0.1]]}, "must start below the rod"),
+        (rod_with_friction, {"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
+        (rod_with_friction, {"EA": 0.0}, "EA = 0.0: must be positive"),
+        (rod_with_friction, {"length": np.nan}, "length = nan: must be positive and finite"),
+        (rod_with_friction, {"points": [0.8, 0.1]}, "points"),
+        (rod_with_friction, {"surface": Surface(offset=0.1)}, "must not start inside the rod"),
+        (Surface, {"radius": -1.0}, r"radius = -1\.0: must be finite and not negative"),
+        (elastica_under_pin, {"x": np.nan}, "x = nan: must be finite"),
+        (elastica_under_pin, {"EI": -1.0}, "EI = -1.0: must be positive"),
     ],
 )
-def test_bad_input(change, message):
+def test_bad_input(call, change, message):
+    given = {
+        rod_under_pin: {"points": [[0.8, 0.0]], **KS},
+        rod_with_friction: {"points": [[0.8, 0.0]], "friction": 0.3, **KS},
+        elastica_under_pin: {"x": 0.5, "y": 0.1},
+    }
     with pytest.raises(ValueError, match=message):
-        elastica_under_pin(**change) if "x" in change else rod_under_pin(
-            **{"points": [[0.8, 0.0]], **KS, **change}
-        )
+        call(**{**given.get(call, {}), **change})
