@@ -86,7 +86,7 @@ def test_all_conditions_hold_when_integrated_from_the_clamp(surface, side):
     """Contact at the offset across the mean tangent, the couple of the friction about the axis, Coulomb's law, energy."""
     friction, reach = 0.3, surface.offset + surface.radius
     pins = ks_pins([0.0, 0.3, 0.9], reach) * [1.0, side]
-    path = checked(rod_with_friction(pins, friction=friction, **THICK, surface=surface), friction, 1e-3)
+    path = checked(rod_with_friction(pins, friction=friction, **THICK, surface=surface), friction)
     for k, sense in ((1, -1), (2, 1)):
         start = [0.0, 0.0, 0.0, -path.clamp_moment[k]]
         end, before = shot(path.force[k], start, path.arc_position[k], **SECTION)
