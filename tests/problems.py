@@ -3,6 +3,7 @@
 import tomllib
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -24,43 +25,50 @@ RUNS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """A scene, its answers by load parameter and name, their source, and what each model makes of it.
+    """A scene, its answers by load parameter and name, and their source.
 
-    A model has a tolerance, the fragment of its refusal, or the name of its stop in capitals.
+    A model of `RUNS` has its error in `errors`, or the fragment of its refusal or the status of its stop in `others`.
     """
 
     scene: str
     source: str
-    models: dict[str, float | str]
+    errors: dict[str, float]
+    others: dict[str, str]
     answers: dict[float, dict[str, tuple[Decimal, ...]]]
+    events: list[list[Any]]
 
     def at(self, load_parameter: float) -> dict[str, Any]:
         """The answers at a load parameter by name, as ``force pin->cantilever``: numbers, and vectors of two."""
         rows = {name: tuple(map(float, row)) for name, row in self.answers[load_parameter].items()}
         return {name: row[0] if len(row) == 1 else row for name, row in rows.items()}
 
-    def mistakes(self, response: Response, tolerance: float, least: float = 0.0) -> list[str]:
-        """The answers behind load parameter `least` that differ by more than a tolerance and half a unit of the last digit.
-
-        A tolerance is relative to the number, of an arc position and a tip to the length of the beam.
-        """
+    def mistakes(self, response: Response, error: float) -> list[str]:
+        """The answers at load parameters of a response that are off by more than an error and half a unit of the last digit."""
         found, times = [], response.load_parameter
         for t, row in self.answers.items():
-            if t < least or not np.isclose(times, t, rtol=0, atol=1e-12).any():
-                continue
             k = int(np.abs(times - t).argmin())
+            if abs(times[k] - t) > 1e-12:
+                continue
             for name, digits in row.items():
-                is_ = np.atleast_1d(value(response, name, k))
-                true = np.array([float(one) for one in digits])
-                unit = max(map(half_unit, digits))
+                own, true = np.atleast_1d(value(response, name, k)), np.array([float(one) for one in digits])
                 size = self.length(name) if name.startswith(("arc ", "tip ")) else np.abs(true).max()
-                if not np.abs(is_ - true).max() <= max(tolerance * size, unit):
-                    found.append(f"{self.scene}: {name} at {t:g}: {is_} is not {true}")
+                if not np.abs(own - true).max() <= max(error * size, *map(half_unit, digits)):
+                    found.append(f"{self.scene}: {name} at {t:g} is {own}, must be {true}")
         return found
+
+    def misplaced(self, response: Response) -> list[tuple[Any, Any]]:
+        """The events of a response that are no events of the table, each beside that of the table."""
+        happened = [item for item in response.events or () if item.kind != "pass-through"]
+        pairs = list(zip_longest(happened, self.events)) if self.events else []
+        return [
+            (own, true) for own, true in pairs
+            if own is None or true is None or own.kind != true[0] or abs(own.load_parameter - float(true[1])) > 1e-8
+            or true[2:] not in ([], [own.stage])
+        ]  # fmt: skip
 
     def length(self, name: str) -> float:
         """Length of the beam of an arc position or a tip."""
-        return load_scene(self.scene).beam(name.split()[-1].rpartition("->")[2]).length
+        return load_scene(self.scene).beam(name.rsplit(maxsplit=1)[-1].rpartition("->")[2]).length
 
 
 def half_unit(number: Decimal) -> float:
@@ -75,25 +83,39 @@ def value(response: Response, name: str, k: int) -> Any:
     if what in ("force", "arc"):
         contact = response.contacts[where]
         return (contact.force if what == "force" else contact.arc_position)[k]
+    if what == "dissipated":
+        friction = response.contacts[where].friction
+        assert friction is not None
+        return friction.dissipated[k]
     if what == "tip":
         return response.tips[where][k]
-    held = response.supports[where] if where in response.supports else response.springs[where]
-    return held.moment[k] if what == "moment" else held.force[k]
+    if what == "spring":
+        return response.springs[where].force[k]
+    support = response.supports[where]
+    return support.moment[k] if what == "moment" else support.force[k]
 
 
 def _problems() -> dict[str, Problem]:
     text = Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
     found = {}
     for scene, table in tomllib.loads(text, parse_float=Decimal).items():
-        models = {name: float(one) if isinstance(one, Decimal) else one for name, one in table["models"].items()}
-        answers = {
-            float(row.pop("at", 1)): {
-                name: tuple(map(Decimal, one)) if isinstance(one, list) else (Decimal(one),)
-                for name, one in row.items()
-            }
-            for row in table["answers"]
-        }
-        found[scene] = Problem(scene=scene, source=table["source"], models=models, answers=answers)
+        errors = {name: float(one) for name, one in table["errors"].items()}
+        answers: dict[float, dict[str, tuple[Decimal, ...]]] = {}
+        for row in table["answers"]:
+            answers.setdefault(float(row.pop("at")), {}).update(
+                {
+                    name: tuple(map(Decimal, one if isinstance(one, list) else [one]))
+                    for name, one in row.items()
+                }
+            )
+        found[scene] = Problem(
+            scene=scene,
+            source=table["source"],
+            errors=errors,
+            others=table.get("others", {}),
+            answers=answers,
+            events=table.get("events", []),
+        )
     return found
 
 

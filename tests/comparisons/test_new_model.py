@@ -182,9 +182,7 @@ def test_check_lists_every_model_and_an_entry_point_without_one_is_named(offered
     assert lines["opensees"].startswith("no, BeamContact2D touches beams with pins only")
     assert lines["absent"].startswith("no, entry point absent = no_such_module:MODEL: ModuleNotFoundError")
     for name, value in {"number": "OTHER", "wrong": "MODEL"}.items():
-        assert (
-            lines[name] == f"no, entry point {name} = lender:{value}: must be a Model of this name"
-        )
+        assert lines[name] == f"no, entry point {name} = lender:{value}: must be a Model of this name"
     assert lines["own"] == "no, there is no program no-such-program"
     assert lines["resolved scene"] == "scene.json"
     assert json.loads((offered / "scene.json").read_text())["name"] == "double-beam"
