@@ -1,9 +1,9 @@
 """The built-in scenes with their answers, from ``problems.toml``: the one place of these digits, their sources and their tolerances."""
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
-from itertools import zip_longest
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from comparisons.models import MODELS
 from comparisons.models.options import Options
-from comparisons.response import Response
+from comparisons.response import ContactEvent, Response
 from comparisons.scene import load_scene
 
 RUNS = {
@@ -21,6 +21,11 @@ RUNS = {
     **{name: (name, Options()) for name in MODELS if name != "tsm"},
 }
 """The models of the table, with their options."""
+QUANTITIES = {
+    "force": ("contacts", "force"), "arc": ("contacts", "arc_position"), "dissipated": ("contacts", "friction.dissipated"),
+    "reaction": ("supports", "force"), "moment": ("supports", "moment"), "spring": ("springs", "force"), "tip": ("tips", ""),
+}  # fmt: skip
+"""Where a response has the first word of a name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,9 +38,9 @@ class Problem:
     scene: str
     source: str
     errors: dict[str, float]
-    others: dict[str, str]
     answers: dict[float, dict[str, tuple[Decimal, ...]]]
-    events: list[list[Any]]
+    others: dict[str, str] = field(default_factory=dict)
+    events: list[list[Any]] = field(default_factory=list)
 
     def at(self, load_parameter: float) -> dict[str, Any]:
         """The answers at a load parameter by name, as ``force pin->cantilever``: numbers, and vectors of two."""
@@ -56,15 +61,14 @@ class Problem:
                     found.append(f"{self.scene}: {name} at {t:g} is {own}, must be {true}")
         return found
 
-    def misplaced(self, response: Response) -> list[tuple[Any, Any]]:
-        """The events of a response that are no events of the table, each beside that of the table."""
+    def misplaced(self, response: Response) -> list[ContactEvent]:
+        """The events of a response that has others than the table, which may have none."""
         happened = [item for item in response.events or () if item.kind != "pass-through"]
-        pairs = list(zip_longest(happened, self.events)) if self.events else []
-        return [
-            (own, true) for own, true in pairs
-            if own is None or true is None or own.kind != true[0] or abs(own.load_parameter - float(true[1])) > 1e-8
-            or true[2:] not in ([], [own.stage])
-        ]  # fmt: skip
+        right = len(happened) == len(self.events) and all(
+            own.kind == kind and abs(own.load_parameter - float(t)) <= 1e-8 and stage in ([], [own.stage])
+            for own, (kind, t, *stage) in zip(happened, self.events, strict=True)
+        )
+        return [] if right or not self.events else happened
 
     def length(self, name: str) -> float:
         """Length of the beam of an arc position or a tip."""
@@ -80,19 +84,9 @@ def half_unit(number: Decimal) -> float:
 def value(response: Response, name: str, k: int) -> Any:
     """Number or vector of an answer by its name at a position of the load parameters."""
     what, where = name.split()
-    if what in ("force", "arc"):
-        contact = response.contacts[where]
-        return (contact.force if what == "force" else contact.arc_position)[k]
-    if what == "dissipated":
-        friction = response.contacts[where].friction
-        assert friction is not None
-        return friction.dissipated[k]
-    if what == "tip":
-        return response.tips[where][k]
-    if what == "spring":
-        return response.springs[where].force[k]
-    support = response.supports[where]
-    return support.moment[k] if what == "moment" else support.force[k]
+    table, key = QUANTITIES[what]
+    record = getattr(response, table)[where]
+    return (attrgetter(key)(record) if key else record)[k]
 
 
 def _problems() -> dict[str, Problem]:
@@ -101,21 +95,12 @@ def _problems() -> dict[str, Problem]:
     for scene, table in tomllib.loads(text, parse_float=Decimal).items():
         errors = {name: float(one) for name, one in table["errors"].items()}
         answers: dict[float, dict[str, tuple[Decimal, ...]]] = {}
-        for row in table["answers"]:
-            answers.setdefault(float(row.pop("at")), {}).update(
-                {
-                    name: tuple(map(Decimal, one if isinstance(one, list) else [one]))
-                    for name, one in row.items()
-                }
-            )
-        found[scene] = Problem(
-            scene=scene,
-            source=table["source"],
-            errors=errors,
-            others=table.get("others", {}),
-            answers=answers,
-            events=table.get("events", []),
-        )
+        for row in table.pop("answers"):
+            rows = answers.setdefault(float(row.pop("at")), {})
+            rows |= {
+                key: tuple(map(Decimal, one if isinstance(one, list) else [one])) for key, one in row.items()
+            }
+        found[scene] = Problem(scene=scene, **{**table, "errors": errors, "answers": answers})
     return found
 
 

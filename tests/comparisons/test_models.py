@@ -1,6 +1,7 @@
 """The models beyond the answers of the built-in scenes: what each refuses, where it stops, and what its records say."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -33,31 +34,6 @@ def loaded(force: float, **changes: Any) -> Scene:
     return replace(KS, **{"pins": (), "contacts": (), "loads": (load,), **changes})
 
 
-COLUMN = """
-scene = { name = "column", load_parameters = 2 }
-support = [{ beam = "b", end = "end", kind = "clamped", displacement = [-0.01, 0], rotation = 0.01 }]
-beam = [{ name = "b", start = [0, 0], end = [1, 0], clamped = ["start"], width = 0.1, height = 0.1, youngs_modulus = 1e7, poissons_ratio = 0.25 }]
-"""
-HOOK = """
-scene = { name = "hook", load_parameters = 2, gravity = [0.5, -9.81] }
-pin = [{ name = "pin", start = [0.3, 0.15], displacement = [0, -0.2] }]
-contact = [{ node = "pin", beam = "strip", side = "left" }]
-load = [
-  { beam = "strip", force_per_length = [0, -10], part = [0.3, 0.6] },
-  { beam = "strip", at = 0.8, force = [0, 3], moment = 0.1 },
-]
-[[beam]]
-name = "strip"
-start = [0, 0]
-end = [0.4, 0.1]
-turn = -1.2
-clamped = ["start"]
-width = [0.02, 0.01]
-height = [0.004, 0.002]
-youngs_modulus = 2e11
-poissons_ratio = 0.3
-density = 7850
-"""
 STOP = """
 scene = { name = "prop", units = "N, m", load_parameters = 2 }
 beam = [{ name = "strip", start = [0, 0], end = [1, 0], clamped = ["start"], width = 0.02, height = 0.01, youngs_modulus = 7e10, poissons_ratio = 0.3 }]
@@ -67,11 +43,14 @@ load = [{ beam = "strip", end = "end", force = [0, LOAD] }]
 """
 BACK = '[[stage]]\nload_parameters = 2\nload = [{ beam = "strip", end = "end", force = [0, LOAD] }]\n'
 STRIP = "stop->strip"
-SLENDER, HELD = read_scene(COLUMN, "column"), SupportSpec(beam="cantilever", end="start", kind="clamped")
-CURVED = read_scene(HOOK, "hook")
+HELD = SupportSpec(beam="cantilever", end="start", kind="clamped")
+CURVED = load_scene(str(Path(__file__).parent / "scene" / "hook.toml"))
+BOTH_ENDS = replace(KS, beams=(replace(BEAM, clamped=("start",)),), pins=(), contacts=(), supports=(
+    SupportSpec(beam="cantilever", end="end", kind="clamped", displacement=(-0.01, 0.0), rotation=0.01),
+), load_parameters=2)  # fmt: skip
 RUBBED = replace(CURVED, contacts=(replace(CURVED.contacts[0], surface="face", friction=0.2),))
 TAPERED = 'does not state friction on the face of a beam whose height tapers; use --model solid, surface = "axis" or one height'
-NO_UNKNOWNS = r"Beam\(b\)\.elements = 1: every node is held.*take at least 2, or elements 'exact'"
+NO_UNKNOWNS = r"Beam\(cantilever\)\.elements = 1: every node is held.*take at least 2, or elements 'exact'"
 FREE = (replace(BEAM, clamped=()),)
 LOOSE = replace(
     KS,
@@ -94,8 +73,8 @@ MOVED_CLAMPS = [
         (KS, "solid", Options(element="mixed"), "not an option of this model"),
         (KS, "tsm", Options(mesh=(2, 2)), "not an option of this model"),
         (KS, "tsm", Options(element="nosuch"), r"element = nosuch: must be one of .*mixed"),
-        (SLENDER, "tsm", Options(element="mixed", elements=1), NO_UNKNOWNS),
-        (SLENDER, "tsm", Options(element="timoshenko", elements=1), NO_UNKNOWNS),
+        (BOTH_ENDS, "tsm", Options(element="mixed", elements=1), NO_UNKNOWNS),
+        (BOTH_ENDS, "tsm", Options(element="timoshenko", elements=1), NO_UNKNOWNS),
         (RUBBED, "tsm", EXACT, TAPERED),
         (RUBBED, "rod", Options(), TAPERED),
         (FACE, "elastica", Options(), "in contact on its axis only"),
@@ -121,7 +100,7 @@ def test_what_lies_beside_a_refusal_is_stated() -> None:
         assert problem.strips[0].clamped == ()
         assert [item.node for item in problem.supports] == ["cantilever.start"]
     for element in (Options(element="mixed", elements=2), Options(element="exact", elements=1)):
-        assert solve(SLENDER, "tsm", element).completed
+        assert solve(BOTH_ENDS, "tsm", element).completed
 
 
 @pytest.mark.parametrize("model", MODELS)

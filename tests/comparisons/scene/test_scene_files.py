@@ -116,8 +116,8 @@ VALUES: tuple[Any, ...] = (
 
 def edits() -> Iterator[dict[str, Any]]:
     """Yield the template with one value exchanged, added or left out."""
-    for kind in KEYS:
-        for key, value in product(sorted(KEYS[kind]), VALUES):
+    for kind, keys in KEYS.items():
+        for key, value in product(sorted(keys), VALUES):
             tables = tomllib.loads(TEMPLATE)
             table = tables.setdefault(kind, [{"beam": "strip", "end": "end"}])
             entry = table if kind == "scene" else table[0]

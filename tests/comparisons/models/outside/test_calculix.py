@@ -79,56 +79,6 @@ def test_slab_has_every_node_once_and_bears_the_whole_load() -> None:
     assert max(map(len, numbers)) <= 20
 
 
-BRICK = """*NODE, NSET=ALL
-{nodes}
-*ELEMENT, TYPE=C3D20R, ELSET=BRICK
-1,{first},
-{rest}
-*NSET, NSET=START
-1,4,5,8,12,16,17,20
-*NSET, NSET=END
-2,3,6,7,10,14,18,19
-*NSET, NSET=RIGHT
-1,2,5,6,9,13,17,18
-*NSET, NSET=BELOW
-1,2,3,4,9,10,11,12
-*MATERIAL, NAME=ELASTIC
-*ELASTIC
-1000.,.3
-*SOLID SECTION, ELSET=BRICK, MATERIAL=ELASTIC
-*BOUNDARY
-START,1,1
-RIGHT,2,2
-BELOW,3,3
-*STEP, NLGEOM
-*STATIC
-.5,1.
-*BOUNDARY
-END,1,1,.3
-*NODE PRINT, NSET=START
-RF
-*END STEP
-"""
-
-
-@needs_ccx
-def test_elastic_is_the_law_of_st_venant_and_kirchhoff() -> None:
-    """A unit brick stretched to 1.3 bears ``1.3 E e`` with Green's strain e; by Hooke's law it would bear .3 E."""
-    corners = np.array(
-        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
-    )
-    ring = np.array([0, 1, 2, 3])
-    bars = [(ring, np.roll(ring, -1)), (ring + 4, np.roll(ring, -1) + 4), (ring, ring + 4)]
-    nodes = np.concatenate([corners, *((corners[a] + corners[b]) / 2 for a, b in bars)])
-    deck = BRICK.format(
-        nodes="\n".join(f"{n},{x},{y},{z}" for n, (x, y, z) in enumerate(nodes, start=1)),
-        first=",".join(map(str, range(1, 11))),
-        rest=",".join(map(str, range(11, 21))),
-    )
-    forces = np.array(run(deck).tables["forces", "START"][-1])
-    assert forces[:, 0].sum() == pytest.approx(-1.3 * 1000 * (1.3**2 - 1) / 2, rel=1e-6)
-
-
 @needs_ccx
 @pytest.mark.slow
 @pytest.mark.parametrize(("clamp", "bar"), [("rod", 5e-6), ("full", 1e-3)])
