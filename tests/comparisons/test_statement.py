@@ -36,16 +36,8 @@ def stated(folder: Path, scene: Scene, *options: str) -> dict[str, Any]:
     return found
 
 
-def test_json_has_the_stated_fields_and_every_digit(tmp_path: Path, capsys: Any) -> None:
+def test_json_has_every_digit_and_an_older_file_is_refused(tmp_path: Path, capsys: Any) -> None:
     data, beams = stated(tmp_path, SCENE, "--elements", "5"), solve(SCENE, "tsm", Options(elements=5))
-    assert list(data) == [
-        "status", "message", "reported_success", "model", "continuum", "outside", "scene", "load_parameter", "stage",
-        "contacts", "supports", "material_force", "tips", "axes",
-        "events", "index", "critical", "certificate", "newton_iterations", "cutbacks", "unknowns", "wall_seconds", "versions",
-    ]  # fmt: skip
-    assert list(data["contacts"][PAIR]) == ["force", "vector", "arc_position", "gap", "slip_off"]
-    assert list(data["supports"][CLAMP]) == ["moment", "force"]
-    assert list(data["versions"]) == ["python", "numpy", "scipy", "scikit-fem", "tsm-crossval"]
     assert (data["status"], data["model"], data["scene"]) == ("COMPLETED", "tsm", "ks-cantilever")
     assert data["contacts"][PAIR]["force"] == list(beams.contacts[PAIR].force)
     assert np.shape(data["supports"][CLAMP]["force"]) == np.shape(data["tips"][BEAM]) == (5, 2)

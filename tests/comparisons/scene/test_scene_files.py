@@ -92,14 +92,6 @@ def test_what_cannot_be_done_is_one_line(
     assert (in_a_folder / "there.toml").read_text() == THERE
 
 
-def test_check_says_why_a_model_cannot_state_a_scene(capsys: Output) -> None:
-    assert main(["check", "double-beam", "--out", "double.svg"]) == 0
-    out = capsys.readouterr().out
-    assert "2 beams, 1 pin, 3 contact pairs" in out
-    assert "  elastica: no, " in out
-    assert Path("double.svg").read_text().startswith("<?xml")
-
-
 def test_the_shipped_schema_is_that_of_the_records(capsys: Output) -> None:
     """Written by ``python -m comparisons.scene.json_schema``."""
     assert main(["schema"]) == 0
