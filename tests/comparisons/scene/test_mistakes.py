@@ -3,7 +3,7 @@
 import re
 from itertools import combinations
 from pathlib import Path
-from time import monotonic
+from time import process_time
 
 import pytest
 
@@ -133,16 +133,16 @@ def test_a_record_states_all_its_mistakes() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "".join(f"a{i} = 1\n" for i in range(5000)),
+        "".join(f"a{i} = 1\n" for i in range(10**4)),
         "[[beam]]\nx = 1\n" * 2000,
         "[[beam]]\nname = 'a'\nstart = [0, 0]\nend = [1, 0]\nx = 1\n" * 2000,
     ],
     ids=["keys", "tables", "names"],
 )
 def test_many_mistakes_take_no_time(text: str) -> None:
-    began = monotonic()
+    began = process_time()
     assert lines(text)
-    assert monotonic() - began < 5
+    assert process_time() - began < 5
 
 
 KS = built_in_scenes()["ks-cantilever"]
@@ -163,11 +163,11 @@ EXTREME = {
 
 @pytest.mark.parametrize("line", EXTREME, ids=range(len(EXTREME)))
 def test_an_extreme_line_is_refused_soon(line: str) -> None:
-    began = monotonic()
+    began = process_time()
     found, said = lines(KS.replace("[[pin]]", f"{line}\n[[pin]]")), EXTREME[line]
     assert len(found) == bool(said)
     assert all(said in one for one in found)
-    assert monotonic() - began < 20
+    assert process_time() - began < 5
 
 
 def test_what_needs_too_much_memory_is_refused(tmp_path: Path, capsys: Output) -> None:

@@ -92,6 +92,15 @@ def test_what_cannot_be_done_is_one_line(
     assert (in_a_folder / "there.toml").read_text() == THERE
 
 
+def test_the_resolved_scene_leaves_out_no_key(capsys: Output) -> None:
+    assert main(["check", "heavy-strip", "--json", "x.json"]) == 2
+    assert (
+        capsys.readouterr().err
+        == "crossval: the resolved scene does not state a weight (density), which the scene uses\n"
+    )
+    assert not Path("x.json").exists()
+
+
 def test_the_shipped_schema_is_that_of_the_records(capsys: Output) -> None:
     """Written by ``python -m comparisons.scene.json_schema``."""
     assert main(["schema"]) == 0

@@ -12,7 +12,7 @@ import pytest
 
 from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside import Functions, Program, frame
+from comparisons.models.outside import Functions, Histories, Program, frame
 from comparisons.response import Response
 from comparisons.scene import LoadSpec, Scene, load_scene
 from tests.problems import PROBLEMS
@@ -208,6 +208,14 @@ def test_joined_beams_share_a_node() -> None:
     for item in mesh.elements:
         a, b = (np.array(mesh.points[node]) for node in item.nodes)
         assert np.hypot(*(b - a)) == pytest.approx(item.length)
+
+
+def test_supports_are_stated_by_their_ends() -> None:
+    histories, nodes = Histories(given(TIED)), [item.node for item in TIED.all_supports]
+    for number, node in enumerate(nodes):
+        histories.support(node, (number, 0), 0)
+    stated = {node: one["force"] for node, one in histories.tables()["supports"].items()}
+    assert stated == {node: [[number, 0]] for number, node in enumerate(nodes)}
 
 
 def test_a_pin_at_rest_has_a_path_of_two_points() -> None:

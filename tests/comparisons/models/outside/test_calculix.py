@@ -56,6 +56,9 @@ def test_without_calculix_or_where_it_stops_the_study_says_so(
     fake(tmp_path, monkeypatch, "exec sleep 20")
     with pytest.raises(CalculixError, match=r"did not finish within 0\.1 s"):
         run("", seconds=0.1)
+    fake(tmp_path, monkeypatch, "echo Job finished")
+    with pytest.raises(CalculixError, match="printed no result"):
+        tip_load(STRIP, FORCE)
 
 
 def test_what_is_printed_is_read_and_what_is_cut_off_is_not() -> None:

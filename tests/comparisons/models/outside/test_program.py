@@ -166,6 +166,7 @@ def test_elements_are_an_option_where_the_file_has_them(program: Make, tmp_path:
     model = find(file)
     assert solve(KS, file, Options(elements=10)).completed
     assert (tmp_path / "seen").read_text() == "10"
+    assert model.run_label(Options(elements=10)) == "liar, 10 elements"
     assert (model.setting(KS, Options()), model.resolution(Options(elements=10))) == ("20", 10.0)
     assert [item.elements for item in model.resolutions(quick=True)] == [5, 10]
     assert list(find(program()).resolutions(quick=False)) == [Options()]
