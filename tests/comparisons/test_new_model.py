@@ -11,30 +11,9 @@ import pytest
 
 import comparisons
 
-CHAIN = """
-from dataclasses import replace
-from comparisons.models.base import Model, Style
-from comparisons.models.tsm import TSM
-
-class Chain(Model):
-    name = "chain"
-    label = "chain"
-    libraries = ("tsm",)
-    meshed = False
-
-    def refusal(self, scene):
-        return None if len(scene.beams) == 1 else "the chain has one beam"
-
-    def solve(self, scene, options, watch):
-        response = TSM.solve(scene, TSM.reference, watch)
-        return replace(response, model=self.name) if len(scene.beams) == 1 else response
-
-    def styles(self):
-        return {self.label: Style(colour="#AA3377", marker="x")}
-
-MODELS = (Chain(),)
-MODEL, OTHER = Chain(), 3
-"""
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
+CHAIN = PAGE.read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
+"""The complete model of the page."""
 FUNCTIONS = """
 from comparisons.models.outside import Functions, Program, StoppedError, points_along
 
@@ -100,7 +79,7 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def offered(tmp_path: Path) -> Path:
     """A folder with an installed package that offers the model."""
-    (tmp_path / "lender.py").write_text(CHAIN)
+    (tmp_path / "lender.py").write_text(CHAIN + "MODEL, OTHER = MODELS[0], 3\n")
     (tmp_path / "functions.py").write_text(FUNCTIONS.format(stopped='StoppedError("no luck")'))
     info = tmp_path / "lender-1.0.dist-info"
     info.mkdir()

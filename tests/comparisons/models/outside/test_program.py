@@ -205,24 +205,7 @@ def test_studies_and_comparisons_have_it_and_see_a_changed_program(program: Make
     assert "liar" in (out / "report.html").read_text()
 
 
-LEAVES = r"""
-import subprocess
-sleep = [sys.executable, "-I", "-c", "import os, time; os.chdir('/'); time.sleep(600)"]
-daemon = (
-    "import os, subprocess, sys\n"
-    "if os.fork(): os._exit(0)\n"
-    "os.setsid()\n"
-    "if os.fork(): os._exit(0)\n"
-    "os.execve(sys.executable, [sys.executable, '-I', '-c', 'import time; time.sleep(600)', 'MARK'], {})\n"
-)
-for k in range(COUNT):
-    subprocess.Popen([*sleep, "MARK"])
-    subprocess.Popen([*sleep, "MARK"], start_new_session=True)
-    subprocess.Popen(["/bin/sh", "-c", 'nohup "$@" >/dev/null 2>&1 & exit', "sh", *sleep, "MARK"])
-    subprocess.Popen([sys.executable, "-I", "-c", daemon])
-time.sleep(0.5)
-Path("count").write_text(os.popen("pgrep -cf MARK").read())
-"""
+LEAVES = Path(__file__).with_name("leaves.txt").read_text()
 
 
 def running(mark: str) -> list[int]:
