@@ -38,7 +38,6 @@ def stated(folder: Path, scene: Scene, *options: str) -> dict[str, Any]:
 
 def test_json_has_every_digit_and_an_older_file_is_refused(tmp_path: Path, capsys: Any) -> None:
     data, beams = stated(tmp_path, SCENE, "--elements", "5"), solve(SCENE, "tsm", Options(elements=5))
-    assert (data["status"], data["model"], data["scene"]) == ("COMPLETED", "tsm", "ks-cantilever")
     assert data["contacts"][PAIR]["force"] == list(beams.contacts[PAIR].force)
     assert np.shape(data["supports"][CLAMP]["force"]) == np.shape(data["tips"][BEAM]) == (5, 2)
     assert all(isinstance(count, int) for count in data["newton_iterations"])
