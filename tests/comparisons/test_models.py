@@ -155,6 +155,16 @@ def test_a_round_pin_on_the_face_of_a_taper_is_certified() -> None:
     assert np.abs(M).max() > 0.1
 
 
+@pytest.mark.parametrize("run", ["exact", "rod", "elastica"])
+def test_a_beam_that_runs_towards_its_clamp_has_arc_positions_from_its_start(run: str) -> None:
+    turned = (replace(BEAM, start=BEAM.end, end=BEAM.start, clamped=("end",)),)
+    scene = replace(KS, load_parameters=4, beams=turned, contacts=(replace(KS.contacts[0], side="left"),))
+    response, problem = solve(scene, *RUNS[run]), PROBLEMS["ks-cantilever"]
+    contact = response.contacts[PAIR]
+    from_end = {PAIR: replace(contact, arc_position=1.0 - contact.arc_position)}
+    assert problem.mistakes(replace(response, contacts=from_end), problem.errors[run]) == []
+
+
 @pytest.mark.parametrize(("friction", "up"), [(0.3, 1.0), (0.0, -1.0)])
 def test_a_pin_that_leaves_the_beam_at_first_touches_it_again_from_its_side(
     friction: float, up: float
