@@ -133,7 +133,7 @@ def test_a_record_states_all_its_mistakes() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "".join(f"a{i} = 1\n" for i in range(10**4)),
+        "".join(f"a{i} = 1\n" for i in range(5000)),
         "[[beam]]\nx = 1\n" * 2000,
         "[[beam]]\nname = 'a'\nstart = [0, 0]\nend = [1, 0]\nx = 1\n" * 2000,
     ],
