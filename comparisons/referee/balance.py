@@ -1,6 +1,6 @@
 """The balance of forces and moments on the whole structure, from a response and its scene alone."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +18,26 @@ _PANELS, _NODES = 20, 4
 
 
 class Action(NamedTuple):
-    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, with any free moment added."""
+    """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, with any free moment added.
+
+    Its point moves along `place` (s + 1, 2), rest first, and turns, where the scene prescribes that, by `angle` (s + 1,). No sum has them.
+    """
 
     force: Array
     moment: Array
+    place: Array | None = None
+    free: Array | None = None
+    angle: Array | None = None
+
+    def work(self, chosen: NDArray[np.int64]) -> Array:
+        """Return the work between the chosen states, 0 the one at rest, where forces change linearly with the place."""
+        assert self.place is not None, "a sum of forces has no place"
+        force = np.vstack([np.zeros(2), self.force])[chosen]
+        work = ((force[1:] + force[:-1]) / 2.0 * np.diff(self.place[chosen], axis=0)).sum(axis=1)
+        if self.free is not None and self.angle is not None:
+            moment = np.concatenate([[0.0], self.free])[chosen]
+            work += (moment[1:] + moment[:-1]) / 2.0 * np.diff(self.angle[chosen])
+        return np.asarray(work)
 
 
 def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE) -> Iterator[str]:
@@ -35,9 +51,10 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
     ``-side (R + g) F_t`` of a stated tangential force about the centre of a pin of radius R at the gap g, side = 1 for a pin on the right.
     """
-    supports, loads = _supports(response, scene), _loads(response, scene)
+    supports, loads = [*_supports(response, scene), *_springs(response, scene)], _loads(response, scene)
     outer = _sum([*supports, *loads], len(response.load_parameter))
-    pushing, magnitude, pins = _pins(response, scene, outer)
+    pushing, magnitude, actions = _pins(response, scene, outer)
+    pins = _sum(actions, len(response.load_parameter))
     largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
     scale = allowed * largest + max(force_round_off(scene, largest), response.round_off)
     missing = np.hypot(*outer.force.T)
@@ -51,6 +68,39 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
         if failed.any():
             t = response.load_parameter[np.argmax(failed)]
             yield f"the support {what} do not balance contact forces and loads at load parameter {t:.6g}"
+
+
+def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allowed: float) -> Iterator[str]:
+    """Yield the first load parameter of `energies` at which the stated forces have not done the work that is the exact strain energy.
+
+    ``W = sum int F dx + sum int M dtheta`` of supports, pins and loads by the trapezoidal rule over all load parameters; three times the
+    difference from the rule with every second one bounds its error. A jump releases energy, friction dissipates it, and the rotation of a
+    moment's end is not stated: there is nothing to compare with then.
+    """
+    rubbed = any(spec.friction for spec in scene.contacts)
+    turned = any(any(history.at(t)[2] for t in scene.times) for history in scene.load_histories)
+    if response.events is None or rubbed or turned or not len(response.load_parameter):
+        return
+    jumps = [event.load_parameter for event in response.events if event.released]
+    actions = [*_supports(response, scene), *_loads(response, scene)]
+    outer = _sum([*actions, *_springs(response, scene)], len(response.load_parameter))
+    actions += _pins(response, scene, outer)[2]
+    least = least_force(scene) * max(beam.length for beam in scene.beams)
+    for k, energy in energies.items():
+        if k < 3 or any(t <= response.load_parameter[k] for t in jumps):
+            continue
+        fine, coarse = (
+            sum(item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions)
+            for step in (1, 2)
+        )
+        error = 3.0 * abs(np.sum(fine) - np.sum(coarse))
+        missing, largest = abs(np.sum(fine) - energy), max(np.abs(fine).sum(), least)
+        if not missing <= allowed * largest + error:
+            yield (
+                f"the work of supports, pins and loads is not the strain energy at load parameter {response.load_parameter[k]:.6g}, "
+                f"off by {missing / largest:.2g}"
+            )
+            return
 
 
 def _sum(actions: list[Action], steps: int) -> Action:
@@ -67,9 +117,18 @@ def _largest(scene: Scene, actions: list[Action]) -> float:
     return max(*forces, *moments, least_force(scene))
 
 
-def _action(scene: Scene, force: Array, place: Array, moment: Array | float = 0.0) -> Action:
+def _action(
+    scene: Scene,
+    force: Array,
+    place: Array,
+    rest: Sequence[float] | Array,
+    moment: Array | float = 0.0,
+    angle: Array | None = None,
+) -> Action:
     x, y = (place - np.array(scene.beams[0].start)).T
-    return Action(force, np.asarray(moment + x * force[:, 1] - y * force[:, 0]))
+    free = np.broadcast_to(moment, len(force))
+    about = np.asarray(free + x * force[:, 1] - y * force[:, 0])
+    return Action(force, about, np.vstack([rest, place]), free, angle)
 
 
 def _place(response: Response, scene: Scene, node: str) -> Array:
@@ -87,14 +146,22 @@ def _place(response: Response, scene: Scene, node: str) -> Array:
 
 
 def _supports(response: Response, scene: Scene) -> list[Action]:
-    actions = [
-        _action(scene, history.force, _place(response, scene, node), history.moment)
-        for node, history in response.supports.items()
-    ]
+    motions, times, actions = scene.prescribed_motions, response.load_parameter.tolist(), []
+    for node, history in response.supports.items():
+        turns = [motions[node].at(t)[2] for t in (0.0, *times)] if node in motions else []
+        angle = np.array([turn or 0.0 for turn in turns]) if turns else None
+        place = _place(response, scene, node)
+        actions.append(_action(scene, history.force, place, scene.place(node), history.moment, angle))
+    return actions
+
+
+def _springs(response: Response, scene: Scene) -> list[Action]:
+    actions = []
     for spring in scene.springs:
         place, own = _place(response, scene, spring.node), response.springs.get(spring.node)
-        force = -np.array(spring.stiffness) * (place - np.array(scene.place(spring.node)))
-        actions.append(_action(scene, force, place, 0.0 if own is None else own.moment))
+        rest = scene.place(spring.node)
+        force = -np.array(spring.stiffness) * (place - np.array(rest))
+        actions.append(_action(scene, force, place, rest, 0.0 if own is None else own.moment))
     return actions
 
 
@@ -106,8 +173,10 @@ def _loads(response: Response, scene: Scene) -> list[Action]:
         if load.force_per_length is not None:
             actions.append(_along(response, scene.beam(load.beam), load.span, acting[:, :2], scene))
             continue
-        place = _inside(response, scene, load) if load.at is not None else _place(response, scene, load.node)
-        actions.append(_action(scene, acting[:, :2], place, acting[:, 2]))
+        inside = load.at is not None
+        place = _inside(response, scene, load) if inside else _place(response, scene, load.node)
+        rest = scene.beam(load.beam).place(load.at or 0.0) if inside else scene.place(load.node)
+        actions.append(_action(scene, acting[:, :2], place, rest, acting[:, 2]))
     gravity = np.array([scene.gravity_at(t) for t in times]).reshape(-1, 2)
     heavy = (beam for beam in scene.beams if beam.density is not None)
     actions += [_along(response, beam, (0.0, 1.0), gravity, scene, beam.mass_per_length) for beam in heavy]
@@ -142,27 +211,27 @@ def _along(
     parts = (ends[:-1, None] + np.diff(ends)[:, None] * (nodes + 1.0) / 2.0).ravel()
     weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * beam.length / _PANELS
     weights = weights * [factor(part) for part in parts]
-    arm = _axis_at(response, beam.name, parts * beam.length) - np.array(scene.beams[0].start)
-    x, y = (arm * weights[:, None]).sum(axis=1).T
-    return Action(vector * weights.sum(), x * vector[:, 1] - y * vector[:, 0])
+    centre = np.average(_axis_at(response, beam.name, parts * beam.length), axis=1, weights=weights)
+    rest = np.average([beam.place(part) for part in parts], axis=0, weights=weights)
+    return _action(scene, vector * weights.sum(), centre, rest)
 
 
-def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, Action]:
-    """Return the number of pins that push, the sum of their magnitudes, and their action; a single pin balances `outer`."""
-    steps = len(response.load_parameter)
-    pushing, magnitude, actions = np.zeros(steps, dtype=np.int64), np.zeros(steps), [_sum([], steps)]
+def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, list[Action]]:
+    """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances `outer`."""
+    steps, actions = len(response.load_parameter), []
+    pushing, magnitude = np.zeros(steps, dtype=np.int64), np.zeros(steps)
     touching = [spec for spec in scene.contacts if "." not in spec.node]
     for spec in touching:
         pushing += response.contacts[spec.pair].force > 0.0
     for spec in touching:
         history = response.contacts[spec.pair]
-        place = np.array([scene.pin(spec.node).position(float(t)) for t in response.load_parameter])
+        rest, *places = (scene.pin(spec.node).position(t) for t in (0.0, *response.load_parameter.tolist()))
         vector = np.full((steps, 2), np.nan) if history.vector is None else history.vector
         force = np.where((pushing <= 1)[:, None], -outer.force, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)
         magnitude += history.force
-        actions.append(_action(scene, force, place, _roll(scene, spec, history)))
-    return pushing, magnitude, _sum(actions, steps)
+        actions.append(_action(scene, force, np.array(places), rest, _roll(scene, spec, history)))
+    return pushing, magnitude, actions
 
 
 def _roll(scene: Scene, spec: ContactSpec, history: ContactHistory) -> Array | float:

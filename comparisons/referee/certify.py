@@ -1,13 +1,13 @@
 """The certificate of an answer: judgements at load parameters, and checks of the path between them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from time import perf_counter
 
 import numpy as np
 
-from comparisons.referee.balance import BALANCE, balance_failures
+from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.events import misstated
@@ -16,6 +16,7 @@ from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
 from comparisons.referee.rubbing import rubs_wrongly_on_the_way
+from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.response.axis import SampledAxes
 from comparisons.response.material import material_forces
@@ -40,7 +41,8 @@ def certify(
     at : sequence of int, optional
         Indices of the load parameters to judge; negative ones count from the end. The default are the last one of every stage, the
         ones next to events, and the one with the largest contact force. The path is followed from the undeformed state to all of
-        them. The other load parameters are held against what needs no equilibrium: their balance, and the material force.
+        them. The other load parameters are held against what needs no equilibrium: their balance, the material force, and the work up to
+        the judged ones.
     allowance : float, optional
         Largest difference allowed; the default is `default_allowance`.
     """
@@ -63,8 +65,10 @@ def certify(
     history = _history(response, scene)
     states = tuple(_judged(response, scene, numbers, allowed, history))
     states = tuple(_on_the_path(response, scene, numbers, states, allowed, history))
-    unsound = tuple(_unsound(response, scene, allowed))
-    path = () if unsound else tuple(_path(response, scene, numbers, states, allowed))
+    found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
+    energies = {k: exact.strain_energy for k, exact in found.items()}
+    unsound = tuple(_unsound(response, scene, allowed)) or tuple(unpaid(response, scene, energies, allowed))
+    path = () if unsound else tuple(_path(response, scene, found, allowed))
     if history is not None:
         path += tuple(rubs_wrongly_on_the_way(history, numbers, states, allowed))
     verdict, reason = _worst(states, unsound, path)
@@ -172,9 +176,9 @@ def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
 
 def hardest(response: Response) -> tuple[int, ...]:
     """Return the index of the load parameter with the largest contact force; none without contact force."""
-    force = np.nan_to_num(sum((np.abs(item.force) for item in response.contacts.values()), np.zeros(1)))
-    most = int(np.argmax(force))
-    return (most,) if force.any() and most < len(response.load_parameter) else ()
+    none = np.zeros(len(response.load_parameter))
+    force = np.nan_to_num(sum((np.abs(item.force) for item in response.contacts.values()), none))
+    return (int(np.argmax(force)),) if force.any() else ()
 
 
 def ends_of_stages(response: Response, scene: Scene) -> tuple[int, ...]:
@@ -237,14 +241,13 @@ def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
 
 
 def _path(
-    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement], allowed: float
+    response: Response, scene: Scene, found: Mapping[int, Equilibrium], allowed: float
 ) -> Iterator[str]:
     """Yield violations between load parameters."""
     if not len(response.load_parameter):
         return
     yield from passages(response, scene)
     yield from changes(response, scene)
-    found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
     yield from misstated(response, scene, found, allowed)
     for spec in scene.contacts:
         closed = response.contacts[spec.pair].force > 0.0

@@ -1,5 +1,6 @@
-"""A new model is one file and one name in the registry: every command then has it."""
+"""A new model is one file and one name in the registry, or an entry point of another package: every command then has it."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -10,39 +11,44 @@ import pytest
 
 import comparisons
 
-MODEL = """
-from dataclasses import replace
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
+CHAIN = PAGE.read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
+"""The complete model of the page."""
+FUNCTIONS = """
+from comparisons.models.outside import Functions, Program, StoppedError, points_along
 
-from comparisons.models.base import Model, Style
-from comparisons.models.tsm import TSM
+def refusal(scene):
+    return "one beam only" if len(scene["beams"]) > 1 else None
 
+def states(scene, histories):
+    print("chatter")
+    beam, = scene["beams"]
+    for t in scene["load_parameters"]:
+        if scene["contacts"]:
+            raise {stopped}
+        histories.axis(beam["name"], *points_along(beam, beam["elements"]))
+        histories.support(scene["supports"][0]["node"], (0.0, 0.0), -t * scene["loads"][0]["moment"])
+        yield t
 
-class Chain(Model):
-    name = "chain"
-    label = "chain"
-    libraries = ("tsm",)
-    meshed = False
-
-    def refusal(self, scene):
-        return None if len(scene.beams) == 1 else "the chain has one beam"
-
-    def solve(self, scene, options, watch):
-        return replace(TSM.solve(scene, TSM.reference, watch), model=self.name)
-
-    def styles(self):
-        return {self.label: Style(colour="#AA3377", marker="x")}
-
-
-MODELS = (Chain(),)
+MODEL = Program(Functions(name="stiff", elements=(4, 8), refusal=refusal, states=states))
+"""
+POINTS = """[crossval.models]
+chain = lender:MODEL
+number = lender:OTHER
+absent = no_such_module:MODEL
+wrong = lender:MODEL
+stiff = functions:MODEL
 """
 STUDY = """
 [study]
 name = "both"
 scene = "ks-cantilever"
+repeats = 1
 [[run]]
 model = ["chain", "rod"]
-scene.load_parameters = 4
+scene.load_parameters = 2
 """
+# what is drawn and measured by the registry: the modules have no command that answers at once
 ASKED = """
 from comparisons.claims.extremes.axes import matrix
 from comparisons.compare import RUNS
@@ -57,10 +63,11 @@ print(colour("chain"))
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("new-model")
+def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a copy of the package that has the model in its registry."""
+    folder = tmp_path_factory.mktemp("registered")
     package = shutil.copytree(Path(comparisons.__file__).parent, folder / "comparisons")
-    (package / "models" / "chain.py").write_text(MODEL)
+    (package / "models" / "chain.py").write_text(CHAIN)
     registry = package / "models" / "registry.py"
     listed = 'FILES = ("tsm", "solid", "rod")'
     assert listed in registry.read_text()
@@ -69,35 +76,95 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def python(place: Path, *arguments: str) -> str:
-    environment = {**os.environ, "PYTHONPATH": str(place)}
-    run = subprocess.run(
-        [sys.executable, *arguments], cwd=place, env=environment, capture_output=True, text=True, check=False
+@pytest.fixture
+def offered(tmp_path: Path) -> Path:
+    """A folder with an installed package that offers the model."""
+    (tmp_path / "lender.py").write_text(CHAIN + "MODEL, OTHER = MODELS[0], 3\n")
+    (tmp_path / "functions.py").write_text(FUNCTIONS.format(stopped='StoppedError("no luck")'))
+    info = tmp_path / "lender-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: lender\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(POINTS)
+    (tmp_path / "study.toml").write_text(STUDY)
+    return tmp_path
+
+
+def python(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=place,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(place), *sys.path])},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
     )
-    assert run.returncode == 0, run.stderr
-    return run.stdout
 
 
-def crossval(place: Path, *arguments: str) -> str:
-    return python(place, "-c", "import sys; from comparisons.cli import main; sys.exit(main())", *arguments)
-
-
-@pytest.mark.slow
-def test_commands_have_it(place: Path) -> None:
-    assert "chain: yes" in crossval(place, "check", "ks-cantilever")
-    assert "chain: no, the chain has one beam" in crossval(place, "check", "double-beam")
-    assert "COMPLETED" in crossval(place, "solve", "ks-cantilever", "--model", "chain", "--quiet")
-    gate = ("gate", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-9")
-    assert "chain" in crossval(place, *gate)
-    assert "chain" in crossval(place, "completion", "bash")
+def crossval(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    code = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
+    return python(place, "-c", code, *arguments)
 
 
 @pytest.mark.slow
-def test_studies_have_it(place: Path) -> None:
-    crossval(place, "study", "study.toml", "--results", "results.sqlite", "--quiet")
-    table = crossval(place, "results", "results.sqlite")
-    assert "chain" in table
+@pytest.mark.parametrize("way", ["registered", "offered"])
+def test_commands_have_it(way: str, request: pytest.FixtureRequest) -> None:
+    place = request.getfixturevalue(way)
+    for arguments, line in {
+        ("check", "ks-cantilever"): "chain: yes",
+        ("check", "double-beam"): "chain: no, the chain has one beam",
+        ("solve", "ks-cantilever", "--model", "chain", "--quiet"): "CERTIFIED",
+        ("gate", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
+        ("study", "study.toml", "--results", "s.sqlite", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
+        ("results", "s.sqlite"): "chain",
+        **({("completion", "bash"): "chain"} if way == "registered" else {}),
+    }.items():
+        found = crossval(place, *arguments)
+        assert found.returncode == 0, found.stderr
+        assert line in found.stdout
 
 
-def test_comparison_cost_extremes_and_pictures_have_it(place: Path) -> None:
-    assert python(place, "-c", ASKED).split() == ["1", "1", "True", "#AA3377"]
+def test_comparison_cost_extremes_and_pictures_have_it(registered: Path) -> None:
+    found = python(registered, "-c", ASKED)
+    assert found.stdout.split() == ["1", "1", "True", "#AA3377"], found.stderr
+
+
+@pytest.mark.slow
+def test_functions_are_a_model(offered: Path) -> None:
+    """A stiff strip that does not bend is refused by the referee; a stop has its name, and output goes aside."""
+    solved = crossval(offered, "solve", "roll-up", "--model", "stiff", "--elements", "4", "--quiet")
+    assert solved.returncode == 3, solved.stderr
+    assert "NOT_AN_EQUILIBRIUM: tip off by 39 % (cantilever)" in solved.stdout
+    assert "chatter" not in solved.stdout
+    stopped = crossval(offered, "solve", "ks-cantilever", "--model", "stiff", "--quiet")
+    assert "STOPPED: no luck; 0 of 50 load parameters reached" in stopped.stderr
+    refused = crossval(offered, "solve", "double-beam", "--model", "stiff")
+    assert (refused.returncode, refused.stderr) == (2, "crossval: stiff: one beam only\n")
+
+
+def test_an_exception_of_a_function_is_a_status(offered: Path) -> None:
+    (offered / "functions.py").write_text(FUNCTIONS.format(stopped="ZeroDivisionError('by hand')"))
+    solved = crossval(offered, "solve", "ks-cantilever", "--model", "stiff", "--quiet")
+    assert solved.returncode == 3, solved.stderr
+    assert "CRASHED: ZeroDivisionError: by hand; 0 of 50" in solved.stderr
+
+
+def test_check_lists_every_model_and_an_entry_point_without_one_is_named(offered: Path) -> None:
+    (offered / "own.toml").write_text('[program]\nname = "own"\ncommand = ["no-such-program"]\n')
+    found = crossval(
+        offered, "check", "double-beam", "--with", "own.toml", "--with", "opensees", "--json", "scene.json", "--out", "a.svg"
+    )  # fmt: skip
+    assert found.returncode == 0, found.stderr
+    lines = dict(line.strip().split(": ", 1) for line in found.stdout.splitlines()[1:])
+    assert lines["stiff"] == "no, one beam only"
+    assert lines["chain"] == "no, the chain has one beam"
+    assert lines["opensees"].startswith("no, BeamContact2D touches beams with pins only")
+    assert lines["absent"].startswith("no, entry point absent = no_such_module:MODEL: ModuleNotFoundError")
+    for name, value in {"number": "OTHER", "wrong": "MODEL"}.items():
+        assert lines[name] == f"no, entry point {name} = lender:{value}: must be a Model of this name"
+    assert lines["own"] == "no, there is no program no-such-program"
+    assert lines["resolved scene"] == "scene.json"
+    assert json.loads((offered / "scene.json").read_text())["name"] == "double-beam"
+    solved = crossval(offered, "solve", "ks-cantilever", "--model", "number")
+    assert solved.returncode == 2
+    assert solved.stderr == "crossval: entry point number = lender:OTHER: must be a Model of this name\n"

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,28 +10,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from comparisons.models import certified, solve
+from comparisons.models import certified, find, solve
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside.adapters import calculix, exudyn, felupe, opensees
-from comparisons.models.outside.adapters.exchange import Histories
-from comparisons.models.outside.adapters.frame import frame
-from comparisons.models.outside.program import Program
-from comparisons.models.outside.programs import ADAPTERS, ROOT
-from comparisons.models.outside.request import request
+from comparisons.models.outside import Functions, Histories, Program, frame
 from comparisons.response import Response
-from comparisons.response.material import frictions
 from comparisons.scene import LoadSpec, Scene, load_scene
+from tests.problems import PROBLEMS
 
+ROOT = Path(__file__).parents[4]
 FINDINGS = Path(__file__).parents[2] / "findings"
-KS = load_scene("ks-cantilever")
-FACE = load_scene("ks-face")
+KS, FACE, FRICTION = (load_scene(name) for name in ("ks-cantilever", "ks-face", "ks-friction"))
+PAIR = "pin->cantilever"
 BEAM = KS.beams[0]
-UNIT = BEAM.EI / BEAM.length**2
 TIP = replace(
     KS,
     pins=(),
     contacts=(),
-    loads=(LoadSpec(beam=BEAM.name, end="end", force=(0.0, 5.0 * UNIT)),),
+    loads=(LoadSpec(beam=BEAM.name, end="end", force=(0.0, 5.0 * BEAM.EI / BEAM.length**2)),),
     load_parameters=5,
 )
 ROLL = replace(
@@ -40,17 +34,24 @@ ROLL = replace(
     loads=(LoadSpec(beam=BEAM.name, end="end", moment=np.pi * BEAM.EI / BEAM.length),),
     load_parameters=10,
 )
+PORTAL, TIED = load_scene(str(FINDINGS / "portal.toml")), load_scene("ks-tied-tip")
+DOUBLE = load_scene("double-beam")
+(X, Y), (U, V) = FACE.pins[0].points
+A_TENTH = replace(
+    FACE,
+    pins=(replace(FACE.pins[0], path=((X, Y), (X + 0.1 * (U - X), Y + 0.1 * (V - Y))), start=None, displacement=None),),
+    load_parameters=5,
+)  # fmt: skip
 
 
 def needs(name: str) -> Any:
     """Mark of a test that needs a program; without it, the test is skipped with a line."""
-    missing = ADAPTERS[name].missing()
+    missing = find(name).missing()  # type: ignore[attr-defined]
     return pytest.mark.skipif(missing is not None, reason=str(missing))
 
 
-def data(scene: Scene, elements: int = 10) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(request(scene, Options(elements=elements), scene.times))
-    return found
+def row(name: str, case: str) -> Any:
+    return pytest.param(case, marks=needs(name))
 
 
 def in_steps(name: str, steps: int, folder: Path) -> str:
@@ -61,106 +62,74 @@ def in_steps(name: str, steps: int, folder: Path) -> str:
     return str(file)
 
 
-def answered(name: str, scene: Scene, elements: int = 10) -> Response:
+def answered(name: str, scene: Scene, elements: int) -> Response:
     return certified(solve(scene, name, Options(elements=elements)), scene)
 
 
-def certified_error(response: Response) -> float:
-    """Error of the contact force at the last load parameter, as a vector, by the certificate."""
-    assert response.certificate is not None
-    assert response.certificate.judged[-1].distance is not None
-    return response.certificate.judged[-1].distance.force
-
-
 @needs("opensees")
 @pytest.mark.slow
-def test_opensees_has_its_known_error_under_the_pin() -> None:
-    """9.9e-3 at 20 elements and 1,000 steps; the tangential force is 3.8e-3 of the contact force."""
-    response = answered("opensees", KS, 20)
+def test_opensees_with_friction_has_a_known_error_under_the_pin() -> None:
+    """6.1e-3 of the force at the end with 20 elements and 1,000 steps, and 1.3e-3 L of the arc position."""
+    response, exact = answered("opensees", FRICTION, 20), PROBLEMS["ks-friction"].at(1.0)
     assert response.completed, response.message
-    assert certified_error(response) == pytest.approx(9.9e-3, rel=0.1)
-    assert abs(frictions(response, KS)["cantilever"][-1]) == pytest.approx(3.8e-3, rel=0.1)
+    contact = response.contacts[PAIR]
+    assert contact.force[-1] == pytest.approx(exact[f"force {PAIR}"] * (1.0 + 6.1e-3), rel=1e-3)
+    assert contact.arc_position[-1] == pytest.approx(exact[f"arc {PAIR}"] - 1.3e-3, abs=2e-4)
 
 
 @needs("opensees")
-def test_opensees_loses_the_contact_in_long_steps_and_reports_success(tmp_path: Path) -> None:
-    response = certified(solve(KS, in_steps("opensees", 50, tmp_path), Options(elements=20)), KS)
+@pytest.mark.slow_at("ks-friction-20", "ks-friction-200")
+@pytest.mark.parametrize(
+    ("scene", "steps"), [(KS, 50), (FRICTION, 20), (FRICTION, 60), (FRICTION, 200)], ids=lambda item: getattr(item, "name", item)
+)  # fmt: skip
+def test_opensees_loses_the_contact_in_long_steps_and_reports_success(
+    scene: Scene, steps: int, tmp_path: Path
+) -> None:
+    response = certified(solve(scene, in_steps("opensees", steps, tmp_path), Options(elements=20)), scene)
     assert response.reported_success
     assert response.false_success
-    assert response.contacts["pin->cantilever"].force[-1] == 0.0
+    assert response.contacts[PAIR].force[-1] == 0.0
 
 
-@needs("exudyn")
-@pytest.mark.slow
-def test_exudyn_has_its_known_error_under_the_pin() -> None:
-    """1.4e-2 at 10 elements."""
-    response = answered("exudyn", KS, 10)
-    assert response.completed, response.message
-    assert certified_error(response) == pytest.approx(1.4e-2, rel=0.1)
+KNOWN = {
+    "opensees-pin": (KS, 20, 9.9e-3), "exudyn-pin": (KS, 10, 1.4e-2), "felupe-pin": (KS, 20, 1.02e-2),
+    "calculix-face": (A_TENTH, 50, 2e-3), "opensees-tip": (TIP, 10, 5e-3), "exudyn-tip": (TIP, 10, 1e-3),
+    "felupe-tip": (TIP, 10, 2e-2), "calculix-tip": (TIP, 10, 5e-3), "opensees-roll": (ROLL, 10, 5e-3),
+    "exudyn-roll": (ROLL, 10, 1e-3), "opensees-portal": (PORTAL, 10, 3e-2),
+}  # fmt: skip
+"""Scene of a program, elements, and distance from the exact equilibrium: under a pin the error of the contact force as a vector, to a
+tenth; else a bound. In the portal it is the displacement, by .022, from the shear that OpenSees's elements leave out."""
 
 
-@needs("felupe")
-@pytest.mark.slow
-def test_felupe_under_the_pin_with_twenty_elements() -> None:
-    """1.0e-2 with 20 elements, 3e-4 with 50."""
-    response = answered("felupe", KS, 20)
-    assert response.completed, response.message
-    assert certified_error(response) == pytest.approx(1.02e-2, rel=0.1)
-
-
-@needs("calculix")
-@pytest.mark.slow
-def test_calculix_under_a_pin_on_the_face_up_to_a_tenth(tmp_path: Path) -> None:
-    pin = FACE.pins[0]
-    (x, y), (u, v) = pin.points
-    short = replace(pin, path=((x, y), (x + 0.1 * (u - x), y + 0.1 * (v - y))), start=None, displacement=None)
-    scene = replace(FACE, pins=(short,), load_parameters=5)
-    response = certified(solve(scene, in_steps("calculix", 10, tmp_path), Options(elements=50)), scene)
-    assert response.completed, response.message
-    assert certified_error(response) < 2e-3
-
-
-SCENES = {
-    "opensees": {"tip": 5e-3, "roll": 5e-3, "portal": 3e-2},
-    "exudyn": {"tip": 1e-3, "roll": 1e-3},
-    "felupe": {"tip": 2e-2},
-    "calculix": {"tip": 5e-3},
-}
-"""Largest distance from the exact equilibrium with 10 elements, by program and scene. In the portal it is the displacement, by .022, from the shear
-that OpenSees's elements leave out, with any number of them."""
-STATED = {
-    "tip": TIP,
-    "roll": ROLL,
-    "portal": load_scene(str(FINDINGS / "portal.toml")),
-    "tied": load_scene("ks-tied-tip"),
-}
-
-
-@pytest.mark.slow_at("calculix-tip", "exudyn-roll", "exudyn-tip", "felupe-tip", "opensees-portal")
-@pytest.mark.parametrize(
-    ("name", "scene"),
-    [pytest.param(name, scene, marks=needs(name)) for name, scenes in SCENES.items() for scene in scenes],
-)
-def test_scenes_without_contact(name: str, scene: str) -> None:
-    response = answered(name, STATED[scene], 10)
+@pytest.mark.slow_at(*(KNOWN.keys() - {"opensees-tip", "opensees-roll"}))
+@pytest.mark.parametrize("case", [row(case.partition("-")[0], case) for case in KNOWN])
+def test_a_program_has_its_known_error(case: str, tmp_path: Path) -> None:
+    (given, elements, error), (name, _, what) = KNOWN[case], case.partition("-")
+    response = answered(in_steps(name, 10, tmp_path) if what == "face" else name, given, elements)
     assert response.completed, response.message
     assert response.certificate is not None
     assert response.certificate.certified, response.certificate.reason
-    assert response.certificate.judged[-1].distance is not None
-    assert response.certificate.judged[-1].distance.largest[1] < SCENES[name][scene]
+    distance = response.certificate.judged[-1].distance
+    assert distance is not None
+    if what == "pin":
+        assert distance.force == pytest.approx(error, rel=0.1)
+    else:
+        assert (distance.force if what == "face" else distance.largest[1]) < error
+    if case == "opensees-pin":
+        along = response.material_force["cantilever"][-1] / response.contacts[PAIR].force[-1]
+        assert abs(along) == pytest.approx(3.8e-3, rel=0.1)
 
 
 @needs("exudyn")
 @pytest.mark.slow
 def test_exudyn_is_off_in_the_middle_of_a_path_and_reports_success() -> None:
-    """Ten elements: right at the end to 5e-3, and off by more than 5 % of the largest reaction after the strip has buckled, which is why every load parameter is judged."""
-    response = answered("exudyn", STATED["tied"], 10)
+    """Ten elements: right at the end to 5e-3, and off by more than 5 % of the largest reaction after the strip has buckled."""
+    response = answered("exudyn", TIED, 10)
     assert (response.status, response.false_success) == ("NOT_AN_EQUILIBRIUM", True)
     assert response.certificate is not None
-    judged = response.certificate.judged
-    assert judged[-1].distance is not None
-    assert judged[-1].distance.largest[1] < 5e-3
-    assert max(one.distance.largest[1] for one in judged if one.distance is not None) > 0.05
+    apart = [one.distance.largest[1] for one in response.certificate.judged if one.distance is not None]
+    assert apart[-1] < 5e-3
+    assert max(apart) > 0.05
 
 
 def rough(scene: Scene) -> Scene:
@@ -168,90 +137,57 @@ def rough(scene: Scene) -> Scene:
     return replace(scene, contacts=tuple(replace(item, friction=0.3) for item in scene.contacts))
 
 
-@needs("opensees")
-@pytest.mark.slow
-def test_opensees_with_friction_has_a_known_error_under_the_pin() -> None:
-    """6.1e-3 of the force at the end with 20 elements and 1,000 steps, and 1.3e-3 L of the arc position."""
-    response = answered("opensees", load_scene("ks-friction"), 20)
-    contact = response.contacts["pin->cantilever"]
-    assert response.completed, response.message
-    assert contact.force[-1] == pytest.approx(2.110304862086e-3 * (1.0 + 6.1e-3), rel=1e-3)
-    assert contact.arc_position[-1] == pytest.approx(0.847142560461 - 1.3e-3, abs=2e-4)
-
-
-@needs("opensees")
-@pytest.mark.slow_at("20", "200")
-@pytest.mark.parametrize("steps", [20, 60, 200])
-def test_opensees_with_friction_loses_the_contact_in_long_steps_and_reports_success(
-    steps: int, tmp_path: Path
-) -> None:
-    scene = load_scene("ks-friction")
-    response = certified(solve(scene, in_steps("opensees", steps, tmp_path), Options(elements=20)), scene)
-    assert response.reported_success
-    assert response.false_success
-    assert response.contacts["pin->cantilever"].force[-1] == 0.0
-
-
-PORTAL, DOUBLE = STATED["portal"], load_scene("double-beam")
-REASONS: list[tuple[Callable[[dict[str, Any]], str | None], Scene, str]] = [
-    (opensees.refusal, DOUBLE, "BeamContact2D touches beams with pins only, the scene with upper.end"),
-    (exudyn.refusal, PORTAL, "ANCF cables have no rigid joint"),
-    (exudyn.refusal, FACE, "a sliding joint holds a pin on the axis from the start on, pin is not there"),
-    (exudyn.refusal, DOUBLE, "a sliding joint holds a pin on the axis from the start on, "),
-    (felupe.refusal, PORTAL, "the adapter has one strip of rectangular section with one support"),
-    (felupe.refusal, ROLL, "the adapter has dead forces at the free end, no moments"),
-    (calculix.refusal, KS, "the adapter has a sharp pin on the right face, on a straight path"),
-    (calculix.refusal, ROLL, "the adapter has a transverse force at the free end"),
-    (calculix.refusal, DOUBLE, "the adapter has one strip of rectangular section with one support"),
-    *(
-        (
-            adapter.refusal,
-            rough(scene),
-            "the adapter has frictionless contacts, the scene has friction at pin->",
-        )
-        for adapter, scene in ((exudyn, KS), (felupe, FACE), (calculix, FACE))
-    ),
+ONE_STRIP = "the adapter has one strip of rectangular section with one support"
+FRICTIONLESS = "the adapter has frictionless contacts, the scene has friction at pin->"
+REASONS = [
+    ("opensees", DOUBLE, "BeamContact2D touches beams with pins only, the scene with upper.end"),
+    ("exudyn", PORTAL, "ANCF cables have no rigid joint"),
+    ("exudyn", FACE, "a sliding joint holds a pin on the axis from the start on, pin is not there"),
+    ("exudyn", DOUBLE, "a sliding joint holds a pin on the axis from the start on, "),
+    ("exudyn", rough(KS), FRICTIONLESS),
+    ("felupe", PORTAL, ONE_STRIP),
+    ("felupe", ROLL, "the adapter has dead forces at the free end, no moments"),
+    ("felupe", rough(FACE), FRICTIONLESS),
+    ("calculix", KS, "the adapter has a sharp pin on the right face, on a straight path"),
+    ("calculix", ROLL, "the adapter has a transverse force at the free end"),
+    ("calculix", DOUBLE, ONE_STRIP),
+    ("calculix", rough(FACE), FRICTIONLESS),
 ]
 
 
-@pytest.mark.parametrize(("refusal", "scene", "reason"), REASONS)
+@pytest.mark.parametrize(("name", "scene", "reason"), REASONS)
 def test_a_scene_that_cannot_be_stated_has_its_reason(
-    refusal: Callable[[dict[str, Any]], str | None], scene: Scene, reason: str
+    name: str, scene: Scene, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said = refusal(data(scene))
+    """Without a process."""
+    monkeypatch.setattr("psutil.Popen", None)
+    said = find(name).refusal(scene)
     assert said is not None
     assert said.startswith(reason)
     assert "\n" not in said
+    assert " is needed" in (find(name).refusal(TIP) or " is needed"), "a tip load is stated by all"
 
 
-@pytest.mark.parametrize("name", ADAPTERS)
-def test_an_adapter_is_asked_without_a_process(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("comparisons.models.outside.source.run", None)
-    said = ADAPTERS[name].refusal(DOUBLE)
-    assert said is not None
-    assert said.startswith(tuple(reason for _, scene, reason in REASONS if scene is DOUBLE))
+def test_a_program_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ModelError, match=r"^calculix: Debian's calculix-ccx is needed: there is no program"):
+        solve(TIP, "calculix")
+    assert find("calculix").refusal(TIP) is not None
 
 
-@pytest.mark.parametrize("refusal", [opensees.refusal, exudyn.refusal, felupe.refusal, calculix.refusal])
-def test_a_tip_load_is_stated_by_all(refusal: Callable[[dict[str, Any]], str | None]) -> None:
-    assert refusal(data(TIP)) is None
-
-
-def test_a_program_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(
-        ADAPTERS, "opensees", Program(replace(ADAPTERS["opensees"].source, requires="no_such_module"))
-    )
-    with pytest.raises(ModelError, match=r"^opensees: openseespy is needed: install tsm-crossval"):
-        solve(TIP, "opensees")
-    assert ADAPTERS["opensees"].refusal(TIP) is not None
+def given(scene: Scene) -> dict[str, Any]:
+    """Return what a program gets of a scene when it is asked whether it states it."""
+    seen: list[dict[str, Any]] = []
+    Program(Functions(name="spy", refusal=seen.append, states=lambda *_: iter(()))).refusal(scene)  # type: ignore[arg-type, func-returns-value]
+    return seen[0]
 
 
 def test_joined_beams_share_a_node() -> None:
-    scene = data(PORTAL, 4)
+    scene = given(PORTAL)
     mesh = frame(scene)
-    beams = len(scene["beams"])
-    assert len(mesh.points) == 5 * beams - sum(len(ends) - 1 for ends in scene["joints"])
-    assert len(mesh.elements) == 4 * beams
+    counts = [beam["elements"] for beam in scene["beams"]]
+    joined = sum(len(ends) - 1 for ends in scene["joints"])
+    assert (len(mesh.points), len(mesh.elements)) == (sum(counts) + len(counts) - joined, sum(counts))
     for ends in scene["joints"]:
         nodes = {mesh.node(dict(zip(("beam", "end"), end.split("."), strict=True))) for end in ends}
         assert len(nodes) == 1
@@ -261,20 +197,24 @@ def test_joined_beams_share_a_node() -> None:
 
 
 def test_supports_are_stated_by_their_ends() -> None:
-    tied = STATED["tied"]
-    histories = Histories(data(tied))
-    for number, item in enumerate(tied.all_supports):
-        histories.support(item.node, (float(number), 0.0), 0.0)
-    supports = histories.tables()["supports"]
-    assert {node: one["force"] for node, one in supports.items()} == {
-        item.node: [[float(number), 0.0]] for number, item in enumerate(tied.all_supports)
-    }
+    histories, nodes = Histories(given(TIED)), [item.node for item in TIED.all_supports]
+    for number, node in enumerate(nodes):
+        histories.support(node, (number, 0), 0)
+    stated = {node: one["force"] for node, one in histories.tables()["supports"].items()}
+    assert stated == {node: [[number, 0]] for number, node in enumerate(nodes)}
+
+
+def test_a_pin_at_rest_has_a_path_of_two_points() -> None:
+    """Programs pair the points of a path with load parameters: 0, the corners, and 1."""
+    pin = replace(KS.pins[0], start=(0.7, 0.0), displacement=(0.0, 0.0))
+    (stated,) = given(replace(KS, pins=(pin,), loads=TIP.loads))["pins"]
+    assert (stated["path"], stated["corners"]) == ([[0.7, 0.0]] * 2, [])
 
 
 def test_what_a_program_prints_does_not_reach_the_answer() -> None:
     code = """
 import sys
-from comparisons.models.outside.adapters.exchange import StoppedError, serve
+from comparisons.models.outside import StoppedError, serve
 def states(scene, histories):
     print("chatter", flush=True)
     raise StoppedError("no luck")
@@ -283,13 +223,9 @@ serve(lambda scene: None, states)
 print("more chatter", flush=True)
 """
     run = subprocess.run(
-        [sys.executable, "-c", code],
-        input=request(TIP, Options(), TIP.times),
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+        [sys.executable, "-c", code], input=json.dumps(given(TIP) | {"load_parameters": [1.0]}),
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    )  # fmt: skip
     assert run.stderr.split() == ["chatter", "more", "chatter"]
     found = json.loads(run.stdout)
     assert (found["status"], found["message"], found["load_parameter"]) == ("STOPPED", "no luck", [])
