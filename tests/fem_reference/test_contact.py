@@ -1,195 +1,280 @@
+"""Contacts: penetration and its cure, where a pin is on a strip, slip-off and arming, and contact along a line."""
+
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from scipy.sparse import eye_array
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 
 import fem_reference as fr
-from fem_reference.curve import ContactCurve, CurveFrom, averaging, band_slopes, closest
-from fem_reference.model import build
-from tests.fem_reference.conftest import PAIR, STEP, loads, make_problem, place_pin, surfaces
+from tests.fem_reference.conftest import (
+    EI,
+    PAIR,
+    STRIP,
+    B,
+    held,
+    load,
+    loads,
+    make_problem,
+    make_strip,
+    rotation,
+    surfaces,
+    upper_on_lower,
+)
 
-# Inside an element, at a corner and a midside node, one unit of round-off beside it, near both ends.
-PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97]
-
-
-@pytest.fixture
-def model(request, problem):
-    """A strip turned by 0.4 in its scene, so that no frame is mistaken for another."""
-    changes = {"end": (float(np.cos(0.4)), float(np.sin(0.4))), "height": 0.2, "mesh": (5, 2)}
-    contact = {"surface": getattr(request, "param", "axis")}
-    return build(problem(path=((2.0, 2.0), (1.0, 1.0)), contact=contact, **changes))
-
-
-def bent(model, seed=0):
-    """Displacements of a bent strip with some noise."""
-    x = model.bodies[0].mesh.nodes
-    noise = 0.004 * np.random.default_rng(seed).standard_normal(x.shape)
-    angle = 1.2 * x[:, 0]
-    bend = np.stack([np.sin(angle), 1 - np.cos(angle)], 1) / 1.2
-    return bend + x[:, 1:] * np.stack([-np.sin(angle), np.cos(angle)], 1) + noise - x
+SCATTER = 2e-4
+"""Relative difference of force and arc position below which two meshes have the same answer."""
 
 
-def near(model, u, zeta, distance):
-    """The point at a distance to the left of the curve at zeta."""
-    pair = model.pairs[0]
-    r, r1, _ = pair.curve.basis(zeta) @ pair.carrier.points(u)
-    return r + distance * np.array([-r1[1], r1[0]]) / np.hypot(*r1)
-
-
-def test_curve_is_twice_continuously_differentiable(model):
-    curve = model.pairs[0].curve
-    for station in curve.stations[1:-1]:
-        before, after = curve.basis(np.nextafter(station, 0)), curve.basis(np.nextafter(station, 1))
-        scale = np.array([1.0, 1 / 0.1, 1 / 0.01])[:, None]
-        np.testing.assert_allclose(before / scale, after / scale, atol=1e-11)
-
-
-def curve_through(stations, offsets, kernel):
-    rows = eye_array(stations.size, format="csr")
-    slopes = band_slopes(stations)
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
-
-
-@pytest.mark.parametrize("spread", [0.0, 1e-4])
-def test_curve_converges_with_fourth_order(spread):
-    """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
-
-    def error(n):
-        s = np.linspace(0, 1, n + 1)
-        curve = curve_through(s, *averaging(spread, 1 / n))
-        return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
-
-    assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
-
-
-@pytest.mark.parametrize("m", [3, 46, 300, 700])
-def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
-    rng = np.random.default_rng(m)
-    s = np.cumsum(rng.uniform(0.5, 2, m))
-    values = rng.standard_normal(m)
-    band = band_slopes(s)
-    half = band.shape[1] // 2
-    slopes = [
-        band[k, max(0, half - k) : half + m - k] @ values[max(0, k - half) : k + half + 1] for k in range(m)
-    ]
-    np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), atol=1e-13)
-
-
-def test_average_leaves_cubics_and_reaches_no_further():
-    offsets, kernel = averaging(0.3, 0.01)
-    for power, moment in ((0, 1.0), (1, 0.0), (2, 0.0), (3, 0.0)):
-        assert kernel @ offsets**power == pytest.approx(moment, abs=1e-14)
-    assert np.abs(offsets).max() < 0.3
-    assert [part.tolist() for part in averaging(0.0, 0.01)] == [[0.0], [1.0]]
-
-
-def test_contact_is_spread_over_a_stated_length(problem):
-    """By default 1.5 heights to either side, at most a tenth of the length; never beyond the given spread."""
-    for height, spread, expected in ((0.02, None, 0.03), (0.2, None, 0.1), (0.02, 0.05, 0.05)):
-        curve = build(problem(height=height, contact={"spread": spread})).pairs[0].curve
-        assert expected * 0.95 < np.abs(curve.offsets).max() < expected
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-@pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
-@pytest.mark.parametrize("zeta", PLACES)
-@pytest.mark.parametrize("model", ["axis", "face"], indirect=True)
-def test_gap_derivatives_by_complex_steps(model, zeta, distance, side):
-    """Both derivatives, at and beside the nodes of the curve, with the pin off it and on it."""
-    u = bent(model)
-    pair = place_pin(model, near(model, u, zeta, distance), radius=0.01).pairs[0]
-    check_derivatives(replace(pair, contact=replace(pair.contact, side=side)), u)
-
-
-def check_derivatives(pair, u):
-    U, H = pair.gap_derivatives(pair.project(u, 0.0))
-    v = np.random.default_rng(3).standard_normal(u.shape)
-    at = pair.project(u + 1j * STEP * v, 0.0)
-    assert U[:, 0] @ v.ravel() == pytest.approx(pair.gap(at).imag / STEP, abs=1e-11)
-    slope = pair.gap_derivatives(at)[0][:, 0].imag / STEP
-    np.testing.assert_allclose(U @ (H @ (U.T @ v.ravel())), slope, rtol=0, atol=1e-9)
-
-
-def two_strips(strip, surface="face"):
-    """An upper strip whose end lies above a lower strip of the opposite direction."""
-    upper = strip(name="upper", start=(0.0, 0.3), end=(0.8, 0.25), height=0.1, mesh=(4, 2))
-    lower = strip(name="lower", start=(1.1, 0.0), end=(0.1, 0.1), height=0.1, mesh=(5, 1), clamped=("start",))
-    contact = fr.Contact(node="upper.end", strip="lower", side="right", surface=surface)
-    return build(fr.SolidProblem(strips=(upper, lower), contacts=(contact,)))
+def augmented(surface="axis", **changes):
+    return make_problem(contact={"surface": surface, "penalty": None, "penetration": 1e-10}, **changes)
 
 
 @surfaces
-def test_gap_derivatives_of_an_end_act_on_both_strips(strip, surface):
-    model = two_strips(strip, surface)
-    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
-    check_derivatives(model.pairs[0], u)
-
-
-def test_action_and_reaction_of_two_strips_cancel(strip):
-    """Forces and, where they touch, moments of the unit contact force in the global frame."""
-    model = two_strips(strip)
-    pair = model.pairs[0]
-    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
-    forces = pair.gap_derivatives(pair.project(u, 0.0))[0][:, 0].reshape(-1, 2)
-    upper, lower = (
-        forces[part].sum(axis=0) @ body.strip.frame.T
-        for body, part in zip(model.bodies, model.parts, strict=True)
+@pytest.mark.slow_at(
+    "biot-linear-axis",
+    "biot-linear-face",
+    "neo-hookean-axis",
+    "neo-hookean-face",
+    "st-venant-kirchhoff-face",
+)
+@pytest.mark.parametrize("material", fr.MATERIALS)
+def test_augmented_lagrangian_reaches_the_requested_penetration(surface, material, stated):
+    """And the pin's work, by four Gauss points a tenth of the path, is the energy stored at its end."""
+    problem, panels = augmented(surface, material=material), 10
+    x, w = np.polynomial.legendre.leggauss(4)
+    t = ((np.arange(panels)[:, None] + (1 + x) / 2) / panels).ravel()
+    result = fr.solve(problem, np.append(t, 1.0))
+    power = result.contacts[PAIR].vector[:-1] @ np.subtract(*problem.pins[0].path[::-1])
+    work = np.tile(w / 2 / panels, panels) @ power
+    penetration, difference = (
+        np.abs(result.contacts[PAIR].gap).max(),
+        abs(work / sum(fr.energy(result, -1)) - 1),
     )
-    np.testing.assert_allclose(upper, -lower, atol=1e-13)
-    assert np.hypot(*upper) == pytest.approx(1, abs=1e-13)
+    assert penetration <= 1e-10
+    assert difference <= 1e-6
+    stated("solid.penetration", penetration, part=True)
+    stated("solid.work", difference, part=True)
 
 
-@pytest.mark.parametrize("axial", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
-def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, axial):
-    pair = place_pin(model, model.problem.strips[0].to_global(np.array([axial, 0.0]))).pairs[0]
-    at = pair.project(np.zeros((model.nodes, 2)), 0.0)
-    assert at.inside
-    assert pair.gap(at) == pytest.approx(0, abs=2e-16)
+def test_work_of_the_pin_is_strain_and_contact_energy():
+    """A soft penalty, which stores a tenth of the work."""
+    problem = make_problem(path=((0.8, 0.0), (0.8, 0.1)), mesh=(10, 1), contact={"penalty": 5e-3 / 0.1})
+    x, w = np.polynomial.legendre.leggauss(8)
+    result = fr.solve(problem, np.append((1 + x) / 2, 1.0), fr.Settings(max_penetration=0.1))
+    strain, contact = fr.energy(result, -1)
+    assert contact > 0.02 * strain
+    assert w / 2 @ result.contacts[PAIR].vector[:-1, 1] * 0.1 == pytest.approx(strain + contact, rel=1e-9)
 
 
-@pytest.mark.parametrize(("pin", "distance"), [((1.5, -0.3), np.hypot(0.5, 0.3)), ((-0.4, 0.3), 0.5)])
-def test_pin_beyond_an_end_is_not_on_the_strip(model, pin, distance):
-    moved = place_pin(model, model.problem.strips[0].to_global(np.array(pin)))
-    at = moved.pairs[0].project(np.zeros((model.nodes, 2)), 0.0)
-    assert not at.inside
-    assert at.end_distance == pytest.approx(distance)
+def test_too_few_augmentations_are_a_status():
+    soft = make_problem(contact={"penalty": 1.0, "penetration": 1e-12}, mesh=(10, 1))
+    result = fr.solve(soft, loads(4), fr.Settings(max_augmentations=1, min_step=0.1), throw=False)
+    assert result.status is fr.Status.CUTBACK_FLOOR
+    assert fr.Status.AUGMENTATION_LIMIT.value in result.message
 
 
-@pytest.mark.parametrize("length", [1e-18, 1e18])
-def test_a_curve_of_three_stations_at_any_length(problem, length):
-    """The slopes scale with the length; in raw units SciPy warns of an ill-conditioned matrix."""
+@surfaces
+@pytest.mark.slow_at("face")
+def test_penetration_falls_with_the_penalty_over_ten_decades(surface):
+    """Slope -1 +- .05 from 10 to 1e11 N/m. A softer penalty fails with a status; a stiffer one keeps the force."""
 
-    def slopes(size):
-        changes = {"height": 0.02 * size, "width": 0.02 * size, "end": (size, 0.0)}
-        path = ((size, 0.0), (0.5 * size, 0.5 * size))
-        return build(problem(path=path, mesh=(2, 1), element="Q1", **changes)).pairs[0].curve.slopes
+    def solve(eps, count=5, **options):
+        problem = make_problem(contact={"surface": surface, "penalty": eps}, mesh=(20, 1))
+        return fr.solve(problem, loads(10)[:count], **options)
 
-    np.testing.assert_allclose(slopes(length) * length, slopes(1.0), atol=1e-12)
-
-
-@pytest.mark.parametrize("point", [(0.521, 0.105), (0.480, 0.104), (0.522, 0.107), (0.478, 0.107)])
-def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
-    """Newton's slope nearly vanishes at the start, so that a full Newton step would miss the closest point."""
-    s = np.linspace(0, 1, 6)
-    curve = curve_through(s, np.zeros(1), np.ones(1))
-    X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
-    zeta, stationary = closest(CurveFrom(curve=curve, points=X - np.array(point)))
-    places = np.linspace(0, 1, 4001)
-    distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
-    assert stationary
-    assert zeta == pytest.approx(places[np.argmin(distances)], abs=2.5e-4)
+    exact = fr.solve(augmented(surface, mesh=(20, 1)), loads(10)[:5]).contacts[PAIR].force[-1]
+    penalties = 10.0 ** np.arange(1, 12, 2)
+    contacts = [solve(eps).contacts[PAIR] for eps in penalties]
+    slopes = np.diff(np.log10([-contact.gap[-1] for contact in contacts])) / np.diff(np.log10(penalties))
+    np.testing.assert_allclose(slopes, -1, atol=0.05)
+    for eps, contact in zip(penalties, contacts, strict=True):
+        assert contact.force[-1] == pytest.approx(exact, rel=8e-3 / eps + 1e-8)
+    for eps in (1e-2, 1.0):
+        result = solve(eps, 10, throw=False)
+        assert result.status is fr.Status.CUTBACK_FLOOR
+        assert fr.Status.TOO_DEEP.value in result.message
+    assert solve(1e14).contacts[PAIR].force[-1] == pytest.approx(exact, rel=1e-8)
 
 
-def test_the_gap_of_a_pin_beyond_the_end_is_that_of_its_surface():
-    """A pin passes .2 behind the end of a strip that stays at rest."""
-    result = fr.solve(make_problem(path=((1.2, -0.2), (1.2, -0.1)), radius=0.03, mesh=(10, 1)), loads(2))
-    assert result.contacts[PAIR].gap == pytest.approx(np.hypot(0.2, [0.15, 0.1]) - 0.03, abs=1e-12)
+def scatter(make, meshes, quantities=("force", "arc_position")):
+    """Largest relative difference between any two meshes at any load parameter past .1."""
+    contacts = [
+        fr.solve(make(mesh=mesh, material="biot-linear"), loads(20)).contacts[PAIR] for mesh in meshes
+    ]
+    late = np.array([[getattr(contact, name)[2:] for name in quantities] for contact in contacts])
+    return float((np.ptp(late, axis=0) / late.mean(axis=0)).max())
 
 
-def test_radius_moves_the_gap_by_itself(model):
-    u = bent(model)
-    point = near(model, u, 0.6, -0.05)
-    sharp, round_ = (place_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
-    assert sharp.gap(sharp.project(u, 0.0)) - round_.gap(round_.project(u, 0.0)) == pytest.approx(0.02)
+@pytest.mark.parametrize(("surface", "radius"), [("axis", 0.0), ("face", 0.005)])
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("meshes", "allowed"),
+    [
+        pytest.param([(nx, 2) for nx in range(40, 61, 2)], SCATTER, id="11 meshes"),
+        pytest.param([(25, 2), (50, 2), (100, 2), (200, 4)], 5e-4, id="coarse and fine"),
+    ],
+)
+def test_answers_scatter_little_between_meshes(surface, radius, meshes, allowed):
+    assert scatter(partial(augmented, surface, radius=radius), meshes) <= allowed
+
+
+@pytest.mark.slow
+def test_a_sharp_contact_scatters_more(stated):
+    """Without the average over three heights."""
+    sharp = partial(make_problem, contact={"surface": "face", "spread": 0.0})
+    found = scatter(sharp, [(nx, 2) for nx in (40, 47, 54, 60)], ("force",))
+    assert found > 2 * SCATTER
+    stated("solid.sharp", found)
+
+
+@pytest.mark.parametrize(("height", "spread"), [(0.02, 0.03), (0.2, 0.1)])
+def test_contact_is_spread_over_a_stated_length(height, spread):
+    """By default 1.5 heights to either side, at most a tenth of the length."""
+
+    def force(value):
+        scene = make_problem(
+            path=((0.8, 0.0), (0.7, 0.1)), height=height, mesh=(10, 1), contact={"spread": value}
+        )
+        return fr.solve(scene, loads(1)).contacts[PAIR].force[-1]
+
+    assert force(None) == force(spread)
+    assert abs(force(1.2 * spread) / force(spread) - 1) > 1e-7
+
+
+def test_round_pin_pushes_the_axis_as_an_offset_does():
+    """A pin of radius R on the axis is a sharp pin on the curve R below: half the height, the face of a rigid section."""
+    round_ = fr.solve(make_problem(radius=0.01, mesh=(30, 1)), loads(10)).contacts[PAIR]
+    face = fr.solve(make_problem(contact={"surface": "face"}, mesh=(30, 1)), loads(10)).contacts[PAIR]
+    np.testing.assert_allclose(round_.force, face.force, rtol=2e-3)
+    np.testing.assert_allclose(round_.arc_position, face.arc_position, rtol=1e-3)
+
+
+@surfaces
+def test_action_and_reaction_of_two_strips_cancel(surface):
+    """The reactions of both clamps balance the load, also in moments about the origin."""
+    result = fr.solve(upper_on_lower((8, 1), surface=surface), np.array([0.5]))
+    assert result.contacts["upper.end->lower"].force[0] > 1e-4
+    upper, lower = result.supports["upper.start"], result.supports["lower.start"]
+    np.testing.assert_allclose(upper.force[0] + lower.force[0], [0.0, 2e-3], rtol=0, atol=1e-11)
+    moment = upper.moment[0] - 0.1 * upper.force[0, 0] + lower.moment[0] + lower.force[0, 1]
+    assert moment == pytest.approx(2e-3 * result.tips["upper"][0, 0], rel=1e-5)
+
+
+@pytest.mark.parametrize("x", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
+def test_pin_within_round_off_of_the_tip_is_on_the_strip(x):
+    Q = rotation(0.4)
+    path = tuple(tuple(map(float, Q @ point)) for point in ((x, 0.0), (x, 1e-7)))
+    result = fr.solve(make_problem(path=path, end=tuple(map(float, Q[:, 0])), mesh=(10, 1)), loads(1))
+    assert result.contacts[PAIR].force[-1] == pytest.approx(3e-7 * EI, rel=2e-3)
+
+
+def test_the_gap_of_a_pin_beyond_an_end_is_that_of_its_surface():
+    """Pins pass an end of a strip that stays at rest, one beyond its tip and one behind its clamp."""
+    for x, beyond in ((1.2, 0.2), (-0.4, 0.4)):
+        scene = make_problem(path=((x, -0.2), (x, -0.1)), radius=0.03, mesh=(10, 1))
+        gap = fr.solve(scene, loads(2)).contacts[PAIR].gap
+        assert gap == pytest.approx(np.hypot(beyond, [0.15, 0.1]) - 0.03, abs=1e-12)
+
+
+def test_pin_round_the_tip_is_lost_or_passes_and_is_armed_again_on_its_side():
+    """Beyond the tip to the far side, through the strip without contact, and from its own side into contact."""
+    path = ((1.2, -0.1), (1.2, 0.1), (0.9, 0.1), (0.9, -0.1), (0.9, 0.05))
+    kept, free = (
+        fr.solve(make_problem(path=path, mesh=(10, 1), contact={"keep": keep}), loads(60), throw=False)
+        for keep in (True, False)
+    )
+    assert kept.status is fr.Status.LOST_CONTACT
+    assert kept.reached < 0.25
+    contact = free.contacts[PAIR]
+    assert free.status is fr.Status.COMPLETED
+    y = np.array([free.model.problem.pins[0].position(t)[1] for t in free.load_parameter])
+    pressing = (free.load_parameter > 0.85) & (y > 1e-9)
+    assert np.all(contact.force[pressing] > 0)
+    assert np.all(contact.force[~pressing] == 0)
+
+
+def test_pin_beyond_the_tip_on_its_own_side_stays_armed():
+    scene = make_problem(path=((1.2, -0.1), (0.9, -0.1), (0.9, 0.05)), mesh=(10, 1))
+    assert fr.solve(scene, loads(4)).contacts[PAIR].force[-1] > 0
+
+
+def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next():
+    """Two pins lift a strip; the outer one passes its tip, and the inner one, until then not touching, takes over at once."""
+    pins = (
+        fr.Pin(name="outer", path=((0.95, 0.0), (0.95, 0.5))),
+        fr.Pin(name="inner", path=((0.6, -0.03), (0.6, 0.14))),
+        fr.Pin(name="far", path=((0.4, -0.2), (0.4, -0.1))),
+    )
+    contacts = tuple(fr.Contact(node=pin.name, strip=STRIP, keep=False) for pin in pins)
+    scene = fr.SolidProblem(strips=(make_strip(mesh=(16, 1)),), pins=pins, contacts=contacts)
+    result = fr.solve(scene, loads(10))
+    outer, inner, far = (result.contacts[f"{pin.name}->{STRIP}"] for pin in pins)
+    assert 0.3 < outer.slip_off < 0.9
+    after = result.load_parameter > outer.slip_off
+    assert np.all(outer.force[after] == 0)
+    assert np.all(inner.force[after] > 0)
+    assert np.all(far.force == 0)
+    alone = fr.solve(replace(scene, pins=pins[1:2], contacts=contacts[1:2]), loads(10))
+    np.testing.assert_allclose(inner.force[after], alone.contacts[f"inner->{STRIP}"].force[after], rtol=1e-7)
+
+
+def drum(tip_load, height=0.005, R=0.5, mesh=(40, 1)):
+    """A cantilever with a load on its tip over a drum of radius .5 below x = .3; EI = 1 for h = .005."""
+    center = (0.3, -height / 2 - R)
+    one = held(
+        load(force=(0.0, -tip_load)),
+        clamped=("start",),
+        height=height,
+        youngs_modulus=4.8e9,
+        mesh=mesh,
+        material="biot-linear",
+    )
+    pin = fr.Pin(name="drum", path=(center, (0.3, center[1] + 1e-9)), radius=R)
+    contact = fr.Contact(node="drum", strip=STRIP, surface="face")
+    return fr.SolidProblem(strips=one.strips, pins=(pin,), contacts=(contact,), loads=one.loads)
+
+
+def line_contact_begins():
+    """Tip load at which a Bernoulli beam has ``m_c / EI = 1 / (R + h / 2)`` at its contact with the drum, by shooting [N]."""
+    R, h, stiffness = 0.5, 0.005, 4.8e9 * B * 0.005**3 / 12
+    center = np.array([0.3, -h / 2 - R])
+    tolerances = {"rtol": 1e-10, "atol": 1e-12}
+
+    def equations(x):
+        P, s, force, m0, angle, mc = x
+        # From the clamp to the contact: force of the part beyond, contact force along the normal.
+        normal = np.array([-np.sin(angle), np.cos(angle)])
+        beyond = np.array([0.0, -P]) + force * normal
+
+        def left(_, y):
+            th, k = y[0], y[1]
+            return [k, -(np.cos(th) * beyond[1] - np.sin(th) * beyond[0]) / stiffness, np.cos(th), np.sin(th)]
+
+        def right(_, y):
+            return [y[1], P * np.cos(y[0]) / stiffness]
+
+        th, k, px, py = solve_ivp(left, (0, s), [0.0, m0 / stiffness, 0.0, 0.0], **tolerances).y[:, -1]
+        tip = solve_ivp(right, (s, 1), [angle, mc / stiffness], **tolerances).y[1, -1]
+        place = center + (R + h / 2) * normal
+        curved = -mc / stiffness - 1 / (R + h / 2)
+        return [th - angle, stiffness * k - mc, px - place[0], py - place[1], tip, curved]
+
+    x, _, found, _ = fsolve(equations, [4.5, 0.44, 12.0, -1.0, -0.5, -2.0], full_output=True)
+    assert found == 1
+    return x[0]
+
+
+@pytest.mark.slow_at("12.0-25-100", "30.0-10-100")
+@pytest.mark.parametrize(("tip_load", "n", "mesh"), [(12.0, 4, 40), (12.0, 25, 100), (30.0, 10, 100)])
+def test_line_contact_begins_where_the_beams_curvature_reaches_the_drums(tip_load, n, mesh):
+    """.13 % of the load with 100 elements, whatever the steps and the load at the end of the path."""
+    result = fr.solve(drum(tip_load, mesh=(mesh, 1)), loads(n), throw=False)
+    assert result.status is fr.Status.LINE_CONTACT
+    assert f"(drum->{STRIP}), at load parameter" in result.message
+    assert np.all(result.index == 0)
+    assert np.all(result.contacts[f"drum->{STRIP}"].gap >= -1e-8)
+    begins = line_contact_begins()
+    assert tip_load * result.reached == pytest.approx(begins, rel=2e-3 if mesh == 100 else 2e-2)

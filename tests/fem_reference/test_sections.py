@@ -1,73 +1,118 @@
+"""What a result tells: section forces and face strains against statics, stresses, columns and a picture."""
+
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 import fem_reference as fr
-from tests.fem_reference.conftest import CLAMP, PAIR, STRIP, loads, rotation
+from tests.fem_reference.conftest import CLAMP, EI, PAIR, STRIP, B, H, loads, make_problem, rotation
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.9])
-def turned(request, problem):
+def turned(request):
     """A biot-linear strip in a turned scene, bent far by a pin."""
     end, *path = np.array([[1.0, 0.0], [0.8, 0.0], [0.6, 0.4]]) @ rotation(request.param).T
-    scene = problem(end=tuple(end), path=tuple(map(tuple, path)), material="biot-linear")
+    scene = make_problem(end=tuple(end), path=tuple(map(tuple, path)), material="biot-linear")
     return fr.solve(scene, loads(4))
 
 
 def test_section_forces_are_those_of_statics(turned):
     """The pin's force alone gives f and M on every section between clamp and contact; both vanish beyond."""
-    k = -1
-    forces = fr.section_forces(turned, STRIP, k)
-    contact = turned.contacts[PAIR]
-    p, pin = contact.vector[k], turned.model.problem.pins[0].position(1.0)
-    loaded = forces.stations < contact.arc_position[k] - 0.06
-    beyond = forces.stations > contact.arc_position[k] + 0.06
+    forces, contact = fr.section_forces(turned, STRIP, -1), turned.contacts[PAIR]
+    p, pin, arc = contact.vector[-1], turned.model.problem.pins[0].position(1.0), contact.arc_position[-1]
     axis = fr.axis_stations(turned, STRIP)
-    line = [np.interp(forces.stations, axis, x) for x in fr.axis_line(turned, STRIP, k).T]
+    line = [np.interp(forces.stations, axis, x) for x in fr.axis_line(turned, STRIP, -1).T]
     arm = pin[:, None] - line
-    M = arm[0] * p[1] - arm[1] * p[0]
-    scale = np.hypot(*p)
-    inner = loaded & (forces.stations > 0.1)
-    np.testing.assert_allclose(forces.force[inner], p + 0 * forces.force[inner], atol=2e-3 * scale)
+    M, scale = arm[0] * p[1] - arm[1] * p[0], np.hypot(*p)
+    inner = (forces.stations < arc - 0.06) & (forces.stations > 0.1)
+    beyond = forces.stations > arc + 0.06
+    c, s = np.cos(forces.rotation[inner]), np.sin(forces.rotation[inner])
+    for found, expected in (
+        (forces.force[inner], p + 0 * forces.force[inner]),
+        (forces.force[beyond], 0),
+        (forces.N[inner], c * p[0] + s * p[1]),
+        (forces.V[inner], c * p[1] - s * p[0]),
+    ):
+        np.testing.assert_allclose(found, expected, atol=2e-3 * scale)
     np.testing.assert_allclose(forces.M[inner], M[inner], atol=1e-3 * np.abs(M).max())
-    np.testing.assert_allclose(forces.force[beyond], 0, atol=2e-3 * scale)
     np.testing.assert_allclose(forces.M[beyond], 0, atol=1e-4 * np.abs(M).max())
-    normal = np.stack([np.cos(forces.rotation), np.sin(forces.rotation)])
-    np.testing.assert_allclose(forces.N[inner], (normal[:, inner].T * p).sum(axis=1), atol=2e-3 * scale)
-    np.testing.assert_allclose(
-        forces.V[inner], p[1] * normal[0, inner] - p[0] * normal[1, inner], atol=2e-3 * scale
-    )
 
 
 def test_moment_is_the_bending_stiffness_times_the_curvature(turned):
     """``M = E I dtheta/dX`` of a rod, and the faces' strains ``-+ h/2 dtheta/dX``."""
-    forces, strip = fr.section_forces(turned, STRIP, -1), turned.model.problem.strips[0]
-    stations, strains = fr.face_strains(turned, STRIP, -1)
+    forces, (stations, strains) = fr.section_forces(turned, STRIP, -1), fr.face_strains(turned, STRIP, -1)
     np.testing.assert_array_equal(stations, forces.stations)
     inner = (stations > 0.1) & (stations < turned.contacts[PAIR].arc_position[-1] - 0.1)
     curvature = np.gradient(forces.rotation, stations)
-    np.testing.assert_allclose(forces.M[inner], strip.bending_stiffness * curvature[inner], rtol=3e-3)
+    np.testing.assert_allclose(forces.M[inner], EI * curvature[inner], rtol=3e-3)
     for name, y in (("right", -0.01), ("left", 0.01)):
         np.testing.assert_allclose(strains[name][inner], -y * curvature[inner], rtol=2e-2)
 
 
 def test_clamp_reaction_is_the_force_on_the_first_sections(turned):
     """The mean over an element's two Gauss stations; the moment extrapolated from them to the clamp."""
-    support, k = turned.supports[CLAMP], -1
-    forces = fr.section_forces(turned, STRIP, k)
-    np.testing.assert_allclose(
-        forces.force[2:4].mean(axis=0), -support.force[k], atol=3e-4 * np.hypot(*support.force[k])
-    )
+    reaction, forces = turned.supports[CLAMP], fr.section_forces(turned, STRIP, -1)
+    force = reaction.force[-1]
+    np.testing.assert_allclose(forces.force[2:4].mean(axis=0), -force, atol=3e-4 * np.hypot(*force))
     slope = np.diff(forces.M[2:4]) / np.diff(forces.stations[2:4])
-    assert forces.M[2] - slope[0] * forces.stations[2] == pytest.approx(-support.moment[k], rel=2e-3)
+    assert forces.M[2] - slope[0] * forces.stations[2] == pytest.approx(-reaction.moment[-1], rel=2e-3)
 
 
 def test_the_j_integral_is_the_tangential_force(turned):
     """It vanishes between clamp and contact, where the bending part alone is more than half of the contact force, and in the free tail."""
-    forces, strip = fr.section_forces(turned, STRIP, -1), turned.model.problem.strips[0]
+    forces = fr.section_forces(turned, STRIP, -1)
     force, arc = turned.contacts[PAIR].force[-1], turned.contacts[PAIR].arc_position[-1]
     inner = (forces.stations > 0.03) & (forces.stations < arc - 0.03)
-    bending = forces.M**2 / (2 * strip.bending_stiffness)
-    assert bending.max() > 0.5 * force
+    assert (forces.M**2 / (2 * EI)).max() > 0.5 * force
     assert np.abs(forces.material_force[inner]).max() < 1e-4 * force
     assert abs(forces.material_force[inner].mean()) < 1e-5 * force
     assert np.abs(forces.material_force[forces.stations > arc + 0.03]).max() < 1e-6 * force
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.9])
+def test_nodal_stress_is_the_bending_stress(angle):
+    """Small deflection by 1e-4: ``M y / I`` on the face, along the strip."""
+    Q = rotation(angle)
+    path = tuple(map(tuple, np.array([[0.8, 0.0], [0.8, 1e-4]]) @ Q.T))
+    c, s = map(float, Q[:, 0])
+    result = fr.solve(make_problem(path=path, end=(c, s)), loads(1))
+    xx, yy, xy = fr.nodal_stress(result, 0).T
+    along, across = (c * c * xx + s * s * yy + 2 * c * s * xy, s * s * xx + c * c * yy - 2 * c * s * xy)
+    x, y = (result.mesh_points @ Q).T
+    bottom = (np.abs(y + H / 2) < 1e-9) & (x > 0.19) & (x < 0.69)
+    expected = 12 * result.contacts[PAIR].force[0] * (0.8 - x[bottom]) * 0.01 / (B * H**3)
+    np.testing.assert_allclose(along[bottom], expected, rtol=5e-3)
+    assert fr.fibre_stress(result, 0) == pytest.approx(along, abs=2e-3 * np.abs(along).max())
+    assert np.abs(across[bottom]).max() < 0.02 * expected.max()
+
+
+def test_axis_line_runs_from_the_clamp_to_the_tip(ks_axis):
+    line, stations = fr.axis_line(ks_axis, STRIP, -1), fr.axis_stations(ks_axis, STRIP)
+    # By Poisson's effect of the curvature the mean lies up to nu kappa h^2 / 24 above the clamped middle.
+    kappa = -ks_axis.supports[CLAMP].moment[-1] / EI
+    assert line[0, 0] == pytest.approx(0, abs=1e-12)
+    assert 0.4 < line[0, 1] / (0.3 * kappa * H**2 / 24) < 1.0
+    np.testing.assert_allclose(line[-1], ks_axis.tips[STRIP][-1], atol=1e-15)
+    assert np.hypot(*np.diff(line, axis=0).T).sum() == pytest.approx(1, abs=1e-3)
+    np.testing.assert_allclose(np.diff(stations), 0.01, atol=1e-14)
+
+
+def test_result_has_a_line_columns_and_a_picture(ks_axis):
+    n = len(ks_axis.mesh_points)
+    assert repr(ks_axis).startswith("<Result COMPLETED: 50 load parameters, the last 1; ")
+    assert (ks_axis.displacement.shape, ks_axis.unknowns) == ((50, n, 2), 2 * n - 6)
+    assert {name: cells.shape for name, cells in ks_axis.mesh_cells.items()} == {"quad9": (100, 9)}
+    columns = ks_axis.table()
+    assert {values.shape for values in columns.values()} == {(50,)}
+    assert columns[f"{CLAMP}.moment"] is ks_axis.supports[CLAMP].moment
+    assert columns[f"{PAIR}.force_y"] == pytest.approx(-columns[f"{CLAMP}.force_y"], abs=1e-9)
+    assert f"<td>{STRIP}.tip_x</td>" in ks_axis._repr_html_()
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    axes = ks_axis.plot(figure.subplots(), shown=2)
+    undeformed, first, last = (item.get_paths() for item in axes.collections)
+    assert len(undeformed) == len(first) == len(last) == 100
+    corners = ks_axis.mesh_cells["quad9"][-1, :4]
+    places = ks_axis.mesh_points + ks_axis.displacement[-1]
+    assert last[-1].vertices[:-1:2] == pytest.approx(places[corners])
