@@ -88,13 +88,3 @@ def upper_on_lower(mesh, friction=0.0, **contact):
     return fr.SolidProblem(
         strips=(upper, lower), contacts=(fr.Contact(**(values | contact)),), loads=(pressed,)
     )
-
-
-@pytest.fixture(scope="session")
-def ks_axis():
-    return fr.solve(make_problem(), loads(50))
-
-
-@pytest.fixture(scope="session")
-def ks_face():
-    return fr.solve(make_problem(contact={"surface": "face"}), loads(20))

@@ -76,27 +76,24 @@ def test_too_few_augmentations_are_a_status():
     assert fr.Status.AUGMENTATION_LIMIT.value in result.message
 
 
-@surfaces
-@pytest.mark.slow_at("face")
-def test_penetration_falls_with_the_penalty_over_ten_decades(surface):
+def test_penetration_falls_with_the_penalty_over_ten_decades():
     """Slope -1 +- .05 from 10 to 1e11 N/m. A softer penalty fails with a status; a stiffer one keeps the force."""
 
-    def solve(eps, count=5, **options):
-        problem = make_problem(contact={"surface": surface, "penalty": eps}, mesh=(20, 1))
-        return fr.solve(problem, loads(10)[:count], **options)
+    def solve(eps, n=5, **options):
+        return fr.solve(make_problem(contact={"penalty": eps}, mesh=(20, 1)), loads(10)[:n], **options)
 
-    exact = fr.solve(augmented(surface, mesh=(20, 1)), loads(10)[:5]).contacts[PAIR].force[-1]
-    penalties = 10.0 ** np.arange(1, 12, 2)
+    exact = fr.solve(augmented(mesh=(20, 1)), loads(10)[:5]).contacts[PAIR].force[-1]
+    penalties = 10.0 ** np.arange(1, 12, 5)
     contacts = [solve(eps).contacts[PAIR] for eps in penalties]
-    slopes = np.diff(np.log10([-contact.gap[-1] for contact in contacts])) / np.diff(np.log10(penalties))
+    slopes = np.diff(np.log10([-contact.gap[-1] for contact in contacts])) / 5
     np.testing.assert_allclose(slopes, -1, atol=0.05)
     for eps, contact in zip(penalties, contacts, strict=True):
         assert contact.force[-1] == pytest.approx(exact, rel=8e-3 / eps + 1e-8)
+    assert solve(1e14).contacts[PAIR].force[-1] == pytest.approx(exact, rel=1e-8)
     for eps in (1e-2, 1.0):
         result = solve(eps, 10, throw=False)
         assert result.status is fr.Status.CUTBACK_FLOOR
         assert fr.Status.TOO_DEEP.value in result.message
-    assert solve(1e14).contacts[PAIR].force[-1] == pytest.approx(exact, rel=1e-8)
 
 
 def scatter(make, meshes, quantities=("force", "arc_position")):
@@ -108,17 +105,12 @@ def scatter(make, meshes, quantities=("force", "arc_position")):
     return float((np.ptp(late, axis=0) / late.mean(axis=0)).max())
 
 
-@pytest.mark.parametrize(("surface", "radius"), [("axis", 0.0), ("face", 0.005)])
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("meshes", "allowed"),
-    [
-        pytest.param([(nx, 2) for nx in range(40, 61, 2)], SCATTER, id="11 meshes"),
-        pytest.param([(25, 2), (50, 2), (100, 2), (200, 4)], 5e-4, id="coarse and fine"),
-    ],
-)
-def test_answers_scatter_little_between_meshes(surface, radius, meshes, allowed):
-    assert scatter(partial(augmented, surface, radius=radius), meshes) <= allowed
+@pytest.mark.parametrize(("surface", "radius"), [("axis", 0.0), ("face", 0.005)])
+def test_answers_scatter_little_between_meshes(surface, radius):
+    meshes = [(nx, 2) for nx in (40, 43, 47, 54, 60)]
+    assert scatter(partial(augmented, surface, radius=radius), meshes) <= SCATTER
+    assert scatter(partial(augmented, surface, radius=radius), [(25, 2), (50, 2), (200, 4)]) <= 5e-4
 
 
 @pytest.mark.slow
@@ -142,14 +134,6 @@ def test_contact_is_spread_over_a_stated_length(height, spread):
 
     assert force(None) == force(spread)
     assert abs(force(1.2 * spread) / force(spread) - 1) > 1e-7
-
-
-def test_round_pin_pushes_the_axis_as_an_offset_does():
-    """A pin of radius R on the axis is a sharp pin on the curve R below: half the height, the face of a rigid section."""
-    round_ = fr.solve(make_problem(radius=0.01, mesh=(30, 1)), loads(10)).contacts[PAIR]
-    face = fr.solve(make_problem(contact={"surface": "face"}, mesh=(30, 1)), loads(10)).contacts[PAIR]
-    np.testing.assert_allclose(round_.force, face.force, rtol=2e-3)
-    np.testing.assert_allclose(round_.arc_position, face.arc_position, rtol=1e-3)
 
 
 @surfaces

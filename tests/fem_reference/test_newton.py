@@ -88,16 +88,6 @@ def springs_and_hinges():
     )
 
 
-def stacked():
-    """A pin on an upper strip, whose end presses on a lower one."""
-    upper = make_strip(name="upper", mesh=(6, 1), height=0.05)
-    lower = make_strip(name="lower", start=(0.1, -0.1), end=(1.2, -0.12), mesh=(5, 1), height=0.05)
-    nodes = (("pin", "upper"), ("upper.end", "lower"))
-    contacts = tuple(fr.Contact(node=node, strip=strip, side="left", surface="face") for node, strip in nodes)
-    pin = fr.Pin(name="pin", path=((0.7, 0.04), (0.7, -0.2)), radius=0.01)
-    return fr.SolidProblem(strips=(upper, lower), pins=(pin,), contacts=contacts)
-
-
 def pinned(at, radius=0.0, **contact):
     """A strip turned by .4 under a pin, at a place along it: on a node, within an element, near the end."""
     side = -1 if contact.get("side", "right") == "right" else 1
@@ -131,7 +121,6 @@ CASES = {
     ),
     "springs-hinges": lambda: noisy(springs_and_hinges(), 1e-3, EI),
     "frame": lambda: disturbed(portal(), (0.5, 1.0), 0.9, scale=1.01),
-    "stacked": lambda: disturbed(stacked(), (0.4, 0.6), 0.62),
     "end": lambda: disturbed(upper_on_lower((8, 1), surface="axis"), (0.4, 0.5), 0.502),
     "axis-node": lambda: disturbed(pinned(0.6), (0.5, 1.0), 0.99),
     "axis-left-element": lambda: disturbed(pinned(0.53, side="left"), (0.5, 1.0), 0.99),

@@ -7,8 +7,18 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipk
 
 import fem_reference as fr
-from tests.fem_reference.conftest import EI, STRIP, held, load, loads, make_problem
-from tests.fem_reference.test_end_section import buckling_load, effective
+from tests.fem_reference.conftest import EA, EI, NU, STRIP, held, load, loads, make_problem, support
+
+
+def effective(P):
+    """``P (1 + P (1/GA - 1/EA))``, the load of the Reissner column in Euler's formula [N]."""
+    return P * (1 + P * (2 * (1 + NU) * 6 / 5 - 1) / EA)
+
+
+def buckling_load(k):
+    """``effective(P) = k^2 EI`` [N]."""
+    return brentq(lambda P: effective(P) - k**2 * EI, 0, 2 * k**2 * EI)
+
 
 EULER = buckling_load(np.pi / 2)
 
@@ -20,19 +30,30 @@ def column(factor, lateral=0.0, **changes):
     return held(load(force=(-P, lateral * P)), **changes)
 
 
-def test_column_ends_as_bifurcation_at_the_buckling_load():
-    """Within .01 % of the Reissner rod, with its mode."""
-    result = fr.solve(column(8.3), loads(5), throw=False)
+COLUMNS = {
+    "clamped at a section and free": (np.pi / 2, [1, 1], (0.0, 0.0, 0.0), None),
+    "pinned and pinned": (np.pi, [1, 1], (0.0, 0.0, None), (None, 0.0, None)),
+    "clamped and clamped": (2 * np.pi, [1, 2], (0.0, 0.0, 0.0), (None, 0.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize("case", COLUMNS)
+def test_column_ends_as_bifurcation_at_its_buckling_load(case):
+    """``effective(P) = (k L)^2 EI`` but for .742 of the strain P/EA, whatever the supports; the index counts the modes."""
+    k, modes, *motions = COLUMNS[case]
+    P = buckling_load(k)
+    ends = [support(end, motion) for end, motion in zip(("start", "end"), motions, strict=True) if motion]
+    problem = held(*ends, load(force=(-3 * P, 0.0)), mesh=(32, 2), material="biot-linear")
+    result = fr.solve(problem, loads(4), throw=False)
     assert result.status is fr.Status.BIFURCATION
     (point,) = result.critical
-    assert point.kind == "bifurcation"
-    assert 8.3 * point.load_parameter == pytest.approx(1, abs=1e-4)
-    assert result.reached == point.load_parameter
+    assert (point.kind, point.load_parameter) == ("bifurcation", result.reached)
     assert np.all(result.index == 0)
-    assert np.all(result.load_parameter < point.load_parameter)
-    x = fr.axis_stations(result, STRIP)
-    np.testing.assert_allclose(np.abs(point.mode[STRIP][:, 1]), 1 - np.cos(np.pi / 2 * x), atol=1e-4)
-    assert point.mode[STRIP][-1, 1] == pytest.approx(1)
+    if case == "clamped at a section and free":
+        shape = 1 - np.cos(np.pi / 2 * fr.axis_stations(result, STRIP))
+        np.testing.assert_allclose(point.mode[STRIP][:, 1], shape, atol=1e-4)
+    assert (3 * point.load_parameter - 1) / (P / EA) == pytest.approx(0.742, abs=0.01)
+    assert fr.solve(problem, loads(2), fr.Settings(branch="primary")).index.tolist() == modes
 
 
 @pytest.mark.slow_at("biot-linear-6.1e-05")
