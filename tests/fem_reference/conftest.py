@@ -1,5 +1,7 @@
 """Strips, problems and solutions that several tests share."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,13 @@ def held(*conditions, **changes):
         found[KINDS[type(condition)]].append(condition)
     strip = make_strip(**({"clamped": ()} | changes))
     return fr.SolidProblem(strips=(strip,), **{field: tuple(part) for field, part in found.items()})
+
+
+def pressed(problem, path, radius=0.0, **contact):
+    """The strip of a problem, also under a pin."""
+    pin = fr.Pin(name="pin", path=path, radius=radius)
+    contacts = (fr.Contact(node="pin", strip=STRIP, **contact),)
+    return replace(problem, pins=(pin,), contacts=contacts)
 
 
 def support(end="start", motion=(0.0, 0.0, 0.0), **values):

@@ -24,18 +24,6 @@ def test_curve_is_twice_continuously_differentiable():
         np.testing.assert_allclose(before / scale, after / scale, atol=1e-11)
 
 
-@pytest.mark.parametrize("spread", [0.0, 1e-4])
-def test_curve_converges_with_fourth_order(spread):
-    """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
-
-    def error(n):
-        s = np.linspace(0, 1, n + 1)
-        curve = curve_through(s, *averaging(spread, 1 / n))
-        return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
-
-    assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
-
-
 @pytest.mark.parametrize("m", [3, 46, 300, 700])
 def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
     rng = np.random.default_rng(m)

@@ -10,11 +10,11 @@ from tests.fem_reference.conftest import (
     EI,
     GA,
     PAIR,
-    STRIP,
     H,
     held,
     loads,
     make_problem,
+    pressed,
     support,
     upper_on_lower,
 )
@@ -35,39 +35,6 @@ def rubbed(
     scene = make_problem(path=path, radius=radius, contact=values, material=material, mesh=mesh)
     result = fr.solve(scene, loads(n) if isinstance(n, int) else n, settings)
     return result, result.contacts[PAIR]
-
-
-def test_block_sticks_up_to_the_cone_with_the_stiffness_of_a_bar():
-    """A pin presses on a beam and drags it to a support: ``T = -EA x / a'`` up to ``mu N``, where a' counts the spread of T."""
-    drop, drag, mu, a, spread = 1e-5, 1.2e-7, 0.3, 0.5, 0.05
-    ends = support(motion=(0.0, 0.0, None)), support("end", (None, 0.0, None))
-    bar = held(*ends, height=0.1, poissons_ratio=0.0, mesh=(40, 2), material="biot-linear")
-    pin = fr.Pin(name="pin", path=((a, 0.0), (a, -drop), (a - drag, -drop)))
-    contacts = (fr.Contact(node="pin", strip=STRIP, side="left", friction=mu, spread=spread),)
-    problem = fr.SolidProblem(strips=bar.strips, pins=(pin,), contacts=contacts, supports=bar.supports)
-    corner = drop / (drop + drag)
-    dragged = corner + (1 - corner) * np.arange(13) / 12
-    result = fr.solve(problem, np.append(0.5, dragged))
-    contact = result.contacts[PAIR]
-    x = drag * np.arange(13) / 12
-    g, w = np.polynomial.legendre.leggauss(12)  # the kernel of the contact's average
-    kernel = w * (3 - 10 * g**2 + 7 * g**4)
-    kernel = kernel / kernel.sum()
-    length = a - kernel @ (spread * np.abs(g[:, None] - g)) @ kernel / 2
-    stiffness = 5 * EA / length
-    T, N, way = (values[1:] for values in (contact.tangential_force, contact.normal_force, contact.direction))
-    assert list(way) == sorted(way, reverse=True)
-    stuck, slides = way == 0, way == -1
-    assert min(stuck.sum(), slides.sum()) >= 4
-    np.testing.assert_allclose((T - T[0])[stuck], -stiffness * x[stuck], rtol=0.01)
-    assert np.ptp(contact.arc_position[1:][stuck]) < 1e-14
-    ((slips, _),) = slip_changes(contact)
-    assert slips * (drop + drag) - drop == pytest.approx((mu * N[0] + T[0]) / stiffness, rel=0.01)
-    np.testing.assert_allclose(T[slides], -mu * N[slides], rtol=1e-9)
-    # The start is the only horizontal support.
-    np.testing.assert_allclose(
-        result.supports[f"{STRIP}.start"].force[:, 0], -contact.vector[:, 0], rtol=0, atol=1e-6 * mu * N[0]
-    )
 
 
 FACE = {"surface": "face"}
@@ -204,10 +171,8 @@ def test_limit_load_of_three_point_bending(mu):
     exact = frictional_three_point_limit(mu).drawn_in
     section = {"height": 0.01, "poissons_ratio": 0.0, "material": "biot-linear"}
     half = held(support(), end=(1.6, 0.0), mesh=(80, 1), **section)
-    pin = fr.Pin(name="pin", path=((1.0, 0.0), (1.0, exact.displacement)))
-    contacts = (fr.Contact(node="pin", strip=STRIP, friction=mu),)
-    problem = fr.SolidProblem(strips=half.strips, pins=(pin,), contacts=contacts, supports=half.supports)
-    contact = fr.solve(problem, loads(10)).contacts[PAIR]
+    path = ((1.0, 0.0), (1.0, exact.displacement))
+    contact = fr.solve(pressed(half, path, friction=mu), loads(10)).contacts[PAIR]
     assert contact.vector[-1, 1] / (EI / 8) == pytest.approx(exact.load, rel=1e-4)
     ((slips, way),) = slip_changes(contact)
     assert way == 1

@@ -19,6 +19,7 @@ from tests.fem_reference.conftest import (
     load,
     loads,
     make_strip,
+    pressed,
     rotation,
     support,
 )
@@ -110,10 +111,8 @@ def test_a_face_contact_is_on_the_face_of_the_taper():
     """A sharp pin touches the inclined face at the start; below it, it is refused."""
 
     def problem(y):
-        return fr.SolidProblem(
-            strips=(make_strip(end_height=0.01),),
-            pins=(fr.Pin(name="pin", path=((0.6, y), (0.6, y - 1e-6))),),
-            contacts=(fr.Contact(node="pin", strip=STRIP, side="left", surface="face"),),
+        return pressed(
+            held(end_height=0.01, **KEPT), ((0.6, y), (0.6, y - 1e-6)), side="left", surface="face"
         )
 
     face = (H - 0.6 * 0.01) / 2

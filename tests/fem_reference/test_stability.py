@@ -7,7 +7,7 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipk
 
 import fem_reference as fr
-from tests.fem_reference.conftest import EA, EI, NU, STRIP, held, load, loads, make_problem, support
+from tests.fem_reference.conftest import EA, EI, NU, STRIP, held, load, loads, make_problem, pressed, support
 
 
 def effective(P):
@@ -131,10 +131,7 @@ def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point(n):
 @pytest.mark.parametrize("numbers", [pytest.param((5,), id="few"), pytest.param((5, 20), id="few and many")])
 def test_pin_that_presses_a_buckled_column_straight_loses_it_at_a_limit_point(numbers):
     """At 1.1 times the buckling load the pin's force has fallen to zero: the free column is unstable there, index 1."""
-    one = column(1.5, 1e-3)
-    pin = fr.Pin(name="pin", path=((0.7, 0.8), (0.7, -0.3)))
-    contact = fr.Contact(node="pin", strip=STRIP, side="left")
-    scene = fr.SolidProblem(strips=one.strips, pins=(pin,), contacts=(contact,), loads=one.loads)
+    scene = pressed(column(1.5, 1e-3), ((0.7, 0.8), (0.7, -0.3)), side="left")
     results = [fr.solve(scene, loads(n), throw=False) for n in numbers]
     for result in results:
         assert result.status is fr.Status.LIMIT_POINT
