@@ -93,13 +93,6 @@ def test_stable_branch_is_the_elasticas():
             assert abs(tip[1]) < 1e-5
 
 
-def test_imperfect_column_is_followed_whatever_the_number_of_load_parameters():
-    """Along and 1e-3 across: one bent answer on the side of the lateral load."""
-    tips = np.array([fr.solve(column(2.0, 1e-3), loads(n)).tips[STRIP][-1] for n in (1, 20)])
-    np.testing.assert_allclose(tips[0], tips[1], atol=1e-6)
-    assert tips[0, 1] > 0.7
-
-
 def fold_of_the_elastica():
     """Largest polar angle of a pin that a cantilever long enough can press, in closed form (`alpha(t_c)`)."""
 
@@ -110,15 +103,13 @@ def fold_of_the_elastica():
     return -minimize_scalar(lambda tc: -angle(tc), bounds=(2.2, 3.1), method="bounded").fun
 
 
-@pytest.mark.slow_at("4", "20")
-@pytest.mark.parametrize("n", [1, 4, 20])
-def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point(n):
+def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point():
     """Polar angle 99.57 degrees; within 3e-4 of the path for h/L = .02."""
     first, last = np.array([0.3, 0.0]), np.array([-0.15, 0.3])
     limit = fold_of_the_elastica()
     t = brentq(lambda t: np.arctan2(*(first + t * (last - first))[::-1]) - limit, 0, 1)
     path = (tuple(map(float, first)), tuple(map(float, last)))
-    result = fr.solve(make_problem(path=path, mesh=(30, 1), material="biot-linear"), loads(n), throw=False)
+    result = fr.solve(make_problem(path=path, mesh=(30, 1), material="biot-linear"), loads(1), throw=False)
     assert result.status is fr.Status.LIMIT_POINT
     (point,) = result.critical
     assert (point.kind, point.load_parameter) == ("limit point", result.reached)
@@ -127,18 +118,14 @@ def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point(n):
     assert "limit on this branch" in result.message
 
 
-@pytest.mark.slow_at("few and many")
-@pytest.mark.parametrize("numbers", [pytest.param((5,), id="few"), pytest.param((5, 20), id="few and many")])
-def test_pin_that_presses_a_buckled_column_straight_loses_it_at_a_limit_point(numbers):
+def test_pin_that_presses_a_buckled_column_straight_loses_it_at_a_limit_point():
     """At 1.1 times the buckling load the pin's force has fallen to zero: the free column is unstable there, index 1."""
     scene = pressed(column(1.5, 1e-3), ((0.7, 0.8), (0.7, -0.3)), side="left")
-    results = [fr.solve(scene, loads(n), throw=False) for n in numbers]
-    for result in results:
-        assert result.status is fr.Status.LIMIT_POINT
-        (point,) = result.critical
-        assert point.kind == "limit point"
-        assert 1.5 * result.reached == pytest.approx(1.0977, abs=1e-3)
-        assert result.reached == pytest.approx(results[0].reached, abs=1e-6)
-        assert np.all(result.index == 0)
-        x = fr.axis_stations(result, STRIP)
-        np.testing.assert_allclose(point.mode[STRIP][:, 1], 1 - np.cos(np.pi / 2 * x), atol=0.05)
+    result = fr.solve(scene, loads(5), throw=False)
+    assert result.status is fr.Status.LIMIT_POINT
+    (point,) = result.critical
+    assert point.kind == "limit point"
+    assert 1.5 * result.reached == pytest.approx(1.0977, abs=1e-3)
+    assert np.all(result.index == 0)
+    shape = 1 - np.cos(np.pi / 2 * fr.axis_stations(result, STRIP))
+    np.testing.assert_allclose(point.mode[STRIP][:, 1], shape, atol=0.05)
