@@ -68,17 +68,6 @@ def test_buckling_load_does_not_depend_on_the_load_parameters(material, expected
     np.testing.assert_allclose(t, t[0], rtol=2e-8)
 
 
-def test_primary_branch_continues_and_counts_unstable_modes():
-    """The index of the straight column is the number of odd n with ``(n pi / 2)^2 EI < P (1 + P (1/GA - 1/EA))``."""
-    result = fr.solve(column(30.0), loads(15), fr.Settings(branch="primary"))
-    P = 30 * EULER * result.load_parameter
-    expected = [sum((n * np.pi / 2) ** 2 * EI < p for n in (1, 3, 5, 7)) for p in effective(P)]
-    assert result.index.tolist() == expected
-    assert sorted(set(expected)) == [1, 2, 3]
-    assert [point.kind for point in result.critical] == ["bifurcation"] * 3
-    np.testing.assert_allclose(result.tips[STRIP][:, 1], 0, atol=1e-6)
-
-
 def test_stable_branch_is_the_elasticas():
     """P/P_1 = (2 K(p) / pi)^2 with p = sin(tip angle / 2), to the left, as beams."""
     result = fr.solve(column(1.2), loads(6), fr.Settings(branch="stable"))
