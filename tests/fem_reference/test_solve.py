@@ -164,17 +164,6 @@ def test_section_forces_are_those_of_statics(turned):
     np.testing.assert_allclose(forces.M[beyond], 0, atol=1e-4 * np.abs(M).max())
 
 
-def test_the_j_integral_is_the_tangential_force(turned):
-    """It vanishes between clamp and contact, where the bending part alone is more than half of the contact force, and in the free tail."""
-    forces = fr.section_forces(turned, STRIP, -1)
-    force, arc = turned.contacts[PAIR].force[-1], turned.contacts[PAIR].arc_position[-1]
-    inner = (forces.stations > 0.03) & (forces.stations < arc - 0.03)
-    assert (forces.M**2 / (2 * EI)).max() > 0.5 * force
-    assert np.abs(forces.material_force[inner]).max() < 1e-4 * force
-    assert abs(forces.material_force[inner].mean()) < 1e-5 * force
-    assert np.abs(forces.material_force[forces.stations > arc + 0.03]).max() < 1e-6 * force
-
-
 @pytest.mark.parametrize("angle", [0.0, 0.9])
 def test_nodal_stress_is_the_bending_stress(angle):
     """Small deflection by 1e-4: ``M y / I`` on the face, along the strip."""
