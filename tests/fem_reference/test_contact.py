@@ -167,7 +167,7 @@ def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next():
     pins = (
         fr.Pin(name="outer", path=((0.95, 0.0), (0.95, 0.5))),
         fr.Pin(name="inner", path=((0.6, -0.03), (0.6, 0.14))),
-        fr.Pin(name="far", path=((0.4, -0.2), (0.4, -0.1))),
+        fr.Pin(name="far", path=((0.4, -2.0), (0.4, -1.9))),
     )
     contacts = tuple(fr.Contact(node=pin.name, strip=STRIP, keep=False) for pin in pins)
     scene = fr.SolidProblem(strips=(make_strip(mesh=(16, 1)),), pins=pins, contacts=contacts)

@@ -11,9 +11,12 @@ from scipy.linalg import block_diag, null_space
 import fem_reference as fr
 from fem_reference.active_set import equilibrium  # one attempt: steps that are cut would hide its status
 from fem_reference.body import build_body  # the stiffness of a strip alone, against scikit-fem's
+from fem_reference.critical import _displacement_controlled  # as is a search that diverges
+from fem_reference.friction import Friction, force_before_slip  # a turn within a step is rare
+from fem_reference.march import _slipped_off  # no path is known on which Newton's method diverges so
 from fem_reference.material import Law, lame_constants
 from fem_reference.model import build  # drawn states are in no equilibrium: no solution has them
-from fem_reference.newton import updated
+from fem_reference.newton import Attempt, updated
 from fem_reference.state import at_rest, build_state, residual, section_actions, tie_residuals
 from fem_reference.status import Status
 from fem_reference.tangent import linearise  # the tangent: a wrong one costs iterations only
@@ -27,6 +30,7 @@ from tests.fem_reference.conftest import (
     B,
     E,
     held,
+    load,
     make_problem,
     make_strip,
     portal,
@@ -218,6 +222,31 @@ def test_limits_of_an_attempt_are_statuses():
     assert (undecided.status, undecided.pair) == (Status.UNDECIDED_CONTACT, 0)
     assert solved(pin_at(1.2, 0.1)).status is Status.LOST_CONTACT
     assert solved(pin_at(1.2, -0.1)).status is Status.CONVERGED
+
+
+def test_a_contact_is_lost_over_an_end_that_its_node_has_reached():
+    """Newton's method that diverges may leave a contact anywhere. The node does not go through the strip then."""
+    for x, lost in ((0.5, None), (0.02, None), (0.98, None), (0.9999, 0), (1e-4, 0)):
+        model = pin_at(x, 0.0)
+        before = build_state(model, np.zeros((model.nodes, 2)), 1.0, (Condition(closed=True, force=1.0),))
+        left = Attempt(status=Status.LOST_CONTACT, state=before, iterations=1, pair=0)
+        assert _slipped_off(before, left) == lost
+
+
+@pytest.mark.parametrize("delta", [np.inf, np.nan])
+def test_a_step_of_displacement_control_that_is_not_finite_ends_without_a_state(delta):
+    """The search for a limit point may diverge. It then has no load parameter at which a pin could be placed."""
+    problem = make_problem(path=((0.7, -0.1), (0.7, 0.3)), mesh=(10, 1))
+    model = build(replace(problem, loads=(load(force=(0.0, EI)),)))
+    start = at_rest(model)
+    rate = linearise(model, start).rate(0.0, 1e-6).u
+    unit = rate / np.linalg.norm(rate)
+    assert _displacement_controlled(model, start, start.u, unit, delta, fr.Settings()) is None
+
+
+def test_slip_begins_with_the_force_before_it_unless_the_contact_has_turned():
+    slips = Friction(zeta=0.5, tangent=(1.0, 0.0), stretch=1.0, direction=1, force=0.5)
+    assert [force_before_slip(slips, last) for last in (0.3, 0.0, -0.4)] == [0.3, 0.0, 0.5]
 
 
 def test_a_correction_that_grows_is_halved_and_still_converges():
