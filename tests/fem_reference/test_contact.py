@@ -14,9 +14,9 @@ from tests.fem_reference.conftest import (
     load,
     loads,
     make_problem,
-    make_strip,
     pressed,
     rotation,
+    support,
     surfaces,
 )
 
@@ -162,23 +162,25 @@ def test_pin_beyond_the_tip_on_its_own_side_stays_armed():
     assert fr.solve(scene, loads(4)).contacts[PAIR].force[-1] > 0
 
 
-def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next():
+@pytest.mark.parametrize("held_by", [(), (support(),)], ids=["clamped", "supported"])
+def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next(held_by):
     """Two pins lift a strip; the outer one passes its tip, and the inner one, until then not touching, takes over at once."""
-    pins = (
-        fr.Pin(name="outer", path=((0.95, 0.0), (0.95, 0.5))),
-        fr.Pin(name="inner", path=((0.6, -0.03), (0.6, 0.14))),
-        fr.Pin(name="far", path=((0.4, -2.0), (0.4, -1.9))),
-    )
-    contacts = tuple(fr.Contact(node=pin.name, strip=STRIP, keep=False) for pin in pins)
-    scene = fr.SolidProblem(strips=(make_strip(mesh=(16, 1)),), pins=pins, contacts=contacts)
-    result = fr.solve(scene, loads(10))
-    outer, inner, far = (result.contacts[f"{pin.name}->{STRIP}"] for pin in pins)
+    paths = {
+        "outer": ((0.95, 0.0), (0.95, 0.5)),
+        "inner": ((0.6, -0.03), (0.6, 0.14)),
+        "far": ((0.4, -2.0), (0.4, -1.9)),
+    }
+    pins = tuple(fr.Pin(name=name, path=path) for name, path in paths.items())
+    contacts = tuple(fr.Contact(node=name, strip=STRIP, keep=False) for name in paths)
+    strip = held(*held_by, mesh=(16, 1), clamped=() if held_by else ("start",))
+    result = fr.solve(replace(strip, pins=pins, contacts=contacts), loads(10))
+    outer, inner, far = (result.contacts[f"{name}->{STRIP}"] for name in paths)
     assert 0.3 < outer.slip_off < 0.9
     after = result.load_parameter > outer.slip_off
     assert np.all(outer.force[after] == 0)
     assert np.all(inner.force[after] > 0)
     assert np.all(far.force == 0)
-    alone = fr.solve(replace(scene, pins=pins[1:2], contacts=contacts[1:2]), loads(10))
+    alone = fr.solve(replace(strip, pins=pins[1:2], contacts=contacts[1:2]), loads(10))
     np.testing.assert_allclose(inner.force[after], alone.contacts[f"inner->{STRIP}"].force[after], rtol=1e-7)
 
 
