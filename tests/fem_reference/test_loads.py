@@ -203,7 +203,8 @@ def test_a_moment_straightens_a_curved_strip(turn):
     _, strains = fr.face_strains(result, STRIP, -1)
     for side, sign in (("left", 1), ("right", -1)):
         np.testing.assert_allclose(strains[side], sign * turn * H / 2, rtol=0.03)
-    assert np.abs(fr.fibre_stress(result, -1)).max() == pytest.approx(E * abs(turn) * H / 2, rel=0.06)
+    stress = np.abs(fr.fibre_stress(result, -1))  # two of five rows of nodes are on the faces
+    assert [stress.max(), np.quantile(stress, 0.7)] == pytest.approx([E * abs(turn) * H / 2] * 2, rel=0.06)
 
 
 @pytest.mark.parametrize(
