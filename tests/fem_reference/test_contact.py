@@ -1,195 +1,211 @@
+"""Contacts: penetration and its cure, where a pin is on a strip, slip-off and arming, and contact along a line."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from scipy.sparse import eye_array
 
 import fem_reference as fr
-from fem_reference.curve import ContactCurve, CurveFrom, averaging, band_slopes, closest
-from fem_reference.model import build
-from tests.fem_reference.conftest import PAIR, STEP, loads, make_problem, place_pin, surfaces
-
-# Inside an element, at a corner and a midside node, one unit of round-off beside it, near both ends.
-PLACES = [0.33, 0.4, 0.5, np.nextafter(0.4, 1), np.nextafter(0.4, 0), 0.02, 0.97]
-
-
-@pytest.fixture
-def model(request, problem):
-    """A strip turned by 0.4 in its scene, so that no frame is mistaken for another."""
-    changes = {"end": (float(np.cos(0.4)), float(np.sin(0.4))), "height": 0.2, "mesh": (5, 2)}
-    contact = {"surface": getattr(request, "param", "axis")}
-    return build(problem(path=((2.0, 2.0), (1.0, 1.0)), contact=contact, **changes))
-
-
-def bent(model, seed=0):
-    """Displacements of a bent strip with some noise."""
-    x = model.bodies[0].mesh.nodes
-    noise = 0.004 * np.random.default_rng(seed).standard_normal(x.shape)
-    angle = 1.2 * x[:, 0]
-    bend = np.stack([np.sin(angle), 1 - np.cos(angle)], 1) / 1.2
-    return bend + x[:, 1:] * np.stack([-np.sin(angle), np.cos(angle)], 1) + noise - x
+from tests.fem_reference.conftest import (
+    EI,
+    PAIR,
+    STRIP,
+    held,
+    load,
+    loads,
+    make_problem,
+    pressed,
+    rotation,
+    support,
+    surfaces,
+)
 
 
-def near(model, u, zeta, distance):
-    """The point at a distance to the left of the curve at zeta."""
-    pair = model.pairs[0]
-    r, r1, _ = pair.curve.basis(zeta) @ pair.carrier.points(u)
-    return r + distance * np.array([-r1[1], r1[0]]) / np.hypot(*r1)
-
-
-def test_curve_is_twice_continuously_differentiable(model):
-    curve = model.pairs[0].curve
-    for station in curve.stations[1:-1]:
-        before, after = curve.basis(np.nextafter(station, 0)), curve.basis(np.nextafter(station, 1))
-        scale = np.array([1.0, 1 / 0.1, 1 / 0.01])[:, None]
-        np.testing.assert_allclose(before / scale, after / scale, atol=1e-11)
-
-
-def curve_through(stations, offsets, kernel):
-    rows = eye_array(stations.size, format="csr")
-    slopes = band_slopes(stations)
-    return ContactCurve(stations=stations, slopes=slopes, rows=rows, offsets=offsets, kernel=kernel)
-
-
-@pytest.mark.parametrize("spread", [0.0, 1e-4])
-def test_curve_converges_with_fourth_order(spread):
-    """Fine meshes: the end pieces of a not-a-knot spline approach order four from above (4.6, 4.4, 4.3, ...)."""
-
-    def error(n):
-        s = np.linspace(0, 1, n + 1)
-        curve = curve_through(s, *averaging(spread, 1 / n))
-        return max(abs((curve.basis(z) @ np.sin(3 * s))[0] - np.sin(3 * z)) for z in np.linspace(0, 1, 2001))
-
-    assert np.log2(error(80) / error(160)) == pytest.approx(4, abs=0.4)
-
-
-@pytest.mark.parametrize("m", [3, 46, 300, 700])
-def test_slopes_in_windows_equal_the_slopes_of_the_whole_spline(m):
-    rng = np.random.default_rng(m)
-    s = np.cumsum(rng.uniform(0.5, 2, m))
-    values = rng.standard_normal(m)
-    band = band_slopes(s)
-    half = band.shape[1] // 2
-    slopes = [
-        band[k, max(0, half - k) : half + m - k] @ values[max(0, k - half) : k + half + 1] for k in range(m)
-    ]
-    np.testing.assert_allclose(slopes, CubicSpline(s, values)(s, 1), atol=1e-13)
-
-
-def test_average_leaves_cubics_and_reaches_no_further():
-    offsets, kernel = averaging(0.3, 0.01)
-    for power, moment in ((0, 1.0), (1, 0.0), (2, 0.0), (3, 0.0)):
-        assert kernel @ offsets**power == pytest.approx(moment, abs=1e-14)
-    assert np.abs(offsets).max() < 0.3
-    assert [part.tolist() for part in averaging(0.0, 0.01)] == [[0.0], [1.0]]
-
-
-def test_contact_is_spread_over_a_stated_length(problem):
-    """By default 1.5 heights to either side, at most a tenth of the length; never beyond the given spread."""
-    for height, spread, expected in ((0.02, None, 0.03), (0.2, None, 0.1), (0.02, 0.05, 0.05)):
-        curve = build(problem(height=height, contact={"spread": spread})).pairs[0].curve
-        assert expected * 0.95 < np.abs(curve.offsets).max() < expected
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-@pytest.mark.parametrize("distance", [-0.05, 0.0, 0.03])
-@pytest.mark.parametrize("zeta", PLACES)
-@pytest.mark.parametrize("model", ["axis", "face"], indirect=True)
-def test_gap_derivatives_by_complex_steps(model, zeta, distance, side):
-    """Both derivatives, at and beside the nodes of the curve, with the pin off it and on it."""
-    u = bent(model)
-    pair = place_pin(model, near(model, u, zeta, distance), radius=0.01).pairs[0]
-    check_derivatives(replace(pair, contact=replace(pair.contact, side=side)), u)
-
-
-def check_derivatives(pair, u):
-    U, H = pair.gap_derivatives(pair.project(u, 0.0))
-    v = np.random.default_rng(3).standard_normal(u.shape)
-    at = pair.project(u + 1j * STEP * v, 0.0)
-    assert U[:, 0] @ v.ravel() == pytest.approx(pair.gap(at).imag / STEP, abs=1e-11)
-    slope = pair.gap_derivatives(at)[0][:, 0].imag / STEP
-    np.testing.assert_allclose(U @ (H @ (U.T @ v.ravel())), slope, rtol=0, atol=1e-9)
-
-
-def two_strips(strip, surface="face"):
-    """An upper strip whose end lies above a lower strip of the opposite direction."""
-    upper = strip(name="upper", start=(0.0, 0.3), end=(0.8, 0.25), height=0.1, mesh=(4, 2))
-    lower = strip(name="lower", start=(1.1, 0.0), end=(0.1, 0.1), height=0.1, mesh=(5, 1), clamped=("start",))
-    contact = fr.Contact(node="upper.end", strip="lower", side="right", surface=surface)
-    return build(fr.SolidProblem(strips=(upper, lower), contacts=(contact,)))
+def augmented(surface="axis", **changes):
+    return make_problem(contact={"surface": surface, "penalty": None, "penetration": 1e-10}, **changes)
 
 
 @surfaces
-def test_gap_derivatives_of_an_end_act_on_both_strips(strip, surface):
-    model = two_strips(strip, surface)
-    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
-    check_derivatives(model.pairs[0], u)
-
-
-def test_action_and_reaction_of_two_strips_cancel(strip):
-    """Forces and, where they touch, moments of the unit contact force in the global frame."""
-    model = two_strips(strip)
-    pair = model.pairs[0]
-    u = 0.003 * np.random.default_rng(0).standard_normal((model.nodes, 2))
-    forces = pair.gap_derivatives(pair.project(u, 0.0))[0][:, 0].reshape(-1, 2)
-    upper, lower = (
-        forces[part].sum(axis=0) @ body.strip.frame.T
-        for body, part in zip(model.bodies, model.parts, strict=True)
+@pytest.mark.slow_at(
+    "biot-linear-axis",
+    "biot-linear-face",
+    "neo-hookean-axis",
+    "neo-hookean-face",
+    "st-venant-kirchhoff-face",
+)
+@pytest.mark.parametrize("material", fr.MATERIALS)
+def test_augmented_lagrangian_reaches_the_requested_penetration(surface, material, stated):
+    """And the pin's work, by four Gauss points a tenth of the path, is the energy stored at its end."""
+    problem, panels = augmented(surface, material=material), 10
+    x, w = np.polynomial.legendre.leggauss(4)
+    t = ((np.arange(panels)[:, None] + (1 + x) / 2) / panels).ravel()
+    result = fr.solve(problem, np.append(t, 1.0))
+    power = result.contacts[PAIR].vector[:-1] @ np.subtract(*problem.pins[0].path[::-1])
+    work = np.tile(w / 2 / panels, panels) @ power
+    penetration, difference = (
+        np.abs(result.contacts[PAIR].gap).max(),
+        abs(work / sum(fr.energy(result, -1)) - 1),
     )
-    np.testing.assert_allclose(upper, -lower, atol=1e-13)
-    assert np.hypot(*upper) == pytest.approx(1, abs=1e-13)
+    assert penetration <= 1e-10
+    assert difference <= 1e-6
+    stated("solid.penetration", penetration, part=True)
+    stated("solid.work", difference, part=True)
 
 
-@pytest.mark.parametrize("axial", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
-def test_pin_within_round_off_of_the_tip_is_on_the_strip(model, axial):
-    pair = place_pin(model, model.problem.strips[0].to_global(np.array([axial, 0.0]))).pairs[0]
-    at = pair.project(np.zeros((model.nodes, 2)), 0.0)
-    assert at.inside
-    assert pair.gap(at) == pytest.approx(0, abs=2e-16)
+def test_work_of_the_pin_is_strain_and_contact_energy():
+    """A soft penalty, which stores a tenth of the work."""
+    problem = make_problem(path=((0.8, 0.0), (0.8, 0.1)), mesh=(10, 1), contact={"penalty": 5e-3 / 0.1})
+    x, w = np.polynomial.legendre.leggauss(8)
+    result = fr.solve(problem, np.append((1 + x) / 2, 1.0), fr.Settings(max_penetration=0.1))
+    strain, contact = fr.energy(result, -1)
+    assert contact > 0.02 * strain
+    assert w / 2 @ result.contacts[PAIR].vector[:-1, 1] * 0.1 == pytest.approx(strain + contact, rel=1e-9)
 
 
-@pytest.mark.parametrize(("pin", "distance"), [((1.5, -0.3), np.hypot(0.5, 0.3)), ((-0.4, 0.3), 0.5)])
-def test_pin_beyond_an_end_is_not_on_the_strip(model, pin, distance):
-    moved = place_pin(model, model.problem.strips[0].to_global(np.array(pin)))
-    at = moved.pairs[0].project(np.zeros((model.nodes, 2)), 0.0)
-    assert not at.inside
-    assert at.end_distance == pytest.approx(distance)
+def test_too_few_augmentations_are_a_status():
+    soft = make_problem(contact={"penalty": 1.0, "penetration": 1e-12}, mesh=(10, 1))
+    result = fr.solve(soft, loads(4), fr.Settings(max_augmentations=1, min_step=0.1), throw=False)
+    assert result.status is fr.Status.CUTBACK_FLOOR
+    assert fr.Status.AUGMENTATION_LIMIT.value in result.message
 
 
-@pytest.mark.parametrize("length", [1e-18, 1e18])
-def test_a_curve_of_three_stations_at_any_length(problem, length):
-    """The slopes scale with the length; in raw units SciPy warns of an ill-conditioned matrix."""
+def test_penetration_falls_with_the_penalty_over_ten_decades():
+    """Slope -1 +- .05 from 10 to 1e11 N/m. A softer penalty fails with a status; a stiffer one keeps the force."""
 
-    def slopes(size):
-        changes = {"height": 0.02 * size, "width": 0.02 * size, "end": (size, 0.0)}
-        path = ((size, 0.0), (0.5 * size, 0.5 * size))
-        return build(problem(path=path, mesh=(2, 1), element="Q1", **changes)).pairs[0].curve.slopes
+    def solve(eps, n=5, **options):
+        return fr.solve(make_problem(contact={"penalty": eps}, mesh=(20, 1)), loads(10)[:n], **options)
 
-    np.testing.assert_allclose(slopes(length) * length, slopes(1.0), atol=1e-12)
-
-
-@pytest.mark.parametrize("point", [(0.521, 0.105), (0.480, 0.104), (0.522, 0.107), (0.478, 0.107)])
-def test_a_point_beside_the_centre_of_curvature_has_its_nearest_foot(point):
-    """Newton's slope nearly vanishes at the start, so that a full Newton step would miss the closest point."""
-    s = np.linspace(0, 1, 6)
-    curve = curve_through(s, np.zeros(1), np.ones(1))
-    X = np.stack([s, 0.15 * np.cos(2 * np.pi * s)], axis=1)
-    zeta, stationary = closest(CurveFrom(curve=curve, points=X - np.array(point)))
-    places = np.linspace(0, 1, 4001)
-    distances = [np.hypot(*(curve.basis(z)[0] @ X - point)) for z in places]
-    assert stationary
-    assert zeta == pytest.approx(places[np.argmin(distances)], abs=2.5e-4)
+    exact = fr.solve(augmented(mesh=(20, 1)), loads(10)[:5]).contacts[PAIR].force[-1]
+    penalties = 10.0 ** np.arange(1, 12, 5)
+    contacts = [solve(eps).contacts[PAIR] for eps in penalties]
+    slopes = np.diff(np.log10([-contact.gap[-1] for contact in contacts])) / 5
+    np.testing.assert_allclose(slopes, -1, atol=0.05)
+    for eps, contact in zip(penalties, contacts, strict=True):
+        assert contact.force[-1] == pytest.approx(exact, rel=8e-3 / eps + 1e-8)
+    assert solve(1e14).contacts[PAIR].force[-1] == pytest.approx(exact, rel=1e-8)
+    for eps in (1e-2, 1.0):
+        result = solve(eps, 10, throw=False)
+        assert result.status is fr.Status.CUTBACK_FLOOR
+        assert fr.Status.TOO_DEEP.value in result.message
 
 
-def test_the_gap_of_a_pin_beyond_the_end_is_that_of_its_surface():
-    """A pin passes .2 behind the end of a strip that stays at rest."""
-    result = fr.solve(make_problem(path=((1.2, -0.2), (1.2, -0.1)), radius=0.03, mesh=(10, 1)), loads(2))
-    assert result.contacts[PAIR].gap == pytest.approx(np.hypot(0.2, [0.15, 0.1]) - 0.03, abs=1e-12)
+@pytest.mark.slow
+def test_answers_scatter_little_between_meshes_and_those_of_a_sharp_contact_more(stated):
+    """Relative differences of the force on any two meshes; a sharp contact has no average over three heights."""
+
+    def scatter(**contact):
+        answers = [
+            fr.solve(make_problem(contact=contact, mesh=(nx, 2), material="biot-linear"), loads(20)).contacts[
+                PAIR
+            ]
+            for nx in (40, 47, 54, 60)
+        ]
+        late = np.array([[answer.force[2:], answer.arc_position[2:]] for answer in answers])
+        return (np.ptp(late, axis=0) / late.mean(axis=0)).max(axis=1)
+
+    for surface in ("axis", "face"):
+        assert np.all(scatter(surface=surface, penalty=None, penetration=1e-10) < 2e-4)
+    sharp = scatter(surface="face", spread=0.0)[0]
+    assert sharp > 4e-4
+    stated("solid.sharp", float(sharp))
 
 
-def test_radius_moves_the_gap_by_itself(model):
-    u = bent(model)
-    point = near(model, u, 0.6, -0.05)
-    sharp, round_ = (place_pin(model, point, radius=radius).pairs[0] for radius in (0.0, 0.02))
-    assert sharp.gap(sharp.project(u, 0.0)) - round_.gap(round_.project(u, 0.0)) == pytest.approx(0.02)
+@pytest.mark.parametrize(("height", "spread"), [(0.02, 0.03), (0.2, 0.1)])
+def test_contact_is_spread_over_a_stated_length(height, spread):
+    """By default 1.5 heights to either side, at most a tenth of the length."""
+
+    def force(value):
+        scene = make_problem(
+            path=((0.8, 0.0), (0.7, 0.1)), height=height, mesh=(10, 1), contact={"spread": value}
+        )
+        return fr.solve(scene, loads(1)).contacts[PAIR].force[-1]
+
+    assert force(None) == force(spread)
+    assert abs(force(1.2 * spread) / force(spread) - 1) > 1e-7
+
+
+@pytest.mark.parametrize("x", [1.0, np.nextafter(1.0, 2), np.nextafter(1.0, 0)])
+def test_pin_within_round_off_of_the_tip_is_on_the_strip(x):
+    Q = rotation(0.4)
+    path = tuple(tuple(map(float, Q @ point)) for point in ((x, 0.0), (x, 1e-7)))
+    result = fr.solve(make_problem(path=path, end=tuple(map(float, Q[:, 0])), mesh=(10, 1)), loads(1))
+    assert result.contacts[PAIR].force[-1] == pytest.approx(3e-7 * EI, rel=2e-3)
+
+
+def test_the_gap_of_a_pin_beyond_an_end_is_that_of_its_surface():
+    """Pins pass an end of a strip that stays at rest, one beyond its tip and one behind its clamp."""
+    for x, beyond in ((1.2, 0.2), (-0.4, 0.4)):
+        scene = make_problem(path=((x, -0.2), (x, -0.1)), radius=0.03, mesh=(10, 1))
+        gap = fr.solve(scene, loads(2)).contacts[PAIR].gap
+        assert gap == pytest.approx(np.hypot(beyond, [0.15, 0.1]) - 0.03, abs=1e-12)
+
+
+def test_pin_round_the_tip_is_lost_or_passes_and_is_armed_again_on_its_side():
+    """Beyond the tip to the far side, through the strip without contact, and from its own side into contact."""
+    path = ((1.2, -0.1), (1.2, 0.1), (0.9, 0.1), (0.9, -0.1), (0.9, 0.05))
+    kept, free = (
+        fr.solve(make_problem(path=path, mesh=(10, 1), contact={"keep": keep}), loads(60), throw=False)
+        for keep in (True, False)
+    )
+    assert kept.status is fr.Status.LOST_CONTACT
+    assert kept.reached < 0.25
+    contact = free.contacts[PAIR]
+    assert free.status is fr.Status.COMPLETED
+    y = np.array([free.model.problem.pins[0].position(t)[1] for t in free.load_parameter])
+    pressing = (free.load_parameter > 0.85) & (y > 1e-9)
+    assert np.all(contact.force[pressing] > 0)
+    assert np.all(contact.force[~pressing] == 0)
+
+
+def test_pin_beyond_the_tip_on_its_own_side_stays_armed():
+    scene = make_problem(path=((1.2, -0.1), (0.9, -0.1), (0.9, 0.05)), mesh=(10, 1))
+    assert fr.solve(scene, loads(4)).contacts[PAIR].force[-1] > 0
+
+
+@pytest.mark.parametrize("held_by", [(), (support(),)], ids=["clamped", "supported"])
+def test_strip_that_was_left_by_its_pin_comes_to_rest_on_the_next(held_by):
+    """Two pins lift a strip; the outer one passes its tip, and the inner one, until then not touching, takes over at once."""
+    paths = {
+        "outer": ((0.95, 0.0), (0.95, 0.5)),
+        "inner": ((0.6, -0.03), (0.6, 0.14)),
+        "far": ((0.4, -2.0), (0.4, -1.9)),
+    }
+    pins = tuple(fr.Pin(name=name, path=path) for name, path in paths.items())
+    contacts = tuple(fr.Contact(node=name, strip=STRIP, keep=False) for name in paths)
+    strip = held(*held_by, mesh=(16, 1), clamped=() if held_by else ("start",))
+    result = fr.solve(replace(strip, pins=pins, contacts=contacts), loads(10))
+    outer, inner, far = (result.contacts[f"{name}->{STRIP}"] for name in paths)
+    assert 0.3 < outer.slip_off < 0.9
+    after = result.load_parameter > outer.slip_off
+    assert np.all(outer.force[after] == 0)
+    assert np.all(inner.force[after] > 0)
+    assert np.all(far.force == 0)
+    alone = fr.solve(replace(strip, pins=pins[1:2], contacts=contacts[1:2]), loads(10))
+    np.testing.assert_allclose(inner.force[after], alone.contacts[f"inner->{STRIP}"].force[after], rtol=1e-7)
+
+
+def line_contact_begins(n, nx, **pushed):
+    """Load parameter at which a strip of height .005 that is bent over a drum of radius .5 is as curved as it."""
+    bent = held(load(**pushed), clamped=("start",), height=0.005, mesh=(nx, 1), material="biot-linear")
+    path = ((0.3, -0.5025), (0.3, -0.5025 + 1e-9))
+    result = fr.solve(pressed(bent, path, 0.5, surface="face"), loads(n), throw=False)
+    assert result.status is fr.Status.LINE_CONTACT
+    assert f"({PAIR}), at load parameter" in result.message
+    assert np.all(result.index == 0)
+    assert np.all(result.contacts[PAIR].gap >= -1e-8)
+    return result.reached
+
+
+def test_line_contact_begins_where_the_beams_curvature_reaches_the_drums():
+    """``M / EI = 1 / (R + h / 2)`` under a moment, since there is no force beyond the contact."""
+    begins = EI / 64 / 0.5025
+    assert 2 * line_contact_begins(1, 40, moment=-2 * begins) == pytest.approx(1.0, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_line_contact_does_not_depend_on_steps_or_on_the_load_at_the_end():
+    """Within 1e-7 on paths to 12 and to 30 times EI under a force."""
+    one, other = (
+        k * line_contact_begins(n, 100, force=(0.0, -k * EI / 64)) for k, n in ((12.0, 25), (30.0, 10))
+    )
+    assert one == pytest.approx(other, rel=1e-7)

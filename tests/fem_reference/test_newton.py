@@ -1,34 +1,174 @@
+"""Newton's corrections and the index at states away from equilibrium, and the statuses with which an iteration ends."""
+
+from collections import Counter
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag, null_space
 
 import fem_reference as fr
-from fem_reference.active_set import equilibrium
-from fem_reference.material import Law
-from fem_reference.model import build
-from fem_reference.settings import Settings
-from fem_reference.state import at_rest, build_state, residual, tie_residuals
+from fem_reference.active_set import equilibrium  # one attempt: steps that are cut would hide its status
+from fem_reference.body import build_body  # the stiffness of a strip alone, against scikit-fem's
+from fem_reference.critical import _displacement_controlled  # as is a search that diverges
+from fem_reference.friction import Friction, force_before_slip  # a turn within a step is rare
+from fem_reference.march import _slipped_off  # no path is known on which Newton's method diverges so
+from fem_reference.material import Law, lame_constants
+from fem_reference.model import build  # drawn states are in no equilibrium: no solution has them
+from fem_reference.newton import Attempt, updated
+from fem_reference.state import at_rest, build_state, residual, section_actions, tie_residuals
 from fem_reference.status import Status
-from fem_reference.tangent import linearise
+from fem_reference.tangent import linearise  # the tangent: a wrong one costs iterations only
 from fem_reference.touch import Condition
-from tests.fem_reference.conftest import dense_hessian, make_portal, make_problem, make_strip, place_pin
+from tests.fem_reference import bilinear_reference as reference
+from tests.fem_reference.conftest import (
+    EA,
+    EI,
+    NU,
+    STRIP,
+    B,
+    E,
+    held,
+    load,
+    make_problem,
+    make_strip,
+    portal,
+    support,
+    upper_on_lower,
+)
 
 
-@pytest.fixture(scope="module")
-def place():
-    """The model with its pin at a point."""
-    model = build(make_problem(mesh=(10, 1)))
-    return lambda *point: place_pin(model, point)
+def test_tangent_and_residual_equal_scikit_fems_own_assembly():
+    body = build_body(make_strip(element="Q2-full"))
+    u = 1e-3 * np.random.default_rng(0).standard_normal(body.mesh.nodes.shape)
+    lam, mu = lame_constants(E, NU)
+    basis = reference.vector_basis(body.mesh.nodes, body.mesh.cells)
+    np.testing.assert_array_equal(basis.doflocs[:, ::2].T, body.mesh.nodes)
+    K, f = reference.tangent_and_residual(basis, u.ravel(), 2 * lam * mu / (lam + 2 * mu), mu, B)
+    T = body.expansion
+    assert abs(body.tangent(u) - T.T @ K @ T).max() <= 1e-12 * abs(K).max()
+    np.testing.assert_allclose(body.internal_force(u).ravel(), f, rtol=0, atol=1e-12 * np.abs(f).max())
 
 
-def solved(model, state=None, **settings):
-    """Equilibrium from a state; from rest if None."""
-    return equilibrium(model, at_rest(model) if state is None else state, Settings(**settings))
+def noisy(problem, size=0.005, forces=0.0):
+    """State with drawn displacements, and forces of the ties."""
+    model, rng = build(problem), np.random.default_rng(0)
+    u = (model.expansion @ (size * rng.standard_normal(model.unknowns))).reshape(-1, 2)
+    return model, build_state(
+        model, u, 0.7, at_rest(model).conditions, forces * rng.standard_normal(len(model.ties))
+    )
 
 
-def closed(model, u, force):
-    return build_state(model, u, 0.0, (Condition(closed=True, force=force),))
+@cache
+def reached(problem, load_parameters):
+    return fr.solve(problem, np.array(load_parameters))
+
+
+def disturbed(problem, load_parameters, t, direction=None, scale=1.0):
+    """State at t with the displacements of the last of some load parameters, with other forces."""
+    result = reached(problem, load_parameters)
+    last, conditions = result.states[-1], []
+    assert all(touch.closed for touch in last.touches)
+    for condition in last.conditions:
+        friction = condition.friction
+        if friction is not None:
+            assert friction.slip != 0
+            friction = replace(friction, direction=direction, force=1.2 * friction.force)
+        conditions.append(replace(condition, force=1.1 * condition.force, friction=friction))
+    return result.model, build_state(
+        result.model, scale * last.u, t, tuple(conditions), 1.05 * last.tie_forces
+    )
+
+
+def springs_and_hinges():
+    strips = (
+        make_strip(name="a", end=(0.5, 0.0), mesh=(4, 1), end_height=0.03),
+        make_strip(name="b", start=(0.5, 0.0), end=(0.5, 0.5), clamped=(), mesh=(4, 1)),
+    )
+    return fr.SolidProblem(
+        strips=strips,
+        joints=(fr.Joint(ends=("a.end", "b.start"), hinged=("b.start",), stiffness=(EI,)),),
+        springs=(fr.Spring(strip="b", end="end", stiffness=(EI, 2 * EI, 3 * EI)),),
+        inner_loads=(
+            fr.LineLoad(strip="b", force=((EI, 0.0), (0.0, EI))),
+            fr.PointLoad(strip="a", at=0.3, moment=EI),
+        ),
+    )
+
+
+def pinned(at, radius=0.0, **contact):
+    """A strip turned by .4 under a pin, at a place along it: on a node, within an element, near the end."""
+    side = -1 if contact.get("side", "right") == "right" else 1
+    y = side * ((0.1 if contact.get("surface") == "face" else 0.0) + radius)
+    Q = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+    path = tuple(tuple(map(float, Q @ point)) for point in ((at, y), (at - 0.05, y - side * 0.3)))
+    changes = {"end": tuple(map(float, Q[:, 0])), "height": 0.2, "mesh": (5, 2)}
+    return make_problem(path=path, radius=radius, contact=contact, **changes)
+
+
+def pressed(direction, radius=0.0):
+    problem = make_problem(contact={"friction": 0.3, "surface": "face"}, radius=radius, mesh=(10, 1))
+    return disturbed(problem, (0.1, 0.2), 0.2002, direction)
+
+
+def rubbed(direction):
+    return disturbed(upper_on_lower((8, 1), friction=0.3), (0.4, 0.5), 0.502, direction)
+
+
+CASES = {
+    f"{material}-{element}": lambda material=material, element=element: noisy(
+        held(clamped=("start",), mesh=(4, 3), height=0.3, material=material, element=element, grading=2.0)
+    )
+    for material in fr.MATERIALS
+    for element in fr.ELEMENTS
+} | {
+    "plane-strain": lambda: noisy(held(clamped=("end",), mesh=(4, 3), height=0.3, plane="strain")),
+    "arc": lambda: noisy(
+        held(clamped=("end",), clamp="rod", mesh=(6, 3), height=0.1, end_height=0.2, turn=1.5, element="Q1"),
+        1e-3,
+    ),
+    "springs-hinges": lambda: noisy(springs_and_hinges(), 1e-3, EI),
+    "frame": lambda: disturbed(portal(), (0.5, 1.0), 0.9, scale=1.01),
+    "end": lambda: disturbed(upper_on_lower((8, 1), surface="axis"), (0.4, 0.5), 0.502),
+    "axis-node": lambda: disturbed(pinned(0.6), (0.5, 1.0), 0.99),
+    "axis-left-element": lambda: disturbed(pinned(0.53, side="left"), (0.5, 1.0), 0.99),
+    "face-round": lambda: disturbed(pinned(0.75, 0.05, surface="face", penetration=1e-6), (0.5, 1.0), 0.99),
+    "face-left-end": lambda: disturbed(pinned(0.97, surface="face", side="left"), (0.1, 0.2), 0.21),
+    "stick": lambda: pressed(0),
+    "slip": lambda: pressed(-1),
+    "roll": lambda: pressed(0, radius=0.05),
+    "round-slip": lambda: pressed(-1, radius=0.05),
+    "end-stick": lambda: rubbed(0),
+    "end-slip": lambda: rubbed(1),
+}
+
+
+def all_residuals(model, state):
+    """Residuals of forces, gaps, slips and ties."""
+    return (
+        model.restriction @ residual(model, state).ravel(),
+        np.array([touch.gap_residual for touch in state.touches]),
+        np.array([touch.slip_residual for touch in state.touches]),
+        tie_residuals(model, state),
+    )
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_correction_removes_the_linear_part_of_all_residuals(case):
+    """``J c = -r`` with the derivative J along c by central differences, extrapolated."""
+    model, state = CASES[case]()
+    r = all_residuals(model, state)
+    correction = linearise(model, state).correction(r[0])
+
+    def slopes(h):
+        ahead, behind = (all_residuals(model, updated(model, state, correction, step)) for step in (h, -h))
+        return [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
+
+    for few, many, old in zip(slopes(2e-3), slopes(4e-3), r, strict=True):
+        round_off = 1e-10 if old is r[0] else 1e-13
+        allowed = 1e-8 * np.abs(old).max(initial=0.0) + round_off
+        np.testing.assert_allclose((4 * few - many) / 3, -old, rtol=0, atol=allowed)
 
 
 def with_law(model, energy, stress, tangent):
@@ -36,106 +176,189 @@ def with_law(model, energy, stress, tangent):
     return replace(model, bodies=(replace(model.bodies[0], law=law),))
 
 
-def one_strip(place):
-    before = solved(place(0.9, 0.1)).state
-    model = place(0.89, 0.11)
-    return model, closed(model, before.u, 1.1 * before.touches[0].force)
+@cache
+def pin_at(*point):
+    """A strip at rest and its pin at a point."""
+    path = ((point[0], -1.0), point)
+    return build(make_problem(path=path, mesh=(10, 1)))
 
 
-def two_strips(_):
-    """A pin on the upper strip, whose end presses on the lower one: both contacts are closed."""
-    upper = make_strip(name="upper", mesh=(6, 1), height=0.05)
-    lower = make_strip(name="lower", start=(0.1, -0.1), end=(1.2, -0.12), mesh=(5, 1), height=0.05)
-    nodes = (("pin", "upper"), ("upper.end", "lower"))
-    contacts = tuple(fr.Contact(node=node, strip=strip, side="left", surface="face") for node, strip in nodes)
-    pin = fr.Pin(name="pin", path=((0.7, 0.04), (0.7, -0.2)), radius=0.01)
-    model = build(fr.SolidProblem(strips=(upper, lower), pins=(pin,), contacts=contacts))
-    last = fr.solve(model.problem, np.array([0.4, 0.6])).states[-1]
-    conditions = tuple(replace(condition, force=1.1 * condition.force) for condition in last.conditions)
-    return model, build_state(model, last.u, 0.62, conditions)
+def solved(model, u=None, **settings):
+    """Attempt at the pin's point from rest, or from displacements with a closed contact."""
+    state = at_rest(model, 1.0)
+    if u is not None:
+        state = build_state(model, u + 0 * state.u, 1.0, (Condition(closed=True),))
+    return equilibrium(model, state, fr.Settings(**settings))
 
 
-def portal(_):
-    """A frame without clamps under a moment and a pin, away from equilibrium: supports, joints, dead load and contact."""
-    model = build(make_portal(fr.Pin(name="pin", path=((0.5, 0.83), (0.5, 0.7)))))
-    last = fr.solve(model.problem, np.array([0.5, 1.0])).states[-1]
-    conditions = tuple(replace(condition, force=1.1 * condition.force) for condition in last.conditions)
-    return model, build_state(model, 1.01 * last.u, 0.9, conditions, 1.05 * last.tie_forces)
-
-
-@pytest.mark.parametrize(("case", "tolerance"), [(one_strip, 1e-9), (two_strips, 1e-8), (portal, 1e-8)])
-def test_correction_solves_the_full_saddle_point_system(place, case, tolerance):
-    """The solution by columns of contacts and end sections against the assembled matrix of displacements and forces."""
-    model, state = case(place)
-    assert len(state.closed) == len(model.pairs)
-    T, (K, gradients) = model.expansion, dense_hessian(model, state)
-    np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
-    ties = tie_residuals(model, state)
-    C = np.diag([*(1 / touch.pair.penalty for touch in state.closed), *(0 * ties)])
-    G = np.stack(gradients, 1)
-    R = T.T @ residual(model, state).ravel()
-    right = -np.concatenate([R, [touch.gap_residual for touch in state.closed], ties])
-    expected = np.linalg.solve(np.block([[K, -G], [G.T, C]]), right)
-    step = linearise(model, state).correction(R)
-    found, expected = np.append(step.u, step.forces), np.append(T @ expected[: len(R)], expected[len(R) :])
-    np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance * np.abs(expected).max())
-
-
-def test_iteration_limit_is_a_status(place):
-    attempt = solved(place(0.9, 0.1), max_iterations=1)
-    assert (attempt.status, attempt.iterations) == (Status.ITERATION_LIMIT, 1)
-
-
-def test_nan_is_a_status(place):
-    model = place(0.9, 0.1)
-    assert solved(model, closed(model, np.full((model.nodes, 2), np.nan), 0.0)).status is Status.NOT_FINITE
-
-
-def test_singular_tangent_is_a_status(place):
-    """A material without stiffness: the tangent cannot be factorised, and nothing is raised."""
-    model = place(0.9, 0.1)
-    empty = with_law(model, lambda F: 0 * F[0, 0], lambda F: 0 * F, lambda F: np.zeros((2, 2, *F.shape)))
-    assert solved(empty).status is Status.SINGULAR
-
-
-def test_unbalanced_reactions_are_a_status(place):
-    """A law that is linear in the displacement gradient: a rotated element has moments."""
-    model = place(0.7, 0.2)
-    A = model.bodies[0].law.tangent(np.eye(2)[:, :, None])
+def test_what_is_not_finite_or_singular_or_out_of_balance_or_cycles_is_a_status():
+    """Laws without stiffness, linear in the displacement gradient (a rotated element has moments), and with reversed stiffness."""
+    model = pin_at(0.7, 0.2)
+    law = model.bodies[0].law
+    A = law.tangent(np.eye(2)[:, :, None])[..., 0]
 
     def stress(F):
-        return np.einsum("ijkl,kl...->ij...", A[..., 0], F - np.eye(2).reshape(2, 2, *(1,) * (F.ndim - 2)))
+        return np.einsum("ijkl,kl...->ij...", A, F - np.eye(2).reshape(2, 2, *(1,) * (F.ndim - 2)))
 
     def tangent(F):
         return A.reshape(2, 2, 2, 2, *(1,) * (F.ndim - 2)) + np.zeros((2, 2, *F.shape))
 
+    empty = with_law(model, lambda F: 0 * F[0, 0], lambda F: 0 * F, lambda F: np.zeros((2, 2, *F.shape)))
     false = with_law(model, lambda F: (stress(F) * F).sum(axis=(0, 1)) / 2, stress, tangent)
+    reversed_ = with_law(
+        pin_at(0.9, 0.01), lambda F: -law.energy(F), lambda F: -law.stress(F), lambda F: -law.tangent(F)
+    )
+    assert solved(model, np.nan).status is Status.NOT_FINITE
+    assert solved(empty).status is Status.SINGULAR
     assert solved(false).status is Status.UNBALANCED
+    cycles = solved(reversed_)
+    assert (cycles.status, cycles.pair) == (Status.CYCLING, 0)
 
 
-def test_pin_round_the_tip_is_lost(place):
-    assert solved(place(1.2, 0.1)).status is Status.LOST_CONTACT
-    assert solved(place(1.2, -0.1)).status is Status.CONVERGED
+def test_limits_of_an_attempt_are_statuses():
+    few = solved(pin_at(0.9, 0.1), max_iterations=1)
+    assert (few.status, few.iterations) == (Status.ITERATION_LIMIT, 1)
+    undecided = solved(pin_at(0.9, -0.1), 0.0, max_contact_changes=0)
+    assert (undecided.status, undecided.pair) == (Status.UNDECIDED_CONTACT, 0)
+    assert solved(pin_at(1.2, 0.1)).status is Status.LOST_CONTACT
+    assert solved(pin_at(1.2, -0.1)).status is Status.CONVERGED
 
 
-def test_undecided_contact_is_a_status(place):
-    model = place(0.9, -0.1)
-    attempt = solved(model, closed(model, np.zeros((model.nodes, 2)), 0.0), max_contact_changes=0)
-    assert (attempt.status, attempt.pair) == (Status.UNDECIDED_CONTACT, 0)
+def test_a_contact_is_lost_over_an_end_that_its_node_has_reached():
+    """Newton's method that diverges may leave a contact anywhere. The node does not go through the strip then."""
+    for x, lost in ((0.5, None), (0.02, None), (0.98, None), (0.9999, 0), (1e-4, 0)):
+        model = pin_at(x, 0.0)
+        before = build_state(model, np.zeros((model.nodes, 2)), 1.0, (Condition(closed=True, force=1.0),))
+        left = Attempt(status=Status.LOST_CONTACT, state=before, iterations=1, pair=0)
+        assert _slipped_off(before, left) == lost
 
 
-def test_cycling_is_a_status(place):
-    """A law with reversed stiffness: the closed contact pulls, and the open one is penetrated again."""
-    model = place(0.9, 0.01)
-    law = model.bodies[0].law
-    unstable = with_law(model, lambda F: -law.energy(F), lambda F: -law.stress(F), lambda F: -law.tangent(F))
-    attempt = solved(unstable)
-    assert (attempt.status, attempt.pair) == (Status.CYCLING, 0)
+@pytest.mark.parametrize("delta", [np.inf, np.nan])
+def test_a_step_of_displacement_control_that_is_not_finite_ends_without_a_state(delta):
+    """The search for a limit point may diverge. It then has no load parameter at which a pin could be placed."""
+    problem = make_problem(path=((0.7, -0.1), (0.7, 0.3)), mesh=(10, 1))
+    model = build(replace(problem, loads=(load(force=(0.0, EI)),)))
+    start = at_rest(model)
+    rate = linearise(model, start).rate(0.0, 1e-6).u
+    unit = rate / np.linalg.norm(rate)
+    assert _displacement_controlled(model, start, start.u, unit, delta, fr.Settings()) is None
 
 
-def test_a_correction_that_grows_is_halved_and_still_converges(place):
+def test_slip_begins_with_the_force_before_it_unless_the_contact_has_turned():
+    slips = Friction(zeta=0.5, tangent=(1.0, 0.0), stretch=1.0, direction=1, force=0.5)
+    assert [force_before_slip(slips, last) for last in (0.3, 0.0, -0.4)] == [0.3, 0.0, 0.5]
+
+
+def test_a_correction_that_grows_is_halved_and_still_converges():
     """A pin far away in one step, with full corrections and with corrections that must not double."""
-    full, damped = (solved(place(0.7, 0.3), max_iterations=40, largest_growth=g) for g in (1e9, 2.0))
+    full, damped = (solved(pin_at(0.7, 0.3), max_iterations=40, largest_growth=g) for g in (1e9, 2.0))
     assert full.status is damped.status is Status.CONVERGED
     assert damped.iterations > full.iterations
     assert damped.state.touches[0].force == pytest.approx(full.state.touches[0].force, rel=1e-8)
+
+
+def two_pins(rng, **changes):
+    """A strip between two pins, one of them round, without or with the penetration removed."""
+    sides = {"right": (-1, 0.0, "axis"), "left": (1, 0.05, str(rng.choice(["axis", "face"])))}
+    pins, contacts = [], []
+    for side, (sign, radius, surface) in sides.items():
+        x = float(rng.uniform(0.2, 0.9))
+        pins.append(fr.Pin(name=side, path=((x, sign * (radius + 0.2)), (x, 0.0)), radius=radius))
+        values = {"penetration": [None, 1e-9][rng.integers(2)], "penalty": float(10 ** rng.uniform(-2, 3))}
+        contacts.append(fr.Contact(node=side, strip=STRIP, side=side, surface=surface, **values))
+    return fr.SolidProblem(strips=(make_strip(**changes),), pins=tuple(pins), contacts=tuple(contacts))
+
+
+def drawn_problem(rng):
+    changes = {
+        "height": float(rng.uniform(0.02, 0.15)),
+        "mesh": (int(rng.integers(2, 7)), int(rng.integers(1, 3))),
+        "element": str(rng.choice(fr.ELEMENTS)),
+        "material": str(rng.choice(["st-venant-kirchhoff", "biot-linear"])),
+    }
+    match rng.integers(6):
+        case 0:
+            return portal()
+        case 1:
+            return springs_and_hinges()
+        case 2:
+            return upper_on_lower((4, 1), penetration=[None, 1e-9][rng.integers(2)])
+        case 3:
+            return held(support(motion=(None, 0.0, 0.0)), support("end", (0.0, None, None)), **changes)
+        case _:
+            return two_pins(rng, **changes)
+
+
+def drawn(rng):
+    """A state of a drawn problem, bent, compressed and disturbed, with contacts open or closed."""
+    model = build(drawn_problem(rng))
+    u = np.zeros((model.nodes, 2))
+    for body, part in model.bodies_and_nodes():
+        X = body.mesh.nodes
+        angle = rng.uniform(-1, 1) * X[:, 0]
+        press = rng.choice([0.0, rng.uniform(0, 0.3)])
+        u[part, 0] = -press * X[:, 0] - X[:, 1] * np.sin(angle)
+        u[part, 1] = 0.3 * np.sin(angle) * X[:, 0]
+        u[part] += 0.02 * body.strip.height * rng.standard_normal(X.shape)
+    scale = model.problem.strips[0].bending_stiffness
+    conditions = tuple(
+        Condition(closed=bool(rng.random() < 0.7), force=float(scale * 10 ** rng.uniform(-1, 2)))
+        for _ in model.pairs
+    )
+    forces = scale * rng.standard_normal(len(model.ties)) * 10 ** rng.uniform(-1, 1)
+    return model, build_state(model, u, 1.0, conditions, forces)
+
+
+def dense_index(model, state):
+    """Negative eigenvalues of ``K - sum lam g'' - sum m theta''`` with springs, over the displacements that constraints admit."""
+    A = block_diag(*(body.tangent(state.u[part]).toarray() for body, part in model.bodies_and_nodes()))
+    constraints = []
+    for touch in state.closed:
+        U = model.restriction @ touch.slopes
+        A += -touch.force * U @ touch.curvature @ U.T
+        if touch.pair.contact.penetration is None:
+            A += touch.pair.penalty * np.outer(U[:, 0], U[:, 0])
+        else:
+            constraints.append(U[:, 0])
+    columns = np.split(model.restriction @ model.columns, max(len(model.sections), 1), axis=1)
+    for U, pose, action in zip(columns, state.poses, section_actions(model, state), strict=False):
+        A -= action[2] * U @ pose.curvature @ U.T
+    for tie in model.ties:
+        gradient = columns[tie.section] @ state.poses[tie.section].gradient[:, tie.component]
+        if tie.other is not None:
+            gradient = gradient - columns[tie.other] @ state.poses[tie.other].gradient[:, tie.component]
+        if tie.flexibility:
+            A += np.outer(gradient, gradient) / tie.flexibility
+        else:
+            constraints.append(gradient)
+    G = np.array([gradient / np.linalg.norm(gradient) for gradient in constraints])
+    Z = null_space(G) if constraints else np.eye(len(A))
+    return int((np.linalg.eigvalsh(Z.T @ A @ Z) < 0).sum())
+
+
+@pytest.mark.slow_at("1-300")
+@pytest.mark.parametrize(("seed", "count"), [(3, 25), (1, 300)])
+def test_index_is_that_of_the_dense_reduced_hessian_on_every_drawn_state(seed, count):
+    rng, seen = np.random.default_rng(seed), Counter()
+    for number in range(count):
+        model, state = drawn(rng)
+        tangent = linearise(model, state)
+        index = tangent.index()
+        assert index == dense_index(model, state), number
+        seen[min(index, 5)] += 1
+        seen["closed"] += len(state.closed) > 0
+        seen["tied"] += len(model.ties) > 0
+        seen["indefinite body"] += sum(body.negatives() for body in tangent.factors) > 0
+    assert min(seen[index] for index in range(5)) > count / 60
+    assert min(seen["closed"], seen["indefinite body"], seen["tied"]) > count / 5
+
+
+def test_contact_closed_without_force_has_no_index_where_its_sides_differ():
+    """A straight column at twice its buckling load that a pin just touches is stable if the contact is closed only."""
+    model = build(make_problem(path=((1.0, 0.0), (1.0, 0.1)), mesh=(10, 1), contact={"penalty": None}))
+    u = np.zeros((model.nodes, 2))
+    u[:, 0] = -2 * (np.pi / 2) ** 2 * EI / EA * model.bodies[0].mesh.nodes[:, 0]
+    for force, expected in ((1e-3, 0), (1e-13, -1), (None, 1)):
+        condition = Condition() if force is None else Condition(closed=True, force=force)
+        tangent = linearise(model, build_state(model, u, 0.0, (condition,)))
+        assert tangent.index(force_tolerance=1e-12) == expected

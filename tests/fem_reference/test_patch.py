@@ -1,34 +1,38 @@
-"""Problems with known fields on distorted meshes: patch tests and a manufactured solution in large strain."""
+"""Material laws, a patch test, and a manufactured solution in large strain on distorted meshes."""
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.sparse import csr_matrix, eye_array
 from scipy.sparse.linalg import spsolve
 from skfem import MeshQuad
 
+# Laws at every gradient, displacements of a whole boundary, body forces: strips have none of them.
 from fem_reference.assembly import deformation_gradient, element_entries, internal_force, pattern
-from fem_reference.material import MATERIALS, PLANES, elastic_law
-from fem_reference.mesh import edge_weights, from_basis, scalar_basis
-from fem_reference.strip import ELEMENTS
-from tests.fem_reference.conftest import STEP, B, E
+from fem_reference.material import MATERIALS, PLANES, elastic_law, in_plane_lam, lame_constants
+from fem_reference.mesh import from_basis, scalar_basis
+from tests.fem_reference.conftest import NU, E, elements, make_strip, rotation
 
+STEP = 1e-30
 laws = pytest.mark.parametrize("material", MATERIALS)
-elements = pytest.mark.parametrize("element", ELEMENTS)
 
 
-def distorted(strip, element, n, height=0.6):
+def distorted(element, n, height=0.6):
     """A mesh of n x n elements whose inner corners are displaced smoothly, by a third of a side where n = 4."""
     base = MeshQuad.init_tensor(np.linspace(0, 1, n + 1), np.linspace(-height / 2, height / 2, n + 1))
     x, y = base.p
     bubble = np.sin(np.pi * x) * np.cos(np.pi * y / height)
     moved = np.stack([x + 0.08 * bubble * np.cos(7 * y), y + 0.05 * bubble * np.sin(9 * x)])
     basis = scalar_basis(MeshQuad(moved, base.t[[0, 3, 2, 1]]), element)
-    return from_basis(strip(), basis, {}, np.zeros(0), csr_matrix((0, 0)))
+    return from_basis(make_strip(), basis, {}, np.zeros(0), csr_matrix((0, 0)))
 
 
-def solve(mesh, law, held, u, loads):
-    """Newton's method from ``u`` with the components ``held`` ``(n, 2)`` prescribed and nodal ``loads``."""
-    T = eye_array(u.size, format="csr")[:, np.flatnonzero(~held.ravel())]
+def solve_inside(mesh, law, exact, loads):
+    """Newton's method with the displacements of the boundary prescribed, and nodal ``loads``."""
+    x, y = mesh.nodes.T
+    held = np.repeat((np.abs(x * (x - 1)) < 1e-9) | (np.abs(np.abs(y) - 0.3) < 1e-9), 2)
+    T = eye_array(exact.size, format="csr")[:, np.flatnonzero(~held)]
+    u = np.where(held.reshape(-1, 2), exact, 0.9 * exact)
     stiffness = pattern(mesh, csr_matrix(T))
     for _ in range(30):
         F = deformation_gradient(mesh, u)
@@ -40,23 +44,12 @@ def solve(mesh, law, held, u, loads):
     raise AssertionError("no convergence")
 
 
-def solve_inside(mesh, law, exact, loads):
-    """Solve with the displacements of the boundary prescribed."""
-    held = np.repeat(boundary(mesh)[:, None], 2, axis=1)
-    return solve(mesh, law, held, np.where(held, exact, 0.9 * exact), loads)
-
-
-def boundary(mesh, height=0.6):
-    x, y = mesh.nodes.T
-    return (np.abs(x * (x - 1)) < 1e-9) | (np.abs(np.abs(y) - height / 2) < 1e-9)
-
-
 @elements
 @laws
 @pytest.mark.parametrize("plane", PLANES)
-def test_patch_test(strip, material, element, plane, stated):
+def test_patch_test(material, element, plane, stated):
     """Linear displacements on the boundary of distorted elements: a constant gradient inside, to 1e-12."""
-    mesh = distorted(strip, element, 4)
+    mesh = distorted(element, 4)
     H = np.array([[0.1, 0.3], [-0.2, 0.05]])
     exact = mesh.nodes @ H.T
     law = elastic_law(material, E, 0.3, plane)
@@ -66,37 +59,6 @@ def test_patch_test(strip, material, element, plane, stated):
     P = law.stress(deformation_gradient(mesh, u))
     expected = law.stress((np.eye(2) + H)[:, :, None])[:, :, 0]
     np.testing.assert_allclose(P, expected[:, :, None, None] + 0 * P, rtol=0, atol=1e-10 * E)
-
-
-@elements
-@laws
-def test_patch_test_under_a_pressed_face(strip, material, element):
-    """A uniform traction on the upper face, supports that let it contract: uniaxial stress everywhere, to 1e-10."""
-    height, mesh = 0.6, distorted(strip, element, 4)
-    law, x, y = elastic_law(material, E, 0.3), *mesh.nodes.T
-    H = uniaxial(law, -0.05 * E)
-    loads = np.zeros(mesh.nodes.shape)
-    top = np.flatnonzero(np.abs(y - height / 2) < 1e-9)
-    top = top[np.argsort(x[top])]
-    loads[top, 1] = -0.05 * E * B * edge_weights(element, x[top])
-    exact = (mesh.nodes + np.array([0.0, height / 2])) @ H.T
-    held = np.stack([np.abs(x) < 1e-9, np.abs(y + height / 2) < 1e-9], 1)
-    u = solve(mesh, law, held, 0 * exact, loads)
-    np.testing.assert_allclose(u, exact, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(law.stress(deformation_gradient(mesh, u))[1, 1], -0.05 * E, rtol=1e-10)
-
-
-def uniaxial(law, pressure):
-    """Displacement gradient of uniaxial stress P_yy, by Newton's method on the two stretches."""
-    stretches = np.ones(2)
-    for _ in range(20):
-        F = np.diag(stretches)[:, :, None]
-        R = np.diag(law.stress(F)[:, :, 0]) - [0.0, pressure]
-        A = law.tangent(F)[..., 0]
-        stretches = stretches - np.linalg.solve(
-            [[A[0, 0, 0, 0], A[0, 0, 1, 1]], [A[1, 1, 0, 0], A[1, 1, 1, 1]]], R
-        )
-    return np.diag(stretches) - np.eye(2)
 
 
 def field(X, Y):
@@ -110,12 +72,18 @@ def gradient(X, Y):
     return np.array([[1 + 0.2 * np.cos(a), 0.1 * np.cos(a)], [-0.12 * np.sin(b), 1 + 0.24 * np.sin(b)]])
 
 
-@elements
-@laws
-def test_manufactured_solution_in_large_strain(strip, material, element, stated):
+@pytest.mark.parametrize(
+    ("element", "material"),
+    [
+        ("Q1", "st-venant-kirchhoff"),
+        ("Q2-full", "biot-linear"),
+        *(("Q2", material) for material in MATERIALS),
+    ],
+)
+def test_manufactured_solution_in_large_strain(material, element, stated):
     """Orders p + 1 in the mean square of u and p in that of its gradient; body force by complex steps."""
     law = elastic_law(material, E, 0.3)
-    errors = np.array([manufactured_errors(strip, law, element, n) for n in (8, 16)])
+    errors = np.array([manufactured_errors(law, element, n) for n in (8, 16)])
     order = 1 if element == "Q1" else 2
     orders = np.log2(errors[0] / errors[1])
     assert orders[0] == pytest.approx(order + 1, abs=0.15)
@@ -124,8 +92,8 @@ def test_manufactured_solution_in_large_strain(strip, material, element, stated)
         stated("solid.orders", *orders)
 
 
-def manufactured_errors(strip, law, element, n):
-    mesh = distorted(strip, element, n)
+def manufactured_errors(law, element, n):
+    mesh = distorted(element, n)
     X, Y = np.asarray(mesh.basis.global_coordinates())
     force = -sum(
         law.stress(gradient(X + 1j * STEP * (j == 0), Y + 1j * STEP * (j == 1)))[:, j].imag / STEP
@@ -139,3 +107,70 @@ def manufactured_errors(strip, law, element, n):
     difference = np.einsum("aeq,eai->ieq", shapes, u[mesh.cells]) - np.array(field(X, Y))
     slopes = deformation_gradient(mesh, u) - gradient(X, Y)
     return [np.sqrt((part**2 * mesh.weights).sum()) for part in (difference, slopes)]
+
+
+LAM, MU = lame_constants(E, NU)
+
+
+@pytest.fixture(params=[(name, plane) for name in MATERIALS for plane in PLANES], ids="-".join)
+def law(request):
+    name, plane = request.param
+    return elastic_law(name, E, NU, plane)
+
+
+def gradients(points=5):
+    """Deformation gradients near rotations by all angles."""
+    rng = np.random.default_rng(1)
+    Q = np.stack([rotation(angle) for angle in np.linspace(0, 2 * np.pi, points, endpoint=False)], axis=-1)
+    return np.einsum(
+        "ij...,jk...->ik...", Q, np.eye(2)[:, :, None] + 0.2 * rng.standard_normal((2, 2, points))
+    )
+
+
+def test_stress_and_symmetric_tangent_are_derivatives_of_the_energy(law):
+    F = gradients()
+    P, A = law.stress(F), law.tangent(F)
+    for i, j in np.ndindex(2, 2):
+        dF = np.zeros((2, 2, 1))
+        dF[i, j] = STEP
+        np.testing.assert_allclose(P[i, j], law.energy(F + 1j * dF).imag / STEP, rtol=0, atol=1e-12 * MU)
+        derivative = law.stress(F + 1j * dF).imag / STEP
+        np.testing.assert_allclose(A[:, :, i, j], derivative, rtol=0, atol=1e-11 * MU)
+    np.testing.assert_allclose(A, A.transpose(2, 3, 0, 1, 4), rtol=0, atol=1e-12 * MU)
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("name", MATERIALS)
+@pytest.mark.parametrize("nu", [-0.4, 0.0, 0.3, 0.4999])
+def test_small_strains_are_hookes(name, plane, nu):
+    """``dP/dF`` at rest is isotropic linear elasticity: ``lam tr(e) I + 2 mu e`` with the plane's lam."""
+    lam, mu = lame_constants(E, nu)
+    lam = in_plane_lam(lam, mu, plane)
+    d = np.eye(2)
+    expected = lam * np.einsum("ij,kl->ijkl", d, d) + mu * (
+        np.einsum("ik,jl->ijkl", d, d) + np.einsum("il,jk->ijkl", d, d)
+    )
+    A = elastic_law(name, E, nu, plane).tangent(d[:, :, None])[..., 0]
+    np.testing.assert_allclose(A, expected, rtol=0, atol=1e-12 * (lam + mu))
+
+
+THREE_DIMENSIONAL = {
+    "st-venant-kirchhoff": lambda C: ((C - 1) / 2).sum() ** 2 * LAM / 2 + MU * (((C - 1) / 2) ** 2).sum(),
+    "biot-linear": lambda C: (np.sqrt(C) - 1).sum() ** 2 * LAM / 2 + MU * ((np.sqrt(C) - 1) ** 2).sum(),
+    "neo-hookean": lambda C: MU / 2 * (C.sum() - 3 - np.log(C.prod())) + LAM / 8 * np.log(C.prod()) ** 2,
+}
+
+
+@pytest.mark.parametrize("plane", PLANES)
+@pytest.mark.parametrize("name", MATERIALS)
+def test_plane_laws_are_the_three_dimensional_law_without_transverse_stress_or_strain(name, plane):
+    """Principal stretches, the transverse one found by a bracketing root search on its stress."""
+    W, F, law = THREE_DIMENSIONAL[name], gradients(), elastic_law(name, E, NU, plane)
+    for point in range(F.shape[2]):
+        in_plane = np.linalg.eigvalsh(F[:, :, point].T @ F[:, :, point])
+
+        def transverse_stress(stretch, in_plane=in_plane):
+            return W(np.array([*in_plane, (stretch + 1j * STEP) ** 2])).imag / STEP
+
+        stretch = brentq(transverse_stress, 0.6, 1.6, xtol=1e-15) if plane == "stress" else 1.0
+        assert law.energy(F[:, :, point]) == pytest.approx(W(np.array([*in_plane, stretch**2])), rel=1e-11)

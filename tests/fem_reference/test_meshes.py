@@ -1,0 +1,280 @@
+"""Meshes of strips: sections, grading, size, and files of the user's own."""
+
+import os
+import re
+import tracemalloc
+
+import meshio
+import numpy as np
+import pytest
+
+import fem_reference as fr
+from tests.fem_reference.conftest import (
+    CLAMP,
+    EA,
+    NU,
+    PAIR,
+    STRIP,
+    B,
+    E,
+    H,
+    elements,
+    held,
+    load,
+    loads,
+    make_problem,
+    make_strip,
+)
+
+
+def parts(nx=20, ny=2, height=H, tilt=0.2, shift=0.0):
+    """Points and cells of a strip of slanted quadrilaterals, and the lines of its edges by name; `shift` moves the rows to one side."""
+    x, y = np.meshgrid(np.linspace(0, 1, nx + 1), np.linspace(-0.5, 0.5, ny + 1), indexing="ij")
+    slant = tilt / nx * np.sin(np.pi * x) * y
+    y = y + shift * (1 - 4 * y**2)
+    points = np.stack([(x + slant).ravel(), height * y.ravel(), 0 * x.ravel()], 1)
+    number = np.arange(x.size).reshape(x.shape)
+    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], -1).reshape(-1, 4)
+    sides = {"start": number[0], "end": number[-1], "right": number[:, 0], "left": number[:, -1]}
+    return points, quads, {name: np.stack([side[:-1], side[1:]], 1) for name, side in sides.items()}
+
+
+def quad9(nx=4):
+    """As `parts`, straight, with midsides and centres."""
+    points, quads, lines = parts(nx=nx, tilt=0.0)
+    corners = points[quads]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    more = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
+    added = len(points) + np.arange(more.shape[0] * 5).reshape(-1, 5)
+    return np.concatenate([points, more.reshape(-1, 3)]), np.concatenate([quads, added], axis=1), lines
+
+
+def write(path, points, quads, lines):
+    """Gmsh's text format 2.2."""
+    cells = [
+        ("quad9" if quads.shape[1] == 9 else "quad", quads),
+        *(("line", part) for part in lines.values()),
+    ]
+    marks = [np.full(len(part), tag or 9) for tag, (_, part) in enumerate(cells)]
+    names = {name: np.array([tag, 1]) for tag, name in enumerate(lines, 1)}
+    data = {"gmsh:physical": marks, "gmsh:geometrical": marks}
+    mesh = meshio.Mesh(points, cells, cell_data=data, field_data=names)
+    meshio.write(path, mesh, file_format="gmsh22", binary=False)
+    return str(path)
+
+
+def write_4(path, points, quads, lines):
+    """Gmsh's text format 4.1, every edge and the body an entity of its own in a group of its own."""
+    names, n = list(lines), len(points)
+    text = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", f"{len(names) + 1}", '2 9 "body"']
+    text += [f'1 {tag} "{name}"' for tag, name in enumerate(names, 1)]
+    text += ["$EndPhysicalNames", "$Entities", f"0 {len(names)} 1 0"]
+    text += [f"{tag} 0 0 0 1 1 0 1 {tag} 0" for tag in range(1, len(names) + 1)]
+    text += ["1 0 0 0 1 1 0 1 9 0", "$EndEntities", "$Nodes", f"1 {n} 1 {n}", f"2 1 0 {n}"]
+    text += [str(number) for number in range(1, n + 1)]
+    text += [" ".join(map(repr, map(float, point))) for point in points]
+    count, number = len(quads) + sum(map(len, lines.values())), 0
+    text += ["$EndNodes", "$Elements", f"{len(names) + 1} {count} 1 {count}"]
+    blocks = [(1, tag, 1, lines[name]) for tag, name in enumerate(names, 1)]
+    for dimension, tag, kind, cells in [*blocks, (2, 1, 3, quads)]:
+        text.append(f"{dimension} {tag} {kind} {len(cells)}")
+        for cell in cells:
+            number += 1
+            text.append(" ".join(map(str, [number, *(int(node) + 1 for node in cell)])))
+    path.write_text("\n".join([*text, "$EndElements", ""]))
+
+
+def pulled(force=1e-6 * EA, **changes):
+    """A clamped strip under a force along it."""
+    problem = held(load(force=(force, 0.0)), **({"clamped": ("start",), "material": "biot-linear"} | changes))
+    return fr.solve(problem, loads(1))
+
+
+def refused(path):
+    """The message of one line with which a mesh file is refused."""
+    with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh_file = ") as caught:
+        pulled(mesh_file=str(path))
+    assert len(str(caught.value).splitlines()) == 1
+    return str(caught.value)
+
+
+@elements
+@pytest.mark.parametrize("rows", [1, 2, 3])
+def test_axis_is_the_mean_of_the_sections(element, rows):
+    """By the rule of Simpson, or of trapezoids with bilinear elements."""
+    result = fr.solve(make_problem(path=((1.0, 0.0), (0.9, 0.1)), mesh=(4, rows), element=element), loads(1))
+    places = result.mesh_points + result.displacement[-1]
+    order, shares = (1, [0.5, 0.5]) if element == "Q1" else (2, [1 / 6, 2 / 3, 1 / 6])
+    weights = np.zeros(order * rows + 1)
+    for row in range(rows):
+        weights[order * row : order * (row + 1) + 1] += np.array(shares) / rows
+    stations = fr.axis_stations(result, STRIP)
+    np.testing.assert_allclose(stations, np.linspace(0, 1, 4 * order + 1), atol=1e-15)
+    for station, mean in zip(stations, fr.axis_line(result, STRIP, -1), strict=True):
+        section = np.flatnonzero(np.abs(result.mesh_points[:, 0] - station) < 1e-9)
+        section = section[np.argsort(result.mesh_points[section, 1])]
+        np.testing.assert_allclose(weights @ places[section], mean, atol=1e-15)
+
+
+@elements
+def test_grading_is_the_ratio_of_last_to_first_element(element):
+    stations = fr.axis_stations(pulled(mesh=(6, 1), grading=8.0, element=element), STRIP)
+    lengths = np.diff(stations[:: 1 if element == "Q1" else 2])
+    np.testing.assert_allclose(lengths[1:] / lengths[:-1], 8 ** (1 / 5), rtol=1e-12)
+    assert (stations[0], stations[-1]) == (0.0, 1.0)
+
+
+def test_memory_is_what_a_refusal_says():
+    """3.4 GiB for 100,000 elements in a row, so .034 for 1000."""
+    with pytest.raises(ValueError, match=r"must need at most 2 GiB, needs about 3\.[3-6]"):
+        make_strip(mesh=(100_000, 1))
+    pulled(mesh=(2, 1))
+    tracemalloc.start()
+    pulled(mesh=(1000, 1))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert 0.3 < peak / (0.0344 * 2**30) < 1.1
+
+
+@elements
+@pytest.mark.parametrize("mesh", ["slanted", "without a middle node", "straight"])
+def test_a_bar_is_stretched_evenly(tmp_path, element, mesh):
+    """By .05 of E, on distorted elements too: a rod's clamp lets the section contract, and holds its middle."""
+    made = {"slanted": {"tilt": 0.6}, "without a middle node": {"ny": 3, "shift": 0.1}}.get(mesh)
+    changes = {"mesh": (4, 2)}
+    if made is not None:
+        changes = {"mesh_file": write(tmp_path / "a.msh", *parts(nx=4, height=0.3, **made))}
+    F = 0.05 * E * B * 0.3
+    result = pulled(F, element=element, height=0.3, **changes)
+    expected = result.mesh_points * [0.05, -0.05 * NU]
+    np.testing.assert_allclose(result.displacement[0], expected, atol=1e-11)
+    np.testing.assert_allclose(result.supports[CLAMP].force[0], [-F, 0], atol=1e-8 * F)
+    strains = fr.face_strains(result, STRIP, 0)[1]
+    np.testing.assert_allclose([strains["left"], strains["right"]], 0.05, atol=1e-11)
+
+
+def test_ks_cantilever_on_a_mesh_of_the_users_own(tmp_path):
+    """Slanted elements against straight ones."""
+    slanted, straight = (
+        fr.solve(make_problem(contact={"surface": "face"}, mesh_file=file), loads(20)[:10]).contacts[PAIR]
+        for file in (write(tmp_path / "a.msh", *parts(nx=50)), None)
+    )
+    np.testing.assert_allclose(slanted.force, straight.force, rtol=1e-3)
+    np.testing.assert_allclose(slanted.arc_position, straight.arc_position, rtol=5e-4)
+
+
+def test_midsides_are_read_and_must_be_straight(tmp_path):
+    points, quads, lines = quad9()
+    read = pulled(mesh_file=write(tmp_path / "a.msh", points, quads, lines))
+    assert read.mesh_cells["quad9"].shape == (8, 9)
+    assert read.tips[STRIP][-1] == pytest.approx([1 + 1e-6, 0.0], abs=1e-12)
+    points[quads[2, 4], 1] += 1e-3
+    assert "element 2 must have straight sides" in refused(write(tmp_path / "b.msh", points, quads, lines))
+
+
+def moved(change):
+    return lambda points, quads, lines: (change(points), quads, lines)
+
+
+def named(**changes):
+    return lambda points, quads, lines: (
+        points,
+        quads,
+        {**lines, **{n: f(lines) for n, f in changes.items()}},
+    )
+
+
+def without(points, quads, lines):
+    return points, quads, {name: part for name, part in lines.items() if name != "end"}
+
+
+def flipped(points, quads, lines):
+    return points, np.where(np.arange(len(quads))[:, None] == 3, quads[:, ::-1], quads), lines
+
+
+def flat(points, quads, lines):
+    points = points.copy()
+    points[quads[5, 2:]] = points[quads[5, :2][::-1]]
+    return points, quads, lines
+
+
+def parted(points, quads, lines):
+    split = np.where(quads[:, :1] >= 30, quads + len(points), quads)
+    used, local = np.unique(split, return_inverse=True)
+    number = {int(node): place for place, node in enumerate(used % len(points))}
+    renamed = {name: np.vectorize(number.get)(part) for name, part in lines.items()}
+    return np.concatenate([points, points])[used], local.reshape(-1, 4), renamed
+
+
+BROKEN = {
+    "element 3 is clockwise": flipped,
+    "element 5 has no area": flat,
+    "element .* is not convex": moved(lambda p: p + (np.arange(len(p)) == 31)[:, None] * [0.07, 0, 0]),
+    "falls into 2 parts": parted,
+    'must name the lines of the edge "end", it names': without,
+    'the edge "right" must lie below': named(right=lambda n: n["left"], left=lambda n: n["right"]),
+    "the boundary from .* must belong to an edge": named(start=lambda n: n["start"][:1]),
+    'the edge "end" must lie on the boundary': named(end=lambda _: np.array([[9, 13]])),
+    "the (boundary from|edge)": lambda p, quads, lines: (p, np.delete(quads, 7, axis=0), lines),
+    'the edge "start" must lie at x = 0': moved(lambda p: np.add(p, [0.1, 0, 0])),
+    'the edge "end" must lie at x = 1': moved(lambda p: 0.5 * p),
+    r'the edge "right" must lie at y = -0\.01$': moved(lambda p: p * [1, 3, 1]),
+    r'the edge "right" must lie at y = -0\.01 .*reaches -0\.004': moved(lambda p: np.add(p, [0, 0.006, 0])),
+    'the edge "left" must lie at y = 0.01': moved(
+        lambda p: p + (p[:, 1:2] > 0.005) * np.sin(np.pi * p[:, :1]) * 2e-4 * [0, 1, 0]
+    ),
+    r"node 32 must have z = 0, it has 0\.001": moved(lambda p: p + 1e-3 * (p[:, :1] > 0.5) * [0, 0, 1]),
+    "node 63 must belong to a quadrilateral": moved(lambda p: np.concatenate([p, [[0.3, 0.0, 0.0]]])),
+}
+
+
+@pytest.mark.parametrize("rule", BROKEN)
+def test_mesh_that_breaks_a_rule_costs_one_line(tmp_path, rule):
+    points, quads, lines = parts()
+    message = refused(write(tmp_path / "bad.msh", *BROKEN[rule](points, quads, lines)))
+    assert re.search(r"bad\.msh.*: " + rule.rstrip("$"), message), message
+
+
+@pytest.mark.parametrize("version", ["2", "4"])
+def test_every_broken_line_of_a_mesh_text_is_named(tmp_path, version):
+    """Every line of a small mesh spoilt in turn, and the text cut off behind it."""
+    path = tmp_path / "a.msh"
+    (write if version == "2" else write_4)(path, *parts(nx=2, ny=1))
+    pulled(mesh_file=str(path))
+    lines = path.read_text().splitlines()
+    begin, end = (lines.index(name) for name in ("$Nodes", "$EndElements"))
+    assert {"$EndNodes", "$Elements"} < set(lines[begin:end])
+    for number in range(begin + 1, end):
+        count = lines[number - 1] in ("$Nodes", "$Elements")
+        others = [lines[number] + " x", *(["9999999999", "-1", "1e3", ""] if count else [])]
+        for spoilt in (*([*lines[:number], other, *lines[number + 1 :]] for other in others), lines[:number]):
+            path.write_text("\n".join(spoilt) + "\n")
+            message = refused(path)
+            assert "line " in message or "ends before" in message, (number, message)
+
+
+def test_only_whole_text_in_regular_files_of_at_most_16_mb_is_read(tmp_path):
+    fifo, large, folder = tmp_path / "fifo.msh", tmp_path / "large.msh", tmp_path / "folder.msh"
+    os.mkfifo(fifo)
+    folder.mkdir()
+    with large.open("wb") as file:
+        file.truncate(2**24 + 1)
+    binary = tmp_path / "binary.msh"
+    binary.write_bytes(b"$MeshFormat\n2.2 1 8\n\x01\x00\x00\x00\n$EndMeshFormat\n")
+    triangle = meshio.Mesh(np.eye(3) * [1, 1, 0], [("triangle", np.array([[0, 1, 2]]))])
+    meshio.write(tmp_path / "a.vtu", triangle)
+    for path, rule in {
+        fifo: "must be a regular file",
+        folder: "must be a regular file",
+        "/dev/zero": "must be a regular file",
+        large: "must not be larger than 16 MB",
+        binary: "line 2: must be Gmsh's text format",
+        tmp_path / "a.vtu": 'it has cells of type "triangle"',
+        tmp_path / "nothing.msh": "cannot be read",
+    }.items():
+        assert rule in refused(path)
+    for content in (b"", b"\xff\x00", b"<VTKFile>", b"# vtk DataFile Version 3.0\nx\nASCII\n"):
+        for kind in ("msh", "vtu", "vtk", "inp", "nothing"):
+            path = tmp_path / f"broken.{kind}"
+            path.write_bytes(content)
+            refused(path)
