@@ -1,9 +1,11 @@
 """A short comparison with its page, and a browser to look at pages."""
 
+import io
 import json
 import re
 import shutil
 import subprocess
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from html import escape, unescape
 from pathlib import Path
@@ -11,19 +13,30 @@ from typing import Any
 
 import pytest
 
-from comparisons.compare import compare
-from comparisons.scene import load_scene
+from comparisons.cli import main
+from comparisons.scene import load_scene, to_toml
 
-STEPS = 10
+KS = replace(load_scene("ks-cantilever"), load_parameters=5)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """What a comparison wrote and said."""
+
+    folder: Path
+    printed: str
+    progress: str
 
 
 @pytest.fixture(scope="session")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of a comparison over ten load parameters."""
-    folder = tmp_path_factory.mktemp("compared")
-    found = compare(replace(load_scene("ks-cantilever"), load_parameters=STEPS), folder, lambda _: None)
-    assert folder / "report.html" in found.files
-    return folder
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
+    """A comparison of `KS` by the command."""
+    folder, out, err = tmp_path_factory.mktemp("compared"), io.StringIO(), io.StringIO()
+    scene = folder.with_suffix(".toml")
+    scene.write_text(to_toml(KS))
+    with redirect_stdout(out), redirect_stderr(err):
+        assert main(["compare", str(scene), "--out", str(folder)]) == 0
+    return Compared(folder=folder, printed=out.getvalue(), progress=err.getvalue())
 
 
 @dataclass(frozen=True, kw_only=True)
