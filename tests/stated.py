@@ -1,7 +1,7 @@
 """Numbers that the pages state, each behind a mark with its name: ``<!--name-->1.5e-5``. `make results` writes them anew.
 
 A mark names the number behind it, ``<!--name x3-->`` the first three, before the next mark; a name may stand on several pages. A test
-measures the numbers of a name and judges them as a claim on every page, at the digits stated there.
+measures the numbers of a name and judges them on every page, at the digits stated there.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
-from comparisons.claims.claim import Allowance, Claim, Quantity, judge
-from comparisons.files import alone_in
+from filelock import FileLock
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
@@ -117,34 +116,11 @@ def numbers(text: str, name: str, size: int) -> Iterator[list[Stated]]:
             yield found
 
 
-def claim(
-    name: str,
-    page: str,
-    stated: list[Stated],
-    values: tuple[float, ...],
-    least: float | None,
-    relative: float | None,
-) -> Claim:
-    """Return the claim that the values are the stated numbers, or at least a part and at most the whole of them."""
+def holds(one: Stated, value: float, least: float | None = None, relative: float | None = None) -> bool:
+    """Whether a value is the stated number, to half a unit of its last digit or a part of it; or at most it, and at least a part of it."""
     if least is not None:
-        low, half = 0.5 * (1.0 + least), 0.5 * (1.0 - least) * (1.0 + 1e-9)
-        quantities = [
-            Quantity(name=f"<= {one.text}", exact=low * abs(one.value), scale=half * abs(one.value))
-            for one in stated
-        ]
-        why = f"a bound is at most {LOOSE:g} times what is measured"
-    elif relative is not None:
-        quantities = [
-            Quantity(name=one.text, exact=one.value, scale=relative * abs(one.value)) for one in stated
-        ]
-        why = "what differs from processor to processor"
-    else:
-        quantities = [Quantity(name=one.text, exact=one.value, scale=one.half_unit) for one in stated]
-        why = "half a unit of the last digit stated"
-    return Claim(
-        name=name, statement=f"{name} of {page}", source=page, quantities=tuple(quantities),
-        allowance=Allowance(error=1.0, why=why), measure=lambda: values,
-    )  # fmt: skip
+        return least * abs(one.value) * (1.0 - 1e-9) <= abs(value) <= abs(one.value) * (1.0 + 1e-9)
+    return abs(value - one.value) <= (one.half_unit if relative is None else relative * abs(one.value))
 
 
 def check(
@@ -178,22 +154,24 @@ def check(
         # no arithmetic is better than its last bit
         measured = tuple(max(abs(value), 0.0 if part else EPS) for value in measured)
     least = 0.0 if part else 1.0 / LOOSE if bound else None
-    with alone_in(ROOT / "docs"):
+    up = least is not None
+    with FileLock(ROOT / "out" / "pages.lock"):
         for path in pages():
             text = path.read_text(encoding="utf-8")
-            stated = list(numbers(text, name, len(measured)))
-            places += len(stated)
-            judged = [judge(claim(name, path.name, one, measured, least, relative)) for one in stated]
-            failures = [f"{path.name}: {name}: {one.failure}" for one in judged if not one.passed]
-            if failures and write:
-                up = least is not None
-                for one in reversed(stated):
+            for stated in reversed(list(numbers(text, name, len(measured)))):
+                places += 1
+                pairs = zip(stated, measured, strict=True)
+                wrong = [
+                    f"{value:.6g} for {one.text}"
+                    for one, value in pairs
+                    if not holds(one, value, least, relative)
+                ]
+                assert write or not wrong, f"{path.name}: {name}: {', '.join(wrong)}"
+                if wrong:
                     text = replaced(
-                        text, one, tuple(0.5 * LOOSE * value for value in measured) if up else measured, up=up
+                        text, stated, [0.5 * LOOSE * value for value in measured] if up else measured, up=up
                     )
-                path.write_text(text, encoding="utf-8")
-            else:
-                assert not failures, failures
+                    path.write_text(text, encoding="utf-8")
     assert places, f"{name}: no page has this mark"
 
 
@@ -219,7 +197,7 @@ def left(*, write: bool) -> Iterator[str]:
     )
 
 
-def replaced(text: str, stated: list[Stated], values: tuple[float, ...], *, up: bool) -> str:
+def replaced(text: str, stated: list[Stated], values: Sequence[float], *, up: bool) -> str:
     """Return the text with other values of stated numbers."""
     for one, value in reversed(list(zip(stated, values, strict=True))):
         text = text[: one.start] + one.rewritten(value, up=up) + text[one.end :]
