@@ -42,13 +42,8 @@ class Stated:
     end: int
 
     @property
-    def unit(self) -> float:
-        """0.01 of a number in per cent."""
-        return 0.01 if self.percent else 1.0
-
-    @property
     def value(self) -> float:
-        return float(self.text.replace(",", "")) * self.unit
+        return float(self.text.replace(",", "")) * (0.01 if self.percent else 1.0)
 
     @property
     def decimals(self) -> int:
@@ -57,8 +52,8 @@ class Stated:
     @property
     def half_unit(self) -> float:
         """Half a unit of the last digit."""
-        exponent = int(self.text.partition("e")[2] or 0)
-        return 0.5 * 10.0 ** (exponent - self.decimals) * self.unit
+        exponent = int(self.text.partition("e")[2] or 0) - self.decimals - 2 * self.percent
+        return 0.5 * 10.0**exponent
 
     def rewritten(self, value: float, *, up: bool) -> str:
         """Return a value with as many digits and in the same form, rounded up if it is a bound.
@@ -70,7 +65,7 @@ class Stated:
         >>> Stated(".4", True, 0, 2).rewritten(0.00511, up=True)
         '.6'
         """
-        number = Decimal(value / self.unit)
+        number = Decimal(100.0 * value if self.percent else value)
         scientific = "e" in self.text
         last = (number.adjusted() if scientific else 0) - self.decimals
         number = number.quantize(Decimal(1).scaleb(last), ROUND_CEILING if up else ROUND_HALF_EVEN)
@@ -100,22 +95,6 @@ def marked(text: str, mark: re.Match[str]) -> list[Stated]:
     return found[: count(mark)]
 
 
-def numbers(text: str, name: str, size: int) -> Iterator[list[Stated]]:
-    """Yield the numbers behind every mark of this name.
-
-    Raises
-    ------
-    ValueError
-        If a mark names another number of numbers.
-    """
-    for mark in MARK.finditer(text):
-        if mark[1] == name:
-            found = marked(text, mark)
-            if len(found) != size:
-                raise ValueError(f"mark {name}: {size} numbers are measured")
-            yield found
-
-
 def holds(one: Stated, value: float, least: float | None = None, relative: float | None = None) -> bool:
     """Whether a value is the stated number, to half a unit of its last digit or a part of it; or at most it, and at least a part of it."""
     if least is not None:
@@ -133,20 +112,9 @@ def check(
 ) -> None:
     """Judge measured values against what every page states under a name, or write what does not hold.
 
-    Parameters
-    ----------
-    name : str
-        Of the marks.
-    *values : float
-        As many as the numbers behind each mark.
-    bound : bool
-        The numbers are bounds, which are not below the values, and at most `LOOSE` times these.
-    part : bool
-        The numbers are bounds of several measurements, of which this is one: the largest is judged by `left` at the end of a whole run.
-    relative : float, optional
-        Part of a number by which the value may differ. Otherwise it may by half a unit of the last digit stated.
-    write : bool
-        Whether numbers that do not hold are replaced in the pages.
+    The numbers of a `bound` are not below the values, and at most `LOOSE` times these; of `part` they are bounds of several measurements,
+    of which this is one: the largest is judged by `left` at the end of a whole run. By `relative`, a part of the number, a value may
+    differ, otherwise by half a unit of the last digit stated. With `write`, numbers that do not hold are replaced in the pages.
     """
     measured, places = tuple(map(float, values)), 0
     record(name, bound or part, measured)
@@ -158,8 +126,8 @@ def check(
     with FileLock(ROOT / "out" / "pages.lock"):
         for path in pages():
             text = path.read_text(encoding="utf-8")
-            for stated in reversed(list(numbers(text, name, len(measured)))):
-                places += 1
+            for mark in reversed([mark for mark in MARK.finditer(text) if mark[1] == name]):
+                stated, places = marked(text, mark), places + 1
                 pairs = zip(stated, measured, strict=True)
                 wrong = [
                     f"{value:.6g} for {one.text}"

@@ -114,7 +114,7 @@ def test_an_installation_without_pyvista_and_meshio(
     assert "MISSING" not in marks.values()
     done = crossval(home, tmp_path, "compare ks-cantilever --out out")
     assert [line for line in done.stderr.splitlines() if "tsm-crossval[" in line] == [
-        "side-by-side.png: pyvista is not installed (install tsm-crossval[view]), matplotlib drew the picture instead",
+        "side-by-side.png: pyvista is not installed (install tsm-crossval[view]), matplotlib drew the picture instead"
     ]
     assert {path.name for path in (tmp_path / "out").iterdir() if path.name[0] != "."} == {
         "report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png",
