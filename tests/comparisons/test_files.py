@@ -9,14 +9,8 @@ from threading import Thread
 
 import pytest
 
+from comparisons import files  # faults of a disk are made here
 from comparisons.cli import main
-from comparisons.files import (
-    alone_in,
-    replacing,
-    result_file,
-    writable_folder,
-    write_text,
-)  # faults of a disk are made here
 from comparisons.scene import load_scene, to_toml
 
 Output = pytest.CaptureFixture[str]
@@ -38,20 +32,20 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     path = tmp_path / "a.txt"
 
     def fail() -> None:
-        with replacing(path) as temporary:
+        with files.replacing(path) as temporary:
             assert temporary.suffix == path.suffix
             temporary.write_text("half")
             raise fault
 
     for old in (None, "old"):
         if old:
-            write_text(path, old)
+            files.write_text(path, old)
         there = {file.name: file.read_text() for file in tmp_path.iterdir()}
         with pytest.raises((RuntimeError, ValueError), match=told):
             fail()
         assert {file.name: file.read_text() for file in tmp_path.iterdir()} == there
     assert there.keys() == {"a.txt", ".crossval"}
-    write_text(path, "new")
+    files.write_text(path, "new")
     assert path.read_text() == "new"
 
 
@@ -60,14 +54,14 @@ def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path
     os.mkfifo(tmp_path / "pipe")
     for name in ("file", "file/below", "nul\0l"):
         with pytest.raises(ValueError, match="cannot be written"):
-            writable_folder(tmp_path / name)
+            files.writable_folder(tmp_path / name)
     for name in (".", "pipe", "none/a.json"):
         with pytest.raises(ValueError, match="cannot be written"):
-            result_file(tmp_path / name)
+            files.result_file(tmp_path / name)
     target, link = tmp_path / "target.json", tmp_path / "link.json"
-    write_text(target, "old")
+    files.write_text(target, "old")
     link.symlink_to(target)
-    write_text(result_file(link), "new")
+    files.write_text(files.result_file(link), "new")
     assert link.is_symlink()
     assert target.read_text() == "new"
 
@@ -76,11 +70,11 @@ def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
     order: list[str] = []
 
     def write() -> None:
-        with alone_in(tmp_path):
+        with files.alone_in(tmp_path):
             order.append("second")
 
     other = Thread(target=write)
-    with alone_in(tmp_path):
+    with files.alone_in(tmp_path):
         other.start()
         other.join(0.2)
         order.append("first")
@@ -90,16 +84,14 @@ def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
 
 HERE = "of a user"
 """What a command must leave alone."""
-INTO_A_FILE = (
-    "check s.toml --json FILE",
-    "check s.toml --out FILE.png",
-    "solve s.toml --json FILE",
-    "solve s.toml --csv FILE",
-    "solve s.toml --plot FILE.svg",
-    "certify s.toml --json FILE",
-    "gate s.toml --max-error force=1 --junit FILE",
-    "manual --only roll-up --quiet --out new --junit FILE",
-)
+INTO_A_FILE = """check s.toml --json FILE
+check s.toml --out FILE.png
+solve s.toml --json FILE
+solve s.toml --csv FILE
+solve s.toml --plot FILE.svg
+certify s.toml --json FILE
+gate s.toml --max-error force=1 --junit FILE
+manual --only roll-up --quiet --out new --junit FILE"""
 INTO_A_FOLDER = {
     "compare s.toml --out": ("report.html", "budget.json", "tsm/tsm.pvd", "solid/solid-0002.vtm"),
     "view s.toml --out": ("view.png", "view.gif"),
@@ -121,7 +113,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return text
 
 
-@pytest.mark.parametrize("line", INTO_A_FILE)
+@pytest.mark.parametrize("line", INTO_A_FILE.splitlines())
 def test_no_file_of_a_user_is_replaced(line: str, scene: str, capsys: Output) -> None:
     """The scene itself among them; and the same command replaces what it wrote, until that is edited."""
 
@@ -161,12 +153,13 @@ def test_a_folder_of_a_user_is_left_alone(line: str, capsys: Output) -> None:
 @pytest.mark.usefixtures("scene")
 def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys: Output) -> None:
     assert main(["solve", "s.toml", "--json", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
+    judged = (
+        "certify a.json --scene s.toml --json ./a.json",
+        "a.json",
+        "--json ./a.json: is the answer to be judged",
+    )
     for line, file, told in (
-        (
-            "certify a.json --scene s.toml --json ./a.json",
-            "a.json",
-            "--json ./a.json: is the answer to be judged",
-        ),
+        judged,
         ("check mine.toml --json mine.toml", "mine.toml", "mine.toml: is there already"),
     ):
         there = Path(file).read_bytes()

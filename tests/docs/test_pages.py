@@ -23,19 +23,9 @@ RUN = {
 """Pages that are run as a whole; the commands of the other two are run one by one."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
 SECONDS = {
-    f"{HOW_TO}{name}.md"
-    for name in (
-        "accuracy",
-        "cards",
-        "ci-gate",
-        "element",
-        "material",
-        "paraview",
-        "program",
-        "python",
-        "scene",
-        "study",
-    )
+    page
+    for page in RUN
+    if re.search(r"/(accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study)\.md", page)
 }
 """Pages that take more than a second without the commands of `SLOW`."""
 
@@ -101,10 +91,9 @@ SAID = {
 """What a command prints, beside its exit status."""
 ELSEWHERE = {"trade", "manual", "extremes", "league"}
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
-MORE = (
-    "crossval solve double-beam --model solid",
-    "crossval doctor",
-    "crossval solve ks-cantilever --model rod",
+MORE = tuple(
+    f"crossval {rest}"
+    for rest in ("solve double-beam --model solid", "doctor", "solve ks-cantilever --model rod")
 )
 """Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
 
