@@ -10,7 +10,6 @@ import sysconfig
 import tarfile
 import tomllib
 import venv
-from collections.abc import Callable
 from importlib import metadata
 from importlib.util import cache_from_source
 from pathlib import Path
@@ -82,7 +81,7 @@ def crossval(home: Path, folder: Path, line: str, status: int = 0) -> "subproces
 
 
 @pytest.mark.slow
-def test_new_check_and_compare_run_from_the_wheel(built: Path, tmp_path: Path) -> None:
+def test_new_check_and_compare_run_from_the_wheel(built, tmp_path):
     """In an environment that has the wheel, and of this one the libraries but not the project."""
     home = tmp_path / "environment"
     (environment(home, built) / "libraries.pth").write_text(sysconfig.get_path("purelib"))
@@ -97,9 +96,7 @@ def test_new_check_and_compare_run_from_the_wheel(built: Path, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_an_installation_without_pyvista_and_meshio(
-    built: Path, tmp_path: Path, stated: Callable[..., None]
-) -> None:
+def test_an_installation_without_pyvista_and_meshio(built, tmp_path, stated):
     """It compares and views by matplotlib, refuses to read VTU files, and is small."""
     home = tmp_path / "bare"
     site = environment(home, built)
@@ -130,7 +127,7 @@ def test_an_installation_without_pyvista_and_meshio(
 
 
 @pytest.mark.slow
-def test_the_sdist_has_what_its_tests_need(built: Path) -> None:
+def test_the_sdist_has_what_its_tests_need(built):
     [sdist] = built.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
@@ -152,7 +149,7 @@ FRONTS = [
 
 
 @pytest.mark.parametrize("folder", FRONTS, ids=str)
-def test_a_package_shows_its_public_names_only_and_knows_its_version(folder: Path) -> None:
+def test_a_package_shows_its_public_names_only_and_knows_its_version(folder):
     package = importlib.import_module(".".join(folder.parts))
     assert set(dir(package)) - {"__version__"} == set(package.__all__)
     assert all(hasattr(package, name) for name in dir(package))
@@ -180,7 +177,7 @@ SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "4"]
     ],
     ids=["tsm", "help", "solve"],
 )
-def test_a_start_imports_what_it_uses(code: str, there: str, absent: set[str]) -> None:
+def test_a_start_imports_what_it_uses(code, there, absent):
     """The modules that cost most only where they are used; `make bench` measures the times."""
     done = run(sys.executable, "-c", f"{code}\nimport sys\nprint(*sys.modules, file=sys.stderr)")
     modules = set(done.stderr.split())
@@ -196,7 +193,7 @@ def workflow(name: str) -> dict:
     return yaml.safe_load((ROOT / ".github" / "workflows" / name).read_text())
 
 
-def test_every_system_and_the_oldest_and_newest_python_are_tried_at_one_version() -> None:
+def test_every_system_and_the_oldest_and_newest_python_are_tried_at_one_version():
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())["version"]
     released = re.search(r"^## (\d\S*)", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
     assert cited == released[1] == PROJECT["version"] == metadata.version("tsm-crossval")
@@ -215,7 +212,7 @@ def test_every_system_and_the_oldest_and_newest_python_are_tried_at_one_version(
     assert list(ast.literal_eval(platforms[1])) == pythons
 
 
-def test_a_workflow_runs_what_there_is() -> None:
+def test_a_workflow_runs_what_there_is():
     jobs = [job for name in ("tests.yml", "docs.yml") for job in workflow(name)["jobs"].values()]
     runs = [step["run"] for job in jobs for step in job["steps"] if "run" in step]
     targets = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
@@ -224,7 +221,7 @@ def test_a_workflow_runs_what_there_is() -> None:
     assert (ROOT / ".ci" / "run").is_file()
 
 
-def test_the_description_is_whole_without_the_repository() -> None:
+def test_the_description_is_whole_without_the_repository():
     readme = (ROOT / "README.md").read_text()
     text = description(readme)
     tokens = [part for one in MarkdownIt("commonmark").parse(text) for part in (one, *(one.children or ()))]
@@ -235,7 +232,7 @@ def test_the_description_is_whole_without_the_repository() -> None:
         assert re.findall(kept, text) == re.findall(kept, readme)
 
 
-def test_a_set_up_is_one_line_a_bar_and_what_a_failed_installer_said(tmp_path: Path) -> None:
+def test_a_set_up_is_one_line_a_bar_and_what_a_failed_installer_said(tmp_path):
     waiting = ROOT / ".ci" / "waiting.py"
     (tmp_path / ".constraints.txt").write_text("a==1\nb==2\n")
     for code, status, said in (

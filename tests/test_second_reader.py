@@ -71,11 +71,11 @@ def misread(text: str) -> dict[str, tuple[object, object]]:
 
 
 @pytest.mark.parametrize("name", built_in_scenes())
-def test_a_built_in_scene_is_read_as_it_stands(name: str) -> None:
+def test_a_built_in_scene_is_read_as_it_stands(name):
     assert not misread(built_in_scenes()[name])
 
 
 @pytest.mark.parametrize("first", range(0, DRAWN, CHUNK))
-def test_drawn_scenes_are_read_as_they_stand(first: int) -> None:
+def test_drawn_scenes_are_read_as_they_stand(first):
     for seed in range(first, first + CHUNK):
         assert not misread(to_toml(drawn_special(seed))), f"seed {seed}"

@@ -24,7 +24,6 @@ ALONG = {
     "compressive_stress",
     "displacement",
 }
-Output = pytest.CaptureFixture[str]
 
 
 @cache
@@ -34,7 +33,7 @@ def answer(scene: str, model: str = "tsm", load_parameters: int = 10) -> Respons
 
 
 @pytest.mark.parametrize("scene", ["two-pins", "lees-frame", "portal-frame"])
-def test_extremes_are_those_of_the_referee(scene: str) -> None:
+def test_extremes_are_those_of_the_referee(scene):
     """Elements with 100 stations a beam, and the referee's own equations with 401: equal to the sixth digit."""
     own, other = answer(scene).table(), answer(scene, "rod").table()
     assert own.keys() == other.keys()
@@ -44,7 +43,7 @@ def test_extremes_are_those_of_the_referee(scene: str) -> None:
         np.testing.assert_allclose(own[name], other[name], rtol=0, atol=1e-7 * np.abs(other[name]).max())
 
 
-def test_extremes_of_the_solid_reach_its_clamps() -> None:
+def test_extremes_of_the_solid_reach_its_clamps():
     """The reaction is the section force at a clamp, where the stress of the solid is singular: h/L is .01, and forces differ by 1e-4."""
     own, other = (answer("portal-frame", model, 2).table() for model in ("tsm", "solid"))
     for name in ALONG - {"shear_force"}:
@@ -52,7 +51,7 @@ def test_extremes_of_the_solid_reach_its_clamps() -> None:
     assert np.all(other["left.bending_moment_at"] == 0.0)
 
 
-def test_extremes_by_statics() -> None:
+def test_extremes_by_statics():
     response = answer("tip-load")
     found, beam = response.table(), response.definition.beams[0]
     clamp, tip = response.supports["cantilever.start"], response.tips["cantilever"]
@@ -67,7 +66,7 @@ def test_extremes_by_statics() -> None:
 
 
 @pytest.mark.parametrize("part", [1e-3, 1e-6])
-def test_a_small_load_keeps_its_digits(part: float) -> None:
+def test_a_small_load_keeps_its_digits(part):
     """The rule of what is 0 goes by stiffness: 1e-6 of the load is no round-off, and its reaction has four digits and more."""
     scene = load_scene("tip-load")
     load = replace(scene.loads[0], force=(0.0, part * 175.0))
@@ -78,7 +77,7 @@ def test_a_small_load_keeps_its_digits(part: float) -> None:
     assert moment == pytest.approx(-part * 175.0 * 100.0, rel=1e-3)
 
 
-def test_beams_at_rest_again_have_no_forces_and_what_was_largest_is_kept() -> None:
+def test_beams_at_rest_again_have_no_forces_and_what_was_largest_is_kept():
     """Residuals of 1e-13 are 0 on the page; a contact that is open again keeps its largest and last force."""
     response = answer("double-beam", load_parameters=19)
     page = response.page()
@@ -93,7 +92,7 @@ def test_beams_at_rest_again_have_no_forces_and_what_was_largest_is_kept() -> No
     assert f"pin slips off upper at arc position 1 m; contact force before {slip.force:.6g} N" in page
 
 
-def test_columns_have_one_length_and_the_names_have_units() -> None:
+def test_columns_have_one_length_and_the_names_have_units():
     columns = answer("ks-friction").table()
     assert {values.shape for values in columns.values()} == {(10,)}
     reaction = -columns["cantilever.start.force_y"]
@@ -102,7 +101,7 @@ def test_columns_have_one_length_and_the_names_have_units() -> None:
     assert "pin->cantilever.dissipated" in columns
 
 
-def test_a_picture_has_shape_diagrams_and_forces() -> None:
+def test_a_picture_has_shape_diagrams_and_forces():
     response = answer("portal-frame")
     shape, *diagrams, history = response.plot().axes
     assert [axes.get_ylabel() for axes in diagrams] == ["axial N\n[N]", "shear V\n[N]", "moment M\n[N mm]"]
@@ -117,7 +116,7 @@ def test_a_picture_has_shape_diagrams_and_forces() -> None:
         replace(response, definition=None).plot()
 
 
-def test_a_picture_has_weights_and_numbers_without_an_exponent() -> None:
+def test_a_picture_has_weights_and_numbers_without_an_exponent():
     heavy = replace(load_scene("heavy-strip"), load_parameters=2)
     stiff = replace(heavy.beams[0], height=0.1, youngs_modulus=2.1e14)
     pressed = LoadSpec(beam="strip", force_per_length=(0.0, -20000.0))
@@ -127,9 +126,7 @@ def test_a_picture_has_weights_and_numbers_without_an_exponent() -> None:
     assert {"20000 N/m", f"weight {weight:.4g} N"} <= arrows
 
 
-def test_solve_writes_a_history_and_a_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert (
         main(["solve", "two-pins", *["--csv", "a.csv", "--plot", "a.svg", "--json", "a.json", "--times"]])
@@ -144,7 +141,7 @@ def test_solve_writes_a_history_and_a_picture(
     assert [stage.rpartition(" ")[0] for stage in stages] == ["read", "set up", "solve", "certify", "write"]
 
 
-def test_the_element_suits_and_is_named(capsys: Output) -> None:
+def test_the_element_suits_and_is_named(capsys):
     for options, setting, chosen in (
         ([], "exact 1, 14 unknowns", True),
         (["--elements", "4"], "mixed 4, 18 unknowns", True),
@@ -167,7 +164,7 @@ load = [{ beam = "a", end = "end", force = [0, -500] }]
 """
 
 
-def test_a_solution_that_stops_has_a_page(tmp_path: Path, capsys: Output) -> None:
+def test_a_solution_that_stops_has_a_page(tmp_path, capsys):
     (tmp_path / "arch.toml").write_text(ARCH)
     assert main(["solve", str(tmp_path / "arch.toml"), "--certify", "none"]) == 3
     out = capsys.readouterr().out

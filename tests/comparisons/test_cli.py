@@ -16,7 +16,6 @@ from comparisons.scene import built_in_scenes
 
 KS = built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 4")
 BIN = Path(sys.executable).parent
-Output = pytest.CaptureFixture[str]
 
 
 @pytest.fixture
@@ -35,7 +34,7 @@ def run(line: str) -> int:
         return int(exit_.code or 0)
 
 
-def test_scenes_and_version(capsys: Output) -> None:
+def test_scenes_and_version(capsys):
     assert run("scenes") == run("--version") == 0
     *listed, _, version = capsys.readouterr().out.split()
     assert listed == sorted(built_in_scenes())
@@ -43,7 +42,7 @@ def test_scenes_and_version(capsys: Output) -> None:
 
 
 @pytest.mark.parametrize("model", ["tsm --elements 7 --element timoshenko", "elastica"])
-def test_solve_prints_a_summary_and_writes_json_and_vtk(model: str, scene: Path, capsys: Output) -> None:
+def test_solve_prints_a_summary_and_writes_json_and_vtk(model, scene, capsys):
     assert run(f"solve my.toml --model {model} --json a.json --vtk vtk") == 0
     out, err = capsys.readouterr()
     assert "COMPLETED" in out
@@ -88,7 +87,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("line", BAD)
-def test_bad_input_is_status_2_with_one_reason_and_no_file(line: str, scene: Path, capsys: Output) -> None:
+def test_bad_input_is_status_2_with_one_reason_and_no_file(line, scene, capsys):
     assert run(line) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -97,7 +96,7 @@ def test_bad_input_is_status_2_with_one_reason_and_no_file(line: str, scene: Pat
     assert [path.name for path in scene.iterdir()] == ["my.toml"]
 
 
-def test_a_model_that_cannot_state_the_scene_says_why(scene: Path, capsys: Output) -> None:
+def test_a_model_that_cannot_state_the_scene_says_why(scene, capsys):
     text = KS.replace("width = 0.02", "area = 4e-4").replace("height = 0.02", "second_moment = 1.3333e-6")
     Path("my.toml").write_text(text)
     assert run("solve my.toml --model solid") == 2
@@ -108,9 +107,7 @@ def test_a_model_that_cannot_state_the_scene_says_why(scene: Path, capsys: Outpu
     assert run("solve my.toml --model tsm") == 0
 
 
-def test_a_mesh_file_without_its_library_is_refused_in_one_line(
-    scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_a_mesh_file_without_its_library_is_refused_in_one_line(scene, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "meshio", None)
     Path("strip.msh").touch()
     Path("my.toml").write_text(KS.replace("height = 0.02", 'height = 0.02\nsolid_mesh_file = "strip.msh"'))
@@ -118,7 +115,7 @@ def test_a_mesh_file_without_its_library_is_refused_in_one_line(
     assert capsys.readouterr().err == "crossval: solid: meshio is needed: install tsm-crossval[io]\n"
 
 
-def test_solve_to_an_accuracy(scene: Path, capsys: Output) -> None:
+def test_solve_to_an_accuracy(scene, capsys):
     assert run("solve my.toml --accuracy 1e-3 --explain") == 0
     out, err = capsys.readouterr()
     assert "tsm: exact elements, one a beam, 10 unknowns" in out
@@ -133,9 +130,7 @@ def test_solve_to_an_accuracy(scene: Path, capsys: Output) -> None:
     assert "ACCURACY_NOT_REACHED: estimated error" in capsys.readouterr().err
 
 
-def test_doctor_names_what_is_missing_and_the_extra_that_installs_it(
-    monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_doctor_names_what_is_missing_and_the_extra_that_installs_it(monkeypatch, capsys):
     version = metadata.version
 
     def only_numpy(name: str) -> str:
@@ -168,14 +163,14 @@ def test_doctor_names_what_is_missing_and_the_extra_that_installs_it(
 
 
 @pytest.mark.slow
-def test_doctor_finds_what_is_needed_and_where_tests_must_not_be_skipped_everything(capsys: Output) -> None:
+def test_doctor_finds_what_is_needed_and_where_tests_must_not_be_skipped_everything(capsys):
     assert run("doctor") == 0
     marks = {line.split()[0] for line in capsys.readouterr().out.splitlines()}
     assert marks <= ({"ok"} if os.environ.get("CI") == "true" else {"ok", "-"})
 
 
 @pytest.mark.slow
-def test_the_installed_command_runs_and_a_reader_that_stops_early_is_no_error() -> None:
+def test_the_installed_command_runs_and_a_reader_that_stops_early_is_no_error():
     command = "crossval solve ks-cantilever --model rod --json - | head -1"
     path = {"PATH": f"{BIN}:/usr/bin:/bin"}
     done = subprocess.run(

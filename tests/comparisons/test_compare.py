@@ -16,7 +16,6 @@ from comparisons.scene import Scene, load_scene, read_scene, to_toml
 from tests.comparisons.show.specimen import SPECIMEN
 
 KS = load_scene("ks-cantilever")
-Output = pytest.CaptureFixture[str]
 
 
 @pytest.fixture
@@ -30,7 +29,7 @@ def short(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.slow
-def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None:
+def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path):
     beam = replace(KS.beams[0], width=None, height=None, area=4e-4, second_moment=4e-6 / 3.0)
     lines: list[str] = []
     found = compare(replace(KS, beams=(beam,), load_parameters=2), tmp_path, lines.append)
@@ -46,7 +45,7 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_a_scene_with_every_special_key_is_compared(tmp_path: Path) -> None:
+def test_a_scene_with_every_special_key_is_compared(tmp_path):
     found = compare(read_scene(SPECIMEN, "specimen"), tmp_path, print)
     (rods,) = [row for row in found.rows if row.label == "TSM exact, 1 element"]
     assert rods.errors
@@ -54,9 +53,7 @@ def test_a_scene_with_every_special_key_is_compared(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_run_that_stops_is_named_and_the_rest_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_a_run_that_stops_is_named_and_the_rest_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     pin = replace(KS.pins[0], start=(0.9, 0.0), displacement=(0.0, 0.6))
     contact = replace(KS.contacts[0], keep=True)
@@ -77,9 +74,7 @@ def test_a_run_that_stops_is_named_and_the_rest_goes_on(
         (True, False, "OTHER_BRANCH: ends in another equilibrium than the exact rod"),
     ],
 )
-def test_models_on_different_branches_end_with_status_3(
-    other: bool, refereed: bool, told: str, short: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_models_on_different_branches_end_with_status_3(other, refereed, told, short, monkeypatch, capsys):
     """Beams bent to the other side under the same force, which the referee sees, and so does the comparison without it."""
 
     def answer(scene: Scene, model: str, *more: Any) -> Response:
@@ -98,9 +93,7 @@ def test_models_on_different_branches_end_with_status_3(
     assert said.startswith(named) if other else "BRANCH" not in said, said
 
 
-def test_an_event_that_the_reference_does_not_have_is_a_line(
-    short: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_event_that_the_reference_does_not_have_is_a_line(short, monkeypatch):
     """The first one of each completed run, and none where the events are the same."""
     scene = replace(load_scene("touch-again"), load_parameters=4)
     true = models.solve(scene, "tsm", Options(element="exact"))
@@ -114,7 +107,7 @@ def test_an_event_that_the_reference_does_not_have_is_a_line(
     ]
 
 
-def test_a_scene_without_exact_rods_is_refused_in_one_line(short: Path, capsys: Output) -> None:
+def test_a_scene_without_exact_rods_is_refused_in_one_line(short, capsys):
     """The errors of all models are measured against the exact rods, which follow the path of beams."""
     leaf = load_scene("tapered-spring")
     contacts = tuple(replace(one, surface="face", friction=0.2) for one in leaf.contacts)

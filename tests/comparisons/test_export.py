@@ -41,7 +41,7 @@ def written(
     return response, folder
 
 
-def test_every_block_reads_back_in_meshio_and_pyvista(written: tuple[Response, Path]) -> None:
+def test_every_block_reads_back_in_meshio_and_pyvista(written):
     response, folder = written
     found = blocks(response, RUBBED, 0)
     assert list(found) == ["cantilever", CONTACTS, SUPPORTS]
@@ -74,7 +74,7 @@ def test_every_block_reads_back_in_meshio_and_pyvista(written: tuple[Response, P
         assert view.compute_cell_sizes()["Area"] == pytest.approx(np.full(24, 0.02 / 24), rel=1e-12)
 
 
-def test_springs_and_hinges_are_points_with_their_forces(tmp_path: Path) -> None:
+def test_springs_and_hinges_are_points_with_their_forces(tmp_path):
     scene = read_scene(SPECIMEN, "specimen")
     response = solve(scene, "tsm")
     found = pyvista.read(write_series(tmp_path, response, scene)[-1])
@@ -94,7 +94,7 @@ def test_springs_and_hinges_are_points_with_their_forces(tmp_path: Path) -> None
     assert np.hypot(*(found["hook"].points[:, :2] - centre).T) == pytest.approx(radius, rel=1e-9)
 
 
-def test_a_load_parameter_has_named_blocks_with_units_and_components(tmp_path: Path) -> None:
+def test_a_load_parameter_has_named_blocks_with_units_and_components(tmp_path):
     """One block for each beam, with its own points; VTK reads units from every array and from the whole."""
     frame = load_scene("portal-frame")
     frame = replace(frame, load_parameters=1, loads=(replace(frame.loads[0], force=(40.0, 0.0)),))
@@ -118,7 +118,7 @@ def test_a_load_parameter_has_named_blocks_with_units_and_components(tmp_path: P
     assert found["left"].point_data["von_mises"] == pytest.approx(von_mises, rel=1e-12)
 
 
-def test_forces_between_beams_balance_the_supports() -> None:
+def test_forces_between_beams_balance_the_supports():
     """Beams that touch: what acts on the lower beam is what its clamp carries, at the tip of the upper beam too."""
     scene = replace(load_scene("double-beam-friction"), load_parameters=4)
     found = blocks(solve(scene, "tsm"), scene, 3)
@@ -146,7 +146,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != ".crossval"}
 
 
-def test_a_series_removes_what_it_wrote_before_and_nothing_else(tmp_path: Path) -> None:
+def test_a_series_removes_what_it_wrote_before_and_nothing_else(tmp_path):
     beams, longer = solve(SCENE, "tsm"), replace(SCENE, load_parameters=4)
     write_series(tmp_path, solve(longer, "tsm"), longer)
     mine = ("pin-head.vtu", "tsm-mine.vtu", "pin-0001.vtu", "tsm-0009.vtm", "tsm-0009-0.vtu")
@@ -160,7 +160,7 @@ def test_a_series_removes_what_it_wrote_before_and_nothing_else(tmp_path: Path) 
     assert pyvista.get_reader(tmp_path / "tsm.pvd").time_values == sorted(SCENE.times)
 
 
-def test_a_file_in_the_way_ends_the_run_before_anything_is_written(tmp_path: Path) -> None:
+def test_a_file_in_the_way_ends_the_run_before_anything_is_written(tmp_path):
     """A file of somebody else's, or one that crossval wrote and that was changed since."""
     beams = solve(SCENE, "tsm")
     for name in ("tsm-0002.vtm", "tsm-0003-1.vtu", "tsm.pvd"):
@@ -179,9 +179,7 @@ def test_a_file_in_the_way_ends_the_run_before_anything_is_written(tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_a_run_goes_on_where_another_was_ended_among_its_files(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_goes_on_where_another_was_ended_among_its_files(tmp_path, monkeypatch):
     """After every number of moves."""
     beams, longer = solve(SCENE, "tsm"), replace(SCENE, load_parameters=4)
     more = solve(longer, "tsm")

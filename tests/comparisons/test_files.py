@@ -13,8 +13,6 @@ from comparisons import files  # faults of a disk are made here
 from comparisons.cli import main
 from comparisons.scene import load_scene, to_toml
 
-Output = pytest.CaptureFixture[str]
-
 
 @pytest.mark.parametrize(
     ("fault", "told"),
@@ -26,9 +24,7 @@ Output = pytest.CaptureFixture[str]
         ),
     ],
 )
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(
-    fault: Exception, told: str, tmp_path: Path
-) -> None:
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(fault, told, tmp_path):
     path = tmp_path / "a.txt"
 
     def fail() -> None:
@@ -49,7 +45,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     assert path.read_text() == "new"
 
 
-def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path: Path) -> None:
+def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path):
     (tmp_path / "file").write_text("")
     os.mkfifo(tmp_path / "pipe")
     for name in ("file", "file/below", "nul\0l"):
@@ -66,7 +62,7 @@ def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path
     assert target.read_text() == "new"
 
 
-def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
+def test_sets_of_files_are_written_one_after_the_other(tmp_path):
     order: list[str] = []
 
     def write() -> None:
@@ -114,7 +110,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.mark.parametrize("line", INTO_A_FILE.splitlines())
-def test_no_file_of_a_user_is_replaced(line: str, scene: str, capsys: Output) -> None:
+def test_no_file_of_a_user_is_replaced(line, scene, capsys):
     """The scene itself among them; and the same command replaces what it wrote, until that is edited."""
 
     def ended(file: str) -> int:
@@ -138,7 +134,7 @@ def test_no_file_of_a_user_is_replaced(line: str, scene: str, capsys: Output) ->
 
 @pytest.mark.usefixtures("scene")
 @pytest.mark.parametrize("line", INTO_A_FOLDER)
-def test_a_folder_of_a_user_is_left_alone(line: str, capsys: Output) -> None:
+def test_a_folder_of_a_user_is_left_alone(line, capsys):
     """Before anything is computed, but for a few files whose names are not known by then."""
     for number, name in enumerate(INTO_A_FOLDER[line]):
         mine = Path(str(number), name)
@@ -151,7 +147,7 @@ def test_a_folder_of_a_user_is_left_alone(line: str, capsys: Output) -> None:
 
 
 @pytest.mark.usefixtures("scene")
-def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys: Output) -> None:
+def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys):
     assert main(["solve", "s.toml", "--json", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
     judged = (
         "certify a.json --scene s.toml --json ./a.json",

@@ -4,7 +4,6 @@ import io
 import re
 import subprocess
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -37,7 +36,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("model", "options"), [("tsm", Options(elements=10)), ("solid", Options(mesh=(16, 1)))]
 )
-def test_every_load_parameter_is_told_with_its_contacts(model: str, options: Options) -> None:
+def test_every_load_parameter_is_told_with_its_contacts(model, options):
     reported: list[Reached] = []
     response = solve(SCENE, model, options, reported.append)
     times = [reached.load_parameter for reached in reported]
@@ -49,7 +48,7 @@ def test_every_load_parameter_is_told_with_its_contacts(model: str, options: Opt
     assert re.fullmatch(f"pin->cantilever {place}", reported[-1].contacts[0])
 
 
-def test_a_bar_on_a_terminal_fits_into_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bar_on_a_terminal_fits_into_it(monkeypatch):
     whole = f"solid [{15 * '#'}{15 * '.'}] t = 0.5000, 7 iterations, pin->beam on element 3 of 10"
     for columns, first in ((200, whole), (40, whole[:39])):
         monkeypatch.setenv("COLUMNS", str(columns))
@@ -62,9 +61,7 @@ def test_a_bar_on_a_terminal_fits_into_it(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.parametrize("patience", [0.0, 1e9])
-def test_a_stage_is_a_line_and_a_bar_once_it_takes_long(
-    patience: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stage_is_a_line_and_a_bar_once_it_takes_long(patience, monkeypatch):
     monkeypatch.setattr(shown, "PATIENCE", patience)
     stream = Terminal()
     with shown.staging("drawing 4 pictures", stream=stream) as count:
@@ -75,7 +72,7 @@ def test_a_stage_is_a_line_and_a_bar_once_it_takes_long(
 
 
 @pytest.mark.parametrize("quiet", [False, True])
-def test_without_a_terminal_there_are_lines_and_where_it_is_quiet_nothing(quiet: bool) -> None:
+def test_without_a_terminal_there_are_lines_and_where_it_is_quiet_nothing(quiet):
     stream = Terminal() if quiet else io.StringIO()
     with shown.watching("solid", quiet=quiet, stream=stream) as watch:
         watch(Reached(0.5, 7, ()))
@@ -97,7 +94,7 @@ COMPLETED = {
 }
 
 
-def test_shells_complete(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_shells_complete(tmp_path, capsys):
     for shell in ("tcsh", "zsh", "bash"):
         assert main(["completion", shell]) == 0
         script = capsys.readouterr().out

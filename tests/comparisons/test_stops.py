@@ -39,9 +39,7 @@ STOPS = {
 @pytest.mark.parametrize(
     ("case", "model"), [(case, model) for case, row in STOPS.items() for model in row[2]]
 )
-def test_a_stop_has_its_name_and_status_3(
-    case: str, model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_stop_has_its_name_and_status_3(case, model, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     name, contacts, _, reached = STOPS[case]
     Path("a.toml").write_text(BEAM + contacts)

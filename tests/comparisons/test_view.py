@@ -26,7 +26,6 @@ from tests.comparisons.show.specimen import SPECIMEN
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=3)
 BENT = 0.01 / (0.02**4 / 12)
 """Stress on a face over the bending moment."""
-Output = pytest.CaptureFixture[str]
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +43,7 @@ def area(one: Panel) -> float:
     return float(areas.sum())
 
 
-def test_beams_and_solid_show_the_same_bodies_and_stress(responses: list[Response]) -> None:
+def test_beams_and_solid_show_the_same_bodies_and_stress(responses):
     beams, solid = responses
     mises = [beam_panel(beams, SCENE, [0, 2], "beams"), solid_panel(solid, SCENE, [0, 2], "solid")]
     # the strains reach 3 %: Cauchy stress and the solid's material law differ by a few percent from the section forces
@@ -70,7 +69,7 @@ def test_beams_and_solid_show_the_same_bodies_and_stress(responses: list[Respons
     assert bending[0] == pytest.approx(bending[1], rel=0.02)
 
 
-def test_the_stress_of_beams_is_that_of_bending_across_their_height(responses: list[Response]) -> None:
+def test_the_stress_of_beams_is_that_of_bending_across_their_height(responses):
     beams = responses[0]
     N, M = (beams.grid(2).point_data[name][0] for name in ("N", "M"))
     mises, axial = beam_panel(beams, SCENE, [2], ""), panel(blocks(beams, SCENE, 2), "")
@@ -82,7 +81,7 @@ def test_the_stress_of_beams_is_that_of_bending_across_their_height(responses: l
     assert axial.stress[0] - axial.stress[4] == pytest.approx(2 * moment * BENT, rel=1e-9)
 
 
-def test_a_round_pin_touches_the_face_with_its_true_radius() -> None:
+def test_a_round_pin_touches_the_face_with_its_true_radius():
     """In the picture of both models, as far as the solid's penalty lets it through."""
     pin = replace(SCENE.pins[0], start=(0.6, -0.06), displacement=(0.0, 0.1), radius=0.05)
     scene = replace(SCENE, pins=(pin,), contacts=(replace(SCENE.contacts[0], surface="face"),))
@@ -95,7 +94,7 @@ def test_a_round_pin_touches_the_face_with_its_true_radius() -> None:
         assert scale.centre[1] - scale.extent[1] <= one.pins[0, 1] - 0.05
 
 
-def test_supports_forces_states_and_the_heights_of_curved_beams_are_drawn() -> None:
+def test_supports_forces_states_and_the_heights_of_curved_beams_are_drawn():
     scene = replace(load_scene("double-beam-friction"), load_parameters=4)
     response = solve(scene, "tsm")
     found = panel(blocks(response, scene, 3), "t")
@@ -120,9 +119,7 @@ def coloured(path: Path) -> float:
 
 
 @pytest.mark.slow
-def test_pictures_and_motions_are_rendered(
-    responses: list[Response], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_pictures_and_motions_are_rendered(responses, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     both, (beams, solid) = Path("both.png"), responses
     render_panels([beam_panel(beams, SCENE, [2], "a"), solid_panel(solid, SCENE, [2], "b")], "stress", both)
@@ -144,9 +141,7 @@ def test_pictures_and_motions_are_rendered(
     assert said.err.startswith("solving: TSM\nsolving: solid\ndrawing ")
 
 
-def test_files_give_the_same_motion_and_matplotlib_stands_in(
-    responses: list[Response], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
-) -> None:
+def test_files_give_the_same_motion_and_matplotlib_stands_in(responses, tmp_path, monkeypatch, capsys):
     for response in responses:
         (tmp_path / response.model).mkdir()
         write_series(tmp_path / response.model, response, SCENE)
@@ -179,9 +174,7 @@ BROKEN = [("tsm.pvd", "<VTKFile>"), ("tsm-0002.vtm", "<VTKFile><DataSet name='a'
 
 
 @pytest.mark.parametrize(("name", "text"), BROKEN)
-def test_a_broken_folder_is_one_line(
-    name: str, text: str | None, responses: list[Response], tmp_path: Path, capsys: Output
-) -> None:
+def test_a_broken_folder_is_one_line(name, text, responses, tmp_path, capsys):
     folder, out = tmp_path / "folder", tmp_path / "out"
     folder.mkdir()
     if text != "":

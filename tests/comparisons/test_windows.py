@@ -38,7 +38,7 @@ def crossval(folder: Path, *arguments: str) -> str:
     return found.stdout
 
 
-def test_commands_without_unix(tmp_path: Path) -> None:
+def test_commands_without_unix(tmp_path):
     """A set of files, whose folder is locked, and a scene from a file, which is read without waiting for a pipe."""
     text = built_in_scenes()["ks-cantilever"]
     (tmp_path / "a.toml").write_text(text.replace("load_parameters = 50", "load_parameters = 2"))
@@ -49,7 +49,7 @@ def test_commands_without_unix(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_study_without_unix(tmp_path: Path) -> None:
+def test_a_study_without_unix(tmp_path):
     (tmp_path / "s.toml").write_text(STUDY)
     crossval(tmp_path, "study", "s.toml", "--results", "s.sqlite", "--workers", "1")
     rows = csv.DictReader(crossval(tmp_path, "results", "s.sqlite", "--csv").splitlines())
@@ -60,7 +60,7 @@ UNIX = r"os\.(fork|forkpty|kill|killpg|getuid|geteuid|getpgid|setsid|wait\w*|cho
 IMPORTED = r"^(import|from) (fcntl|grp|pty|pwd|resource|syslog|termios|tty)\b"
 
 
-def test_no_module_takes_what_only_unix_has() -> None:
+def test_no_module_takes_what_only_unix_has():
     """Where a line needs it, `getattr` or `hasattr` asks first."""
     root = Path(__file__).parents[2]
     files = [

@@ -38,7 +38,7 @@ def loaded_from_elsewhere(html: str) -> list[str]:
     ]
 
 
-def test_an_address_elsewhere_is_found() -> None:
+def test_an_address_elsewhere_is_found():
     for html in (
         '<script src="https://cdn.example/x.js"></script>', '<link rel="stylesheet" href="//fonts.example/f.css">',
         "<style>@import 'https://fonts.example/f.css';</style>",
@@ -65,7 +65,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 @pytest.mark.long
-def test_the_site_is_built_strictly_and_is_whole(site: Path) -> None:
+def test_the_site_is_built_strictly_and_is_whole(site):
     pages = {str(page.relative_to(site)): page.read_text(encoding="utf-8") for page in site.rglob("*.html")}
     assert len(pages) > 25
     styles = {page.name: page.read_text(encoding="utf-8") for page in site.rglob("*.css")}

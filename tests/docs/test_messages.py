@@ -10,7 +10,7 @@ import pytest
 from comparisons import scene as reader
 from comparisons.cli import main
 from comparisons.scene import FieldError, InputError, Scene, load_scene
-from docs.extensions.messages import FILE, SCENES, Message, messages
+from docs.extensions.messages import FILE, SCENES, messages
 
 SOURCES = [path.read_text(encoding="utf-8") for path in sorted(Path(reader.__file__).parent.glob("*.py"))]
 LISTED = messages()
@@ -83,7 +83,7 @@ def _template(value: ast.expr) -> str:
     return "{}"
 
 
-def test_every_sentence_is_listed_once_and_none_is_stale() -> None:
+def test_every_sentence_is_listed_once_and_none_is_stale():
     found = {words for source in SOURCES for words in sentences(source)}
     listed = Counter(message.sentence for message in LISTED)
     assert found
@@ -95,7 +95,7 @@ def test_every_sentence_is_listed_once_and_none_is_stale() -> None:
     assert {node.name for node in classes if node.name.endswith("Error")} == ERRORS - {"kind"} | GROUPS
 
 
-def test_sentences_are_found_in_every_form() -> None:
+def test_sentences_are_found_in_every_form():
     source = (
         "def f(a, rule):\n"
         "    if a:\n        raise RuleError('plain')\n"
@@ -110,9 +110,7 @@ def test_sentences_are_found_in_every_form() -> None:
 
 
 @pytest.mark.parametrize("message", LISTED, ids=lambda message: message.sentence)
-def test_every_message_is_provoked(
-    message: Message, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_message_is_provoked(message, tmp_path, monkeypatch, capsys):
     """By a change of a scene that is good without it."""
     monkeypatch.chdir(tmp_path)
     assert message.cure.endswith(".")

@@ -37,14 +37,12 @@ SECONDS = {
         *(pytest.param(page, True, marks=pytest.mark.slow) for page in RUN if page in SECONDS | LONG),
     ],
 )
-def test_snippets_run_and_print_what_the_page_says(
-    page: str, slow: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_snippets_run_and_print_what_the_page_says(page, slow, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     run_page(RUN[page], tmp_path, slow=slow)
 
 
-def test_the_pages_are_found() -> None:
+def test_the_pages_are_found():
     assert {"docs/tutorial.md", f"{HOW_TO}study.md"} <= LONG
     assert RUN.keys() >= SECONDS
     # yaml is for a CI system, py and bash are for programs of others
@@ -59,7 +57,7 @@ def test_the_pages_are_found() -> None:
         "python\nprint(1 + 1)\n```\n\n```text\n3",
     ],
 )  # fmt: skip
-def test_a_snippet_that_fails_or_prints_something_else_is_found(block: str, tmp_path: Path) -> None:
+def test_a_snippet_that_fails_or_prints_something_else_is_found(block, tmp_path):
     with pytest.raises(AssertionError):
         run_page(f"```{block}\n```\n", tmp_path, slow=False)
     run_page("```python\nprint(1 + 1)\n```\n\n```text\n2\n```\n", tmp_path, slow=False)
@@ -102,9 +100,7 @@ MORE = tuple(
     "line",
     [pytest.param(line, marks=pytest.mark.slow if line.startswith((*SLOW, *MORE)) else ()) for line in LINES],
 )
-def test_commands_run_and_print_what_they_are_for(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_commands_run_and_print_what_they_are_for(line, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     command = line.split()[1]
     if command in ELSEWHERE:
@@ -121,12 +117,12 @@ def test_commands_run_and_print_what_they_are_for(
         assert Path(written).is_file() or any(Path(written).iterdir())
 
 
-def test_every_command_is_shown() -> None:
+def test_every_command_is_shown():
     assert {line.split()[1] for line in LINES} == SAID.keys() | ELSEWHERE
     assert len(LINES) >= 22
 
 
-def test_make_targets_links_and_pictures_are_there() -> None:
+def test_make_targets_links_and_pictures_are_there():
     named = {
         target
         for text in TEXTS.values()
@@ -147,7 +143,7 @@ def test_make_targets_links_and_pictures_are_there() -> None:
     assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 1.2e6
 
 
-def test_every_table_of_results_names_what_measures_it() -> None:
+def test_every_table_of_results_names_what_measures_it():
     """Near every table of numbers stands a command or a test."""
     sections = [
         part for page, text in TEXTS.items() if "/results/" in page for part in re.split(r"(?m)^## ", text)
@@ -157,14 +153,14 @@ def test_every_table_of_results_names_what_measures_it() -> None:
 
 
 @pytest.mark.parametrize("command", [line for line in COMMANDS if line.startswith(("check", "solve"))])
-def test_the_tutorial_shows_what_its_commands_draw(command: str, tmp_path: Path) -> None:
+def test_the_tutorial_shows_what_its_commands_draw(command, tmp_path):
     (path,) = draw({command: COMMANDS[command]}, tmp_path)
     drawn, kept = (imread(folder / path.name)[..., :3] for folder in (tmp_path, FOLDER))
     assert drawn.shape == kept.shape
     assert np.abs(drawn - kept).mean() < 0.01
 
 
-def test_the_readme_is_short_and_names_what_continuous_integration_runs() -> None:
+def test_the_readme_is_short_and_names_what_continuous_integration_runs():
     lines = README.splitlines()
     assert len(lines) <= 120
     assert len(README.split()) <= 900
@@ -180,9 +176,7 @@ def test_the_readme_is_short_and_names_what_continuous_integration_runs() -> Non
     assert all(re.search(r"\(\[\w+\]\(docs/[\w/-]+\.md\)\)\.$", sentence) for sentence in trust)
 
 
-def test_the_first_scene_of_the_readme_prints_what_it_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_scene_of_the_readme_prints_what_it_says(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     section = README.partition("## A first scene\n")[2].partition("\n## ")[0]
     assert [kind for kind, _ in blocks(section)] == ["toml", "sh", "text"]

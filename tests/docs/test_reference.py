@@ -35,7 +35,7 @@ def tables() -> dict[str, dict[str, dict]]:
     }
 
 
-def test_every_key_of_a_scene_is_listed_with_a_meaning(tables: dict[str, dict[str, dict]]) -> None:
+def test_every_key_of_a_scene_is_listed_with_a_meaning(tables):
     sections = dict(part.partition("`\n")[::2] for part in scene_file.page().split("## `")[1:])
     rows = {
         header: re.findall(r"^\| `(\w+)` .*\| (.*?) *\|$", text, re.MULTILINE)
@@ -47,7 +47,7 @@ def test_every_key_of_a_scene_is_listed_with_a_meaning(tables: dict[str, dict[st
     assert all(meaning for listed in rows.values() for _, meaning in listed), "a key without a meaning"
 
 
-def test_every_key_answers_a_question_that_a_scene_asks(tables: dict[str, dict[str, dict]]) -> None:
+def test_every_key_answers_a_question_that_a_scene_asks(tables):
     named = set(re.findall(r"`(?:\[\[)?(\w+)", scope.page().partition("## What is not modelled")[0]))
     keys = {key for own in tables.values() for key in own} | {header.strip("[]") for header in tables}
     assert keys - NUMERICS - {"scene"} <= named
@@ -73,7 +73,7 @@ IN_CODE = (
 """How a status stands in a module, besides as a member of a class of statuses."""
 
 
-def test_every_status_in_the_code_is_on_the_page() -> None:
+def test_every_status_in_the_code_is_on_the_page():
     page = statuses.page()
     files = [
         file for package in ("comparisons", "tsm", "fem_reference") for file in (ROOT / package).rglob("*.py")
@@ -107,9 +107,7 @@ def check_schema(schema: dict, data: dict) -> None:
         pytest.param("ks-face", "--model solid", marks=pytest.mark.slow),
     ],
 )
-def test_json_output_obeys_its_schema(
-    scene: str, options: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
     """On the faces with friction, which slips both ways."""
     monkeypatch.chdir(tmp_path)
     asked = load_scene(scene)
@@ -131,7 +129,7 @@ def test_json_output_obeys_its_schema(
 
 
 @pytest.mark.parametrize("scene", [*built_in_scenes(), *map(str, sorted(FINDINGS.glob("*.toml")))])
-def test_a_resolved_scene_obeys_its_schema(scene: str) -> None:
+def test_a_resolved_scene_obeys_its_schema(scene):
     found = load_scene(scene)
     if unstated(found, "the resolved scene") is not None:
         with pytest.raises(ModelError, match="the resolved scene does not state"):
@@ -142,7 +140,7 @@ def test_a_resolved_scene_obeys_its_schema(scene: str) -> None:
     assert [beam["elements"] for beam in data["beams"]] == [7] * len(found.beams)
 
 
-def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path: Path) -> None:
+def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path):
     write_pages(tmp_path)
     times = {name: (tmp_path / name).stat().st_mtime_ns for name in PAGES}
     (tmp_path / "messages.md").write_text("stale")

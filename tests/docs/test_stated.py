@@ -4,7 +4,6 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -79,19 +78,19 @@ def unmeasured(text: str) -> list[str]:
     return sorted(set(MARK.findall(text)) - known)
 
 
-def test_every_mark_has_a_test() -> None:
+def test_every_mark_has_a_test():
     text = "".join(page.read_text() for page in pages())
     assert len(MARK.findall(text)) > 150
     assert unmeasured(text) == []
 
 
-def test_an_invented_mark_is_told() -> None:
+def test_an_invented_mark_is_told():
     invented = ["bench.invented", "errors.invented", "invented", "ks.mixed-7", "solid.thin-1"]
     assert unmeasured("".join(f"<!--{name}-->1 " for name in invented)) == invented
     assert unmeasured("<!--invented x2-->1 2") == ["invented"]
 
 
-def test_a_number_is_held_to_its_last_digit_and_a_bound_from_both_sides() -> None:
+def test_a_number_is_held_to_its_last_digit_and_a_bound_from_both_sides():
     one, bound = (
         Stated("1.30e-2", percent=False, start=0, end=7),
         Stated("1e-12", percent=False, start=0, end=5),
@@ -112,7 +111,7 @@ def test_a_number_is_held_to_its_last_digit_and_a_bound_from_both_sides() -> Non
     ]
 
 
-def test_no_mark_begins_a_line() -> None:
+def test_no_mark_begins_a_line():
     """There a comment would end the paragraph and take its line out of Markdown."""
     assert [page.name for page in pages() if re.search(r"^\s*<!--", page.read_text(), re.MULTILINE)] == []
 
@@ -161,11 +160,11 @@ def without_mark(text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("page", RESULTS, ids=lambda page: page.stem)
-def test_every_number_has_a_mark(page: Path) -> None:
+def test_every_number_has_a_mark(page):
     assert list(without_mark(page.read_text())) == []
 
 
-def test_a_number_without_mark_is_found() -> None:
+def test_a_number_without_mark_is_found():
     head = "| case 1 | measured | allowed |\n|---|---|---|\n"
     assert list(without_mark(f"{head}| a 1 | <!--b-->1 | 3 |\n| c | all | 3 |\n")) == []
     assert list(without_mark(f"{head}| a | <!--b x2-->1 / 2 | 3 |\n")) == []

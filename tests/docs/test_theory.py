@@ -30,7 +30,7 @@ def proofs(page: str) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("page", THEORY)
-def test_every_equation_names_its_proof_and_becomes_mathml(page: str) -> None:
+def test_every_equation_names_its_proof_and_becomes_mathml(page):
     equations = EQUATION.findall(THEORY[page])
     assert (
         len(proofs(THEORY[page])) == len(re.findall(r"(?m)^```\{math\}", THEORY[page])) == len(equations) > 0
@@ -41,14 +41,14 @@ def test_every_equation_names_its_proof_and_becomes_mathml(page: str) -> None:
         assert "\\" not in re.sub(r"<annotation.*?</annotation>", "", made), formula
 
 
-def test_an_equation_without_proof_is_found() -> None:
+def test_an_equation_without_proof_is_found():
     equation = "```{math}\n:label: a\nx = 1\n```\n"
     assert proofs(f"# Title\n{equation}{{test}}`t`") == {"a": ["t"]}
     with pytest.raises(AssertionError, match="a"):
         proofs(f"# Title\n{equation}\n# Next\n{{test}}`t`")
 
 
-def test_every_test_named_exists() -> None:
+def test_every_test_named_exists():
     named = {test for text in PAGES.values() for test in TEST.findall(text)}
     assert len(named) > 80
     assert sorted(test for test in named if not exists(test)) == []

@@ -75,7 +75,7 @@ STOPPED = {"completed": False, "status": "CUTBACK_FLOOR", "message": "no step", 
 LEFT_OUT = {"elastica": "two pins", "mine": "two pins", "solid Q2": "no height", BUDGET: "no solid"}
 
 
-def test_every_sentence_is_said_of_its_data_and_of_no_other(rows: list[Row]) -> None:
+def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
     plain = told(rows)
     assert re.search(
         r"TSM timoshenko is off by .*; the error falls with the power (2\.0|1\.9) of the length of the elements\.",

@@ -50,7 +50,7 @@ def discs(fig: Any) -> list[Any]:
     return [patch for patch in fig.axes[0].patches if hasattr(patch, "radius")]
 
 
-def test_the_legend_names_what_is_drawn_and_nothing_else(drawn: Draw) -> None:
+def test_the_legend_names_what_is_drawn_and_nothing_else(drawn):
     assert legend(drawn(KS)) == [
         "beam, height to scale", "side of contact: face of the beam", "clamped", "pin, a point", "path of a pin",
     ]  # fmt: skip
@@ -61,7 +61,7 @@ def test_the_legend_names_what_is_drawn_and_nothing_else(drawn: Draw) -> None:
     assert "54 cm" in words(frame)
 
 
-def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn: Draw) -> None:
+def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn):
     tip = LoadSpec(beam="cantilever", end="end", force=(3.0, -4.0), moment=-1.5)
     rubbed = replace(KS.contacts[0], friction=0.2)
     fig = drawn(replace(KS, pins=(DRUM,), contacts=(rubbed,), loads=(tip,)))
@@ -74,7 +74,7 @@ def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn:
     assert [*start.center, *end.center] == pytest.approx([0.5, -0.06, 0.5, 0.14])
 
 
-def test_curved_and_tapered_beams_springs_hinges_stages_and_loads_along_a_beam(drawn: Draw) -> None:
+def test_curved_and_tapered_beams_springs_hinges_stages_and_loads_along_a_beam(drawn):
     scene = read_scene(SPECIMEN, "specimen")
     fig = drawn(scene)
     assert {
@@ -109,7 +109,7 @@ load = [
 
 
 @pytest.mark.parametrize("name", ["frame", "sleeve", "heavy-strip", "double-beam-friction", "lees-frame"])
-def test_labels_lie_apart_and_nothing_is_cut_off(name: str, drawn: Draw) -> None:
+def test_labels_lie_apart_and_nothing_is_cut_off(name, drawn):
     fig = drawn(read_scene(FRAME, name) if name == "frame" else load_scene(name))
     (axes,) = fig.axes
     labels = [text for text in axes.texts if text.get_text()]
@@ -125,7 +125,7 @@ def test_labels_lie_apart_and_nothing_is_cut_off(name: str, drawn: Draw) -> None
         assert pulling.xy[1] > 3.0  # beyond the end, and not inside the column
 
 
-def test_the_ground_of_a_clamp_is_on_the_side_away_from_the_beam(drawn: Draw) -> None:
+def test_the_ground_of_a_clamp_is_on_the_side_away_from_the_beam(drawn):
     for angle in (1.0, 3.0):
         away = np.array([np.cos(angle), np.sin(angle)])
         beam = replace(KS.beams[0], start=(0.0, 0.0), end=tuple(away))

@@ -11,7 +11,7 @@ from matplotlib.image import imread
 from comparisons.models import solve
 from comparisons.scene import SupportSpec, read_scene
 from comparisons.show.pages import Section, motion_section, page, tracks
-from tests.comparisons.show.pages.conftest import KS, Browser, Compared
+from tests.comparisons.show.pages.conftest import KS, Browser
 from tests.comparisons.show.specimen import SPECIMEN
 
 pytestmark = pytest.mark.slow
@@ -43,7 +43,7 @@ def written(folder: Path, *sections: Section) -> Path:
     return folder
 
 
-def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Compared) -> None:
+def test_the_slider_moves_shapes_marks_and_values(browser, compared):
     script = "told.end = state(); slide(3); told.fourth = state(); slide(4); told.again = state();"
     found = told(browser, compared.folder, script)
     end, fourth = found["end"], found["fourth"]
@@ -61,7 +61,7 @@ def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Co
         assert [float(force), float(arc), float(moment)] == pytest.approx(stated, rel=6e-5)
 
 
-def test_switches_keys_pointer_and_play_act_and_have_names(browser: Browser, compared: Compared) -> None:
+def test_switches_keys_pointer_and_play_act_and_have_names(browser, compared):
     script = """
     const box = one('[data-switch="1"]'), chart = one(".chart"), value = () => Number(one("input[type=range]").value);
     told.seen = [seen()]; box.click(); told.seen.push(seen()); slide(2); told.seen.push(seen()); box.click(); told.seen.push(seen()); slide(4);
@@ -99,9 +99,7 @@ def test_switches_keys_pointer_and_play_act_and_have_names(browser: Browser, com
     assert found["focus"] == ["range", "load parameter 1"]
 
 
-def test_a_phone_needs_no_sideways_scrolling_and_letters_are_legible(
-    browser: Browser, compared: Compared
-) -> None:
+def test_a_phone_needs_no_sideways_scrolling_and_letters_are_legible(browser, compared):
     script = """
     told.widths = [innerWidth, document.documentElement.scrollWidth, one(".shapes").clientWidth];
     told.letters = least("svg text"); told.reach = least(".switch, .play");
@@ -115,7 +113,7 @@ def test_a_phone_needs_no_sideways_scrolling_and_letters_are_legible(
     assert screen["picture"] > 1.0, "pictures are drawn with letters of 10 points"
 
 
-def test_light_dark_and_paper(browser: Browser, compared: Compared, tmp_path: Path) -> None:
+def test_light_dark_and_paper(browser, compared, tmp_path):
     def printed(name: str, *flags: str) -> Path:
         browser.run(compared.folder / "report.html", f"--{Path(name).stem}={tmp_path / name}", *flags)
         return tmp_path / name
@@ -133,7 +131,7 @@ def test_light_dark_and_paper(browser: Browser, compared: Compared, tmp_path: Pa
     assert 3 <= paper.count(b"/Type /Page\n") <= 12
 
 
-def test_a_section_may_bring_a_script_and_data_of_its_own(browser: Browser, tmp_path: Path) -> None:
+def test_a_section_may_bring_a_script_and_data_of_its_own(browser, tmp_path):
     own = 'const own = document.querySelector("#{0} p"); own.textContent = DATA["{0}"].sum.join("+");'
     sections = [
         Section(title=title, html="<p>-</p>", data={"sum": [number, 1]}, script=own.format(title))
@@ -145,7 +143,7 @@ def test_a_section_may_bring_a_script_and_data_of_its_own(browser: Browser, tmp_
     assert found["texts"] == ["2+1", "3+1"]
 
 
-def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path) -> None:
+def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
     scene = read_scene(SPECIMEN, "specimen")
     scene = replace(scene, beams=(replace(scene.beams[0], clamped=()), *scene.beams[1:]), supports=(MOVED,))
@@ -164,7 +162,7 @@ def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path)
     assert disc != found["second"][0]
 
 
-def test_a_run_that_stopped_leaves_no_error(browser: Browser, tmp_path: Path) -> None:
+def test_a_run_that_stopped_leaves_no_error(browser, tmp_path):
     rod, beams = solve(KS, "rod"), solve(KS, "tsm")
     mixed, exact = (replace(beams, load_parameter=beams.load_parameter[:k]) for k in (2, 0))
     responses = {"TSM mixed": mixed, "TSM exact": exact, "exact rod": rod}

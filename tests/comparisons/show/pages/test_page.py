@@ -17,7 +17,7 @@ from comparisons.models import MODELS, TSM, solve
 from comparisons.response import SLIPS
 from comparisons.scene import load_scene, read_scene
 from comparisons.show.pages import Section, motion_section, page, states_section, table, tracks
-from tests.comparisons.show.pages.conftest import KS, Compared
+from tests.comparisons.show.pages.conftest import KS
 from tests.comparisons.show.pages.markup import block, check_alone
 
 FILES = {
@@ -33,7 +33,7 @@ def summarised(folder: Path) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]
     return summary, {run["label"]: run for run in summary["runs"]}
 
 
-def test_a_comparison_writes_every_file_and_names_it(compared: Compared) -> None:
+def test_a_comparison_writes_every_file_and_names_it(compared):
     folder = compared.folder
     there = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     blocks = {name for name in there if name.endswith((".vtu", ".vtm"))}
@@ -51,7 +51,7 @@ def test_a_comparison_writes_every_file_and_names_it(compared: Compared) -> None
     )
 
 
-def test_summary_table_and_page_have_the_same_numbers(compared: Compared) -> None:
+def test_summary_table_and_page_have_the_same_numbers(compared):
     folder = compared.folder
     summary, runs = summarised(folder)
     assert set(summary["files"]) == FILES
@@ -82,7 +82,7 @@ def test_summary_table_and_page_have_the_same_numbers(compared: Compared) -> Non
     assert len({run["dash"] for run in data["runs"]}) == len(runs) - 1, "the solid is the wide one"
 
 
-def test_a_page_is_alone_and_begins_with_the_findings(compared: Compared) -> None:
+def test_a_page_is_alone_and_begins_with_the_findings(compared):
     html, (_, runs) = (compared.folder / "report.html").read_text(), summarised(compared.folder)
     check_alone(html, compared.folder)
     titles = [
@@ -111,7 +111,7 @@ def test_a_page_is_alone_and_begins_with_the_findings(compared: Compared) -> Non
     assert lead[1].endswith("The referee certified every answer.")
 
 
-def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
+def test_text_is_escaped_and_data_cannot_end_the_script():
     sections = [
         Section(title="A & B <x>", html=table("<c>", ("<h>", "n"), [("<r>", 0.123456), ("s", None)])),
         Section(title="data", html="", data={"text": "</script><b>", "nan": np.array([np.nan, 1.0])}),
@@ -123,7 +123,7 @@ def test_text_is_escaped_and_data_cannot_end_the_script() -> None:
     assert block(html) == {"data": {"text": "</script><b>", "nan": [None, 1.0]}}
 
 
-def test_a_run_that_stopped_is_shown_as_far_as_it_came() -> None:
+def test_a_run_that_stopped_is_shown_as_far_as_it_came():
     rod, beams = solve(KS, "rod"), solve(KS, "tsm")
     cut, none = (replace(beams, load_parameter=beams.load_parameter[:k]) for k in (2, 0))
     responses = {"TSM mixed": cut, "exact rod": rod}
@@ -138,7 +138,7 @@ def test_a_run_that_stopped_is_shown_as_far_as_it_came() -> None:
     assert section.data is None
 
 
-def test_supports_springs_and_hinges_are_drawn_where_their_ends_are() -> None:
+def test_supports_springs_and_hinges_are_drawn_where_their_ends_are():
     """A run that stopped keeps its last places; a run that reached nothing has the undeformed ones."""
     springs = replace(load_scene("beam-on-springs"), load_parameters=2)
     whole = solve(springs, "tsm")
@@ -158,7 +158,7 @@ def test_supports_springs_and_hinges_are_drawn_where_their_ends_are() -> None:
     assert len(section.data["symbols"]) == len(truss.all_supports) + len(truss.hinges)
 
 
-def test_bands_of_stick_and_slip_differ_without_colour() -> None:
+def test_bands_of_stick_and_slip_differ_without_colour():
     """The slip to the start is hatched."""
     scene = replace(load_scene("ks-friction"), load_parameters=4)
     section = states_section({"TSM mixed": solve(scene, "tsm")})
@@ -169,7 +169,7 @@ def test_bands_of_stick_and_slip_differ_without_colour() -> None:
     assert max(float(width) for width in re.findall(r'width="([\d.]+)" height="16"', drawn)) <= 600.0
 
 
-def test_colours_stay_apart_for_the_colour_blind() -> None:
+def test_colours_stay_apart_for_the_colour_blind():
     """Full protanopia, deuteranopia and tritanopia by Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291."""
     rows = """1 0 0, 0 1 0, 0 0 1
         0.152286 1.052583 -0.204868, 0.114503 0.786281 0.099216, -0.003882 -0.048116 1.051998
