@@ -54,19 +54,14 @@ def test_beams_and_solid_show_the_same_bodies_and_stress(responses):
     assert [area(one) for one in axial] == pytest.approx([0.02] * 2, rel=0.01)
     assert axial[0].pins == pytest.approx(axial[1].pins)
     assert axial[0].forces == pytest.approx(axial[1].forces, rel=0.01)
-    bending = []
-    for names, grid in zip((("left", "right"), (0.01, -0.01)), grids, strict=True):
-        own, sides = grid["cantilever"], []
-        for name in names:
-            on = (
-                np.full(len(own.points), 1, bool)
-                if isinstance(name, str)
-                else abs(own.points[:, 1] - name) < 1e-9
-            )
-            stress = own.point_data[f"axial_stress_{name}" if isinstance(name, str) else "axial_stress"]
-            sides.append(np.interp([0.2, 0.4], own.points[on, 0], stress[on]))
-        bending.append(sides[0] - sides[1])
-    assert bending[0] == pytest.approx(bending[1], rel=0.02)
+    own, other = (grid["cantilever"] for grid in grids)
+    at, data = [0.2, 0.4], other.point_data["axial_stress"]
+    right, left = (
+        np.interp(at, own.points[:, 0], own.point_data[f"axial_stress_{name}"]) for name in ("right", "left")
+    )
+    below, above = (abs(other.points[:, 1] - y) < 1e-9 for y in (-0.01, 0.01))
+    below, above = (np.interp(at, other.points[on, 0], data[on]) for on in (below, above))
+    assert right - left == pytest.approx(below - above, rel=0.02)
 
 
 def test_the_stress_of_beams_is_that_of_bending_across_their_height(responses):
