@@ -30,9 +30,8 @@ OPTIONAL = {"pyvista", "meshio"}
 
 
 def run(*command: object, folder: Path = ROOT, status: int = 0) -> "subprocess.CompletedProcess[str]":
-    done = subprocess.run(
-        list(map(str, command)), cwd=folder, capture_output=True, text=True, check=False, timeout=300
-    )
+    words = list(map(str, command))
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == status, done.stderr
     return done
 
@@ -103,10 +102,8 @@ def test_an_installation_without_pyvista_and_meshio(built, tmp_path, stated):
     for name in required("tsm-crossval"):
         for entry in {file.parts[0] for file in metadata.files(name) or ()} - {"..", "__pycache__"}:
             (site / entry).symlink_to(Path(str(metadata.distribution(name).locate_file(entry))))
-    marks = {
-        what: mark
-        for mark, what, *_ in map(str.split, crossval(home, tmp_path, "doctor").stdout.splitlines())
-    }
+    looked_at = map(str.split, crossval(home, tmp_path, "doctor").stdout.splitlines())
+    marks = {what: mark for mark, what, *_ in looked_at}
     assert {marks[name] for name in OPTIONAL} == {"-"}
     assert "MISSING" not in marks.values()
     done = crossval(home, tmp_path, "compare ks-cantilever --out out")
@@ -131,24 +128,28 @@ def test_the_sdist_has_what_its_tests_need(built):
     [sdist] = built.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    files = set(
-        re.findall(
-            r"\S+", "README.md CHANGELOG.md LICENSE CITATION.cff Makefile .constraints.txt pyproject.toml"
-        )
-    )
+    files = {
+        "README.md",
+        "CHANGELOG.md",
+        "LICENSE",
+        "CITATION.cff",
+        "Makefile",
+        ".constraints.txt",
+        "pyproject.toml",
+    }
     assert files | {"tests", "docs", *PACKAGES} <= names | {name.partition("/")[0] for name in names}
     assert not [name for name in names if "__pycache__" in name or "_generated" in name]
 
 
 FRONTS = [
-    path.parent.relative_to(ROOT)
+    file.parent
     for package in PACKAGES
-    for path in (ROOT / package).rglob("__init__.py")
-    if "__all__" in path.read_text()
+    for file in (ROOT / package).rglob("__init__.py")
+    if "__all__" in file.read_text()
 ]
 
 
-@pytest.mark.parametrize("folder", FRONTS, ids=str)
+@pytest.mark.parametrize("folder", [front.relative_to(ROOT) for front in FRONTS], ids=str)
 def test_a_package_shows_its_public_names_only_and_knows_its_version(folder):
     package = importlib.import_module(".".join(folder.parts))
     assert set(dir(package)) - {"__version__"} == set(package.__all__)
@@ -168,11 +169,7 @@ SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "4"]
     ("code", "there", "absent"),
     [
         ("import tsm", "numpy", {"scipy", "importlib.metadata"}),
-        (
-            COMMAND.format(["--help"]),
-            "comparisons.cli",
-            {"numpy", "importlib.metadata", "psutil", "filelock"},
-        ),
+        (COMMAND.format(["-h"]), "comparisons.cli", {"numpy", "importlib.metadata", "psutil", "filelock"}),
         (COMMAND.format(SOLVE), "tsm", {"scipy.linalg", "scipy.optimize", "scipy.sparse", "fem_reference"}),
     ],
     ids=["tsm", "help", "solve"],
@@ -206,9 +203,7 @@ def test_every_system_and_the_oldest_and_newest_python_are_tried_at_one_version(
         systems = {SYSTEMS[system.partition("-")[0]] for system in matrix["os"]}
         assert systems == classified("Operating System :: ")
     assert yaml.safe_load((ROOT / ".readthedocs.yaml").read_text())["build"]["tools"]["python"] in pythons
-    platforms = re.search(
-        r"^PYTHONS = (.*)$", (ROOT / "tests/platforms/noxfile.py").read_text(), re.MULTILINE
-    )
+    platforms = re.search(r"(?m)^PYTHONS = (.*)$", (ROOT / "tests/platforms/noxfile.py").read_text())
     assert list(ast.literal_eval(platforms[1])) == pythons
 
 

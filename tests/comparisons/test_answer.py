@@ -16,14 +16,8 @@ from comparisons.response import Response
 from comparisons.scene import LoadSpec, load_scene
 
 EXACT = Options(element="exact")
-ALONG = {
-    "axial_force",
-    "shear_force",
-    "bending_moment",
-    "tensile_stress",
-    "compressive_stress",
-    "displacement",
-}
+FORCES, STRESSES = ("axial_force", "shear_force", "bending_moment"), ("tensile_stress", "compressive_stress")
+ALONG = {*FORCES, *STRESSES, "displacement"}
 
 
 @cache
@@ -128,10 +122,8 @@ def test_a_picture_has_weights_and_numbers_without_an_exponent():
 
 def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert (
-        main(["solve", "two-pins", *["--csv", "a.csv", "--plot", "a.svg", "--json", "a.json", "--times"]])
-        == 0
-    )
+    files = ["--csv", "a.csv", "--plot", "a.svg", "--json", "a.json"]
+    assert main(["solve", "two-pins", *files, "--times"]) == 0
     rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))
     assert [float(row["load_parameter"]) for row in rows] == pytest.approx(np.arange(1, 11) / 10)
     reaction = json.loads(Path("a.json").read_text())["supports"]["beam.start"]["force"]

@@ -150,11 +150,8 @@ def test_doctor_names_what_is_missing_and_the_extra_that_installs_it(monkeypatch
     assert found["OpenGL"] == ("-", "missing: pictures by matplotlib instead of pyvista")
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    stated = {
-        (re.split(r"[>=\[]", line)[0], name)
-        for name in ("view", "io", "cluster", "peers")
-        for line in extras[name]
-    }
+    own = [(name, line) for name in ("view", "io", "cluster", "peers") for line in extras[name]]
+    stated = {(re.split(r"[>=\[]", line)[0], name) for name, line in own}
     told = {(what, re.match(r"missing, extra (\w+): ", state)) for what, (_, state) in found.items()}
     assert {(what, extra[1]) for what, extra in told if extra} == stated
     assert extras["all"] == ["tsm-crossval[view,io,cluster,peers]"]
@@ -173,7 +170,6 @@ def test_doctor_finds_what_is_needed_and_where_tests_must_not_be_skipped_everyth
 def test_the_installed_command_runs_and_a_reader_that_stops_early_is_no_error():
     command = "crossval solve ks-cantilever --model rod --json - | head -1"
     path = {"PATH": f"{BIN}:/usr/bin:/bin"}
-    done = subprocess.run(
-        ["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, env=path, check=True
-    )
+    bash = ["bash", "-o", "pipefail", "-c", command]
+    done = subprocess.run(bash, capture_output=True, text=True, env=path, check=True)
     assert (done.stdout.strip(), done.stderr) == ("{", "")

@@ -27,16 +27,12 @@ STATED = {name.strip("`"): set(re.findall(r"`(\w+)`", fields)) for name, fields 
 BEAM, ROD = "a beam's name, model `{}", {"displacement", "deformed", "index"}
 
 
-@pytest.fixture(scope="module", params=["tsm", "solid", "rod"])
-def written(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> tuple[Response, Path]:
+@pytest.fixture(
+    scope="module", params=[("tsm", Options(elements=4)), ("solid", Options(mesh=(12, 2))), ("rod", None)]
+)
+def written(request, tmp_path_factory) -> tuple[Response, Path]:
     """An answer, and the folder of its series."""
-    options = {"tsm": Options(elements=4), "solid": Options(mesh=(12, 2))}
-    response, folder = (
-        solve(RUBBED, request.param, options.get(request.param)),
-        tmp_path_factory.mktemp("series"),
-    )
+    response, folder = solve(RUBBED, *request.param), tmp_path_factory.mktemp("series")
     write_series(folder, response, RUBBED)
     return response, folder
 

@@ -33,10 +33,9 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "200")
 
 
-@pytest.mark.parametrize(
-    ("model", "options"), [("tsm", Options(elements=10)), ("solid", Options(mesh=(16, 1)))]
-)
-def test_every_load_parameter_is_told_with_its_contacts(model, options):
+@pytest.mark.parametrize("options", [Options(elements=10), Options(mesh=(16, 1))], ids=["tsm", "solid"])
+def test_every_load_parameter_is_told_with_its_contacts(options):
+    model = "solid" if options.mesh else "tsm"
     reported: list[Reached] = []
     response = solve(SCENE, model, options, reported.append)
     times = [reached.load_parameter for reached in reported]
@@ -105,11 +104,6 @@ def test_shells_complete(tmp_path, capsys):
     (tmp_path / "more").mkdir()
     for line, words in COMPLETED.items():
         ask = f"COMP_WORDS=(crossval {line}); COMP_CWORD={len(line.split())}; _shtab_crossval; echo ${{COMPREPLY[*]}}"
-        told = subprocess.run(
-            ["bash", "-c", f"source ./crossval; {ask}"],
-            capture_output=True,
-            text=True,
-            check=True,
-            cwd=tmp_path,
-        )
+        bash = ["bash", "-c", f"source ./crossval; {ask}"]
+        told = subprocess.run(bash, capture_output=True, text=True, check=True, cwd=tmp_path)
         assert set(told.stdout.split()) == set(words.split()), line

@@ -22,11 +22,10 @@ RUN = {
 }
 """Pages that are run as a whole; the commands of the other two are run one by one."""
 LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
-SECONDS = {
-    page
-    for page in RUN
-    if re.search(r"/(accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study)\.md", page)
-}
+TAKE_SECONDS = re.compile(
+    r"/(accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study)\.md"
+)
+SECONDS = {page for page in RUN if TAKE_SECONDS.search(page)}
 """Pages that take more than a second without the commands of `SLOW`."""
 
 
@@ -89,9 +88,10 @@ SAID = {
 """What a command prints, beside its exit status."""
 ELSEWHERE = {"trade", "manual", "extremes", "league"}
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
-MORE = tuple(
-    f"crossval {rest}"
-    for rest in ("solve double-beam --model solid", "doctor", "solve ks-cantilever --model rod")
+MORE = (
+    "crossval solve double-beam --model solid",
+    "crossval doctor",
+    "crossval solve ks-cantilever --model rod",
 )
 """Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
 
@@ -123,17 +123,12 @@ def test_every_command_is_shown():
 
 
 def test_make_targets_links_and_pictures_are_there():
-    named = {
-        target
-        for text in TEXTS.values()
-        for target in re.findall(r"(?:^|`)make ([\w-]+)", text, re.MULTILINE)
-    }
-    assert {"run", "test", "test-all", "bench"} <= named <= TARGETS
-    shown = [
-        Path(page).parent / name
-        for page, text in TEXTS.items()
-        for name in re.findall(r"!\[.*?\]\((.*?)\)", text)
-    ]
+    whole = "".join(TEXTS.values())
+    assert (
+        {"run", "test", "test-all", "bench"} <= {*re.findall(r"(?m)(?:^|`)make ([\w-]+)", whole)} <= TARGETS
+    )
+    picture = re.compile(r"!\[.*?\]\((.*?)\)")
+    shown = [Path(page).parent / name for page, text in TEXTS.items() for name in picture.findall(text)]
     links = [Path(target) for target in re.findall(r"\]\(([^)]+)\)", README) if "://" not in target]
     assert len(shown) > 5 < len(links)
     assert [str(path) for path in (*shown, *links) if not (ROOT / path).is_file()] == []

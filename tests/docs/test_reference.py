@@ -30,17 +30,14 @@ NUMERICS = {
 def tables() -> dict[str, dict[str, dict]]:
     """The tables of a scene file and their keys, as the schema has them."""
     found = json.loads(run_line("crossval schema"))["properties"]
-    return {f"[[{name}]]": one["items"]["properties"] for name, one in found.items() if name != "scene"} | {
-        "[scene]": found["scene"]["properties"]
-    }
+    lists = {f"[[{name}]]": one["items"] for name, one in found.items() if name != "scene"}
+    return {header: one["properties"] for header, one in {"[scene]": found["scene"], **lists}.items()}
 
 
 def test_every_key_of_a_scene_is_listed_with_a_meaning(tables):
     sections = dict(part.partition("`\n")[::2] for part in scene_file.page().split("## `")[1:])
-    rows = {
-        header: re.findall(r"^\| `(\w+)` .*\| (.*?) *\|$", text, re.MULTILINE)
-        for header, text in sections.items()
-    }
+    row = re.compile(r"(?m)^\| `(\w+)` .*\| (.*?) *\|$")
+    rows = {header: row.findall(text) for header, text in sections.items()}
     for header, keys in tables.items():
         assert [key for key, _ in rows[header]] == list(keys), header
     assert sections.keys() - tables.keys() == {"support of [[stage]]", "pin of [[stage]]"}
@@ -52,11 +49,8 @@ def test_every_key_answers_a_question_that_a_scene_asks(tables):
     keys = {key for own in tables.values() for key in own} | {header.strip("[]") for header in tables}
     assert keys - NUMERICS - {"scene"} <= named
     questions = [item for group in scope.GROUPS.values() for item in group]
-    assert [
-        key
-        for key in SPECIAL
-        if all(unstated(item.scene, "", SPECIAL.keys() - {key}) is None for item in questions)
-    ] == []
+    for key in SPECIAL:
+        assert any(unstated(item.scene, "", SPECIAL.keys() - {key}) for item in questions), key
     friction = next(item for item in questions if item.wish == "friction")
     assert friction.scene.contacts[0].friction > 0
     assert len({to_toml(item.scene) for item in questions}) == len(questions) - 1, "two pins answer twice"
@@ -75,9 +69,8 @@ IN_CODE = (
 
 def test_every_status_in_the_code_is_on_the_page():
     page = statuses.page()
-    files = [
-        file for package in ("comparisons", "tsm", "fem_reference") for file in (ROOT / package).rglob("*.py")
-    ]
+    packages = [ROOT / name for name in ("comparisons", "tsm", "fem_reference")]
+    files = [file for package in packages for file in package.rglob("*.py")]
     text = "\n".join(file.read_text(encoding="utf-8") for file in files)
     found = {name for one in IN_CODE for name in re.findall(one, text, re.MULTILINE)}
     kinds = (tsm.Status, fem_reference.Status, statuses.ProgramStatus, Verdict)

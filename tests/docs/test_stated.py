@@ -91,24 +91,14 @@ def test_an_invented_mark_is_told():
 
 
 def test_a_number_is_held_to_its_last_digit_and_a_bound_from_both_sides():
-    one, bound = (
-        Stated("1.30e-2", percent=False, start=0, end=7),
-        Stated("1e-12", percent=False, start=0, end=5),
-    )
-    assert [holds(one, value) for value in (0.01294, 0.01296, 0.01304, 0.01306, float("nan"))] == [
-        False,
-        True,
-        True,
-        False,
-        False,
-    ]
-    assert [holds(one, value, relative=0.2) for value in (0.0103, 0.0105, 0.0157)] == [False, True, False]
-    assert [holds(bound, value, 1 / LOOSE) for value in (1.01e-12, 1e-12, 3.4e-13, 3.3e-13)] == [
-        False,
-        True,
-        True,
-        False,
-    ]
+    rounded, bound = (Stated(text, percent=False, start=0, end=len(text)) for text in ("1.30e-2", "1e-12"))
+    for one, rule, held, broken in (
+        (rounded, {}, (0.01296, 0.01304), (0.01294, 0.01306, float("nan"))),
+        (rounded, {"relative": 0.2}, (0.0105,), (0.0103, 0.0157)),
+        (bound, {"least": 1 / LOOSE}, (1e-12, 3.4e-13), (1.01e-12, 3.3e-13)),
+    ):
+        assert all(holds(one, value, **rule) for value in held)
+        assert not any(holds(one, value, **rule) for value in broken)
 
 
 def test_no_mark_begins_a_line():

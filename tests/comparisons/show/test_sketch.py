@@ -23,9 +23,12 @@ Draw = Callable[[Scene], Any]
 def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Draw:
     """Draw a scene by the command and return its figure."""
     kept, save = [], Figure.savefig
-    monkeypatch.setattr(
-        Figure, "savefig", lambda fig, *more, **options: (kept.append(fig), save(fig, *more, **options))
-    )
+
+    def keep(fig: Any, *more: Any, **options: Any) -> None:
+        kept.append(fig)
+        save(fig, *more, **options)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
     monkeypatch.chdir(tmp_path)
 
     def draw(scene: Scene) -> Any:
@@ -65,9 +68,8 @@ def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn)
     tip = LoadSpec(beam="cantilever", end="end", force=(3.0, -4.0), moment=-1.5)
     rubbed = replace(KS.contacts[0], friction=0.2)
     fig = drawn(replace(KS, pins=(DRUM,), contacts=(rubbed,), loads=(tip,)))
-    assert {"side of contact: face of the beam, friction 0.2", "pin of radius 0.05 m, to scale"} < set(
-        legend(fig)
-    )
+    told = {"side of contact: face of the beam, friction 0.2", "pin of radius 0.05 m, to scale"}
+    assert told < set(legend(fig))
     assert {"5 N", "1.5 N m"} <= words(fig)
     start, end = discs(fig)
     assert start.radius == end.radius == 0.05

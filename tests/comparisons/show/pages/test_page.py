@@ -46,9 +46,8 @@ def test_a_comparison_writes_every_file_and_names_it(compared):
         assert f"\n{label} " in compared.printed
     assert compared.progress.endswith("measuring the error budget\ndrawing and writing files\n")
     families = [TSM.family(KS, run.options) for run in RUNS if run.model == TSM.name]
-    assert len([a for a, b in pairwise(families) if a != b]) == len(set(families)) - 1, (
-        "runs of a family are neighbours"
-    )
+    # the sentences of the findings group neighbours
+    assert len([a for a, b in pairwise(families) if a != b]) == len(set(families)) - 1
 
 
 def test_summary_table_and_page_have_the_same_numbers(compared):
@@ -85,7 +84,7 @@ def test_summary_table_and_page_have_the_same_numbers(compared):
 def test_a_page_is_alone_and_begins_with_the_findings(compared):
     html, (_, runs) = (compared.folder / "report.html").read_text(), summarised(compared.folder)
     check_alone(html, compared.folder)
-    titles = [
+    titles = (
         "Errors",
         "Shapes and histories",
         "Error budget",
@@ -93,16 +92,13 @@ def test_a_page_is_alone_and_begins_with_the_findings(compared):
         "Input",
         "Versions and machine",
         "Files",
-    ]
+    )
     assert [title for title in titles if f">{title}</h2>" not in html] == []
     assert html.count('href="tsm/tsm.pvd"') == html.count('href="solid/solid.pvd"') == 1
     (data,) = block(html).values()
-    linked = [
-        pattern.replace("{}", f"{k + 1:04d}")
-        for pattern in data["vtu"].values()
-        for k in range(len(KS.times))
-    ]
-    assert all((compared.folder / name).is_file() for name in linked)
+    for pattern in data["vtu"].values():
+        linked = [compared.folder / pattern.replace("{}", f"{k + 1:04d}") for k in range(len(KS.times))]
+        assert all(file.is_file() for file in linked)
     lead = re.search(r'<p class="lead">(.*?)</p>', html, re.DOTALL)
     assert lead.start() < html.index("<table")
     worst = max(runs["solid"]["errors"]["path"][name] for name in ("force", "arc", "moment", "tip"))
