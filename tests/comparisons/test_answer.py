@@ -106,8 +106,11 @@ def test_a_picture_has_shape_diagrams_and_forces():
     assert drawn == pytest.approx(response.sections("left", -1).M)
     assert [text.get_text() for text in shape.texts if text.get_text()] == ["400 N"]
     assert [line.get_label() for line in history.get_lines()] == ["left.start", "right.end"]
+    without = replace(response, definition=None)
+    assert "  left.start  " in without.page()
+    assert not any("bending_moment" in name for name in without.table())
     with pytest.raises(ValueError, match="scene: must be given"):
-        replace(response, definition=None).plot()
+        without.plot()
 
 
 def test_a_picture_has_weights_and_numbers_without_an_exponent():
@@ -124,12 +127,15 @@ def test_solve_writes_a_history_and_a_picture(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     files = ["--csv", "a.csv", "--plot", "a.svg", "--json", "a.json"]
     assert main(["solve", "two-pins", *files, "--times"]) == 0
+    out = capsys.readouterr().out
     rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))
     assert [float(row["load_parameter"]) for row in rows] == pytest.approx(np.arange(1, 11) / 10)
     reaction = json.loads(Path("a.json").read_text())["supports"]["beam.start"]["force"]
     assert [float(row["beam.start.force_y [N]"]) for row in rows] == [force[1] for force in reaction]
+    assert main(["certify", "a.json", "--scene", "two-pins"]) == 0
+    assert "CERTIFIED" in capsys.readouterr().out
     assert "</svg>" in Path("a.svg").read_text(encoding="utf-8")
-    stages = capsys.readouterr().out.splitlines()[-1].removeprefix("seconds: ").partition(";")[0].split(", ")
+    stages = out.splitlines()[-1].removeprefix("seconds: ").partition(";")[0].split(", ")
     assert [stage.rpartition(" ")[0] for stage in stages] == ["read", "set up", "solve", "certify", "write"]
 
 

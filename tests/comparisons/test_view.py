@@ -15,7 +15,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import OPEN, SLIPS, Response
 from comparisons.scene import load_scene, read_scene, to_toml
-from comparisons.show.export import blocks, write_series
+from comparisons.show.export import HINGES, blocks, write_series
 from comparisons.show.panel import Panel, Scale  # what is drawn, before it is pixels
 from comparisons.show.render import render_panels
 from comparisons.show.stress import LAYERS, beam_panel, solid_panel
@@ -99,7 +99,10 @@ def test_supports_forces_states_and_the_heights_of_curved_beams_are_drawn():
     centres = found.supports.reshape(2, -1, 2).mean(axis=1)
     assert centres == pytest.approx(np.array([[0.0, 0.0], [0.0, -0.2]]), abs=0.03)
     scene = read_scene(SPECIMEN, "specimen")
-    sections = panel({"hook": blocks(solve(scene, "tsm"), scene, 0)["hook"]}, "t").points.reshape(-1, 5, 2)
+    whole = blocks(solve(scene, "tsm"), scene, 0)
+    unhinged = {name: grid for name, grid in whole.items() if name != HINGES}
+    assert len(panel(whole, "t").supports) > len(panel(unhinged, "t").supports) > 0
+    sections = panel({"hook": whole["hook"]}, "t").points.reshape(-1, 5, 2)
     across = sections[:, -1] - sections[:, 0]
     heights = np.hypot(*across.T)
     assert heights[[0, -1]] == pytest.approx([6.0, 2.0])

@@ -11,7 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from comparisons.cli import main
-from comparisons.scene import LoadSpec, PinSpec, Scene, load_scene, read_scene, to_toml
+from comparisons.scene import LoadSpec, PinSpec, Scene, SupportSpec, load_scene, read_scene, to_toml
 from tests.comparisons.show.specimen import SPECIMEN
 
 KS = load_scene("ks-face")
@@ -136,3 +136,32 @@ def test_the_ground_of_a_clamp_is_on_the_side_away_from_the_beam(drawn):
         behind = np.concatenate(fig.axes[0].collections[0].get_segments()) @ away
         assert behind.max() < 1e-9
         assert behind.min() < -0.005
+
+
+def test_every_support_has_a_name_and_a_symbol_of_its_own(drawn):
+    held = [
+        ("x", "y", "rotation"),
+        ("x", "y"),
+        ("x", "rotation"),
+        ("y", "rotation"),
+        ("x",),
+        ("y",),
+        ("rotation",),
+    ]
+    beam = KS.beams[0]
+    beams = [
+        replace(beam, name=f"b{k}", start=(0.0, k), end=(1.0, k), clamped=("end",)) for k in range(len(held))
+    ]
+    supports = [SupportSpec(beam=f"b{k}", end="start", fixed=fixed) for k, fixed in enumerate(held)]
+    load = LoadSpec(beam="b0", at=0.5, force=(0.0, 1.0))
+    scene = replace(KS, beams=tuple(beams), supports=tuple(supports), loads=(load,), pins=(), contacts=())
+    fig = drawn(scene)
+    symbols = set()
+    for one in fig.axes[0].collections:
+        segments = np.concatenate(one.get_segments())
+        place = np.round(segments.mean(axis=0))
+        if place[0] == 0.0:
+            symbols.add(np.round(segments - place, 6).tobytes())
+            assert np.abs(segments - place).max() < 0.05 * 7
+    assert len(symbols) == len(held)
+    assert len(legend(fig)) == len(set(legend(fig))) == 2 + len(held)
