@@ -21,14 +21,7 @@ def read(text: str) -> Numbers:
     """Return the numbers of a scene; every name is ``record quantity``, a value that varies is a tuple over places or load parameters."""
     file = tomllib.loads(text)
     beams = {beam["name"]: beam for beam in file["beam"]}
-    stages: list[Table] = [
-        {
-            **file,
-            "load_parameters": file["scene"]["load_parameters"],
-            "gravity": file["scene"].get("gravity"),
-        },
-        *file.get("stage", []),
-    ]
+    stages: list[Table] = [{**file, **file["scene"]}, *file.get("stage", [])]
     counts = [stage["load_parameters"] for stage in stages]
     times = [k + step / count for k, count in enumerate(counts) for step in range(1, count + 1)]
     found: Numbers = {"load parameters": tuple(times)}
@@ -36,27 +29,23 @@ def read(text: str) -> Numbers:
         found |= {f"{name} {what}": value for what, value in _beam(beam).items()}
     gravity = [stage.get("gravity") or (0.0, 0.0) for stage in stages]
     found["gravity"] = _histories(gravity, times)
-    found |= _supports(file, stages, beams, times)
-    found |= _loads(stages, times)
+    found |= _supports(file, stages, beams, times) | _loads(stages, times)
+    radii = {pin["name"]: pin.get("radius", 0.0) for pin in file.get("pin", [])}
     for pin in file.get("pin", []):
         found[f"{pin['name']} positions"] = _positions(pin, stages, times)
-        found[f"{pin['name']} radius"] = (pin.get("radius", 0.0),)
-    radii = {pin["name"]: pin.get("radius", 0.0) for pin in file.get("pin", [])}
+        found[f"{pin['name']} radius"] = (radii[pin["name"]],)
     for contact in file.get("contact", []):
-        pair, heights = (
-            f"{contact['node']}->{contact['beam']}",
-            _along(beams[contact["beam"]].get("height", 0.0)),
-        )
-        face = contact.get("surface") == "face"
-        radius = radii.get(contact["node"], 0.0)
-        found[f"{pair} offset"] = tuple(radius + (height / 2 if face else 0.0) for height in heights)
+        pair, radius = f"{contact['node']}->{contact['beam']}", radii.get(contact["node"], 0.0)
+        heights = _along(beams[contact["beam"]].get("height", 0.0))
+        half = 0.5 if contact.get("surface") == "face" else 0.0
+        found[f"{pair} offset"] = tuple(radius + half * height for height in heights)
         found[f"{pair} friction"] = (contact.get("friction", 0.0),)
         found[f"{pair} side"] = (1.0 if contact["side"] == "left" else -1.0,)
     for hinge in file.get("hinge", []):
         found[f"{hinge['beam']}.{hinge['end']} hinge"] = (hinge.get("stiffness", 0.0),)
     for spring in file.get("spring", []):
-        along, turning = spring.get("stiffness", (0.0, 0.0)), spring.get("rotation", 0.0)
-        found[f"{spring['beam']}.{spring['end']} spring"] = (*along, turning)
+        stiffness = (*spring.get("stiffness", (0.0, 0.0)), spring.get("rotation", 0.0))
+        found[f"{spring['beam']}.{spring['end']} spring"] = stiffness
     return found
 
 
@@ -74,10 +63,10 @@ def _beam(beam: Table) -> Numbers:
     first = chord / abs(chord) * cmath.exp(-0.5j * turn)
     centre = 0.0 if turn == 0.0 else start + 1j * first * length / turn
     tangents = [first * cmath.exp(1j * turn * part) for part in PLACES]
-    axis = [
-        start + part * chord if turn == 0.0 else centre - 1j * tangent * length / turn
-        for part, tangent in zip(PLACES, tangents, strict=True)
-    ]
+    if turn == 0.0:
+        axis = [start + part * chord for part in PLACES]
+    else:
+        axis = [centre - 1j * tangent * length / turn for tangent in tangents]
     E = beam["youngs_modulus"]
     G = beam["shear_modulus"] if "shear_modulus" in beam else E / (2.0 + 2.0 * beam["poissons_ratio"])
     heights = _along(beam.get("height", 0.0))
@@ -90,12 +79,9 @@ def _beam(beam: Table) -> Numbers:
         A, inertia = _along(beam["area"]), _along(beam["second_moment"])
         sheared = [beam.get("shear_area", area) for area in A]
     density = beam.get("density", 0.0)
-    points, weights = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15)), (5 / 18, 8 / 18, 5 / 18)
-    mass = (
-        density
-        * length
-        * sum(weight * _area(beam, part) for part, weight in zip(points, weights, strict=True))
-    )
+    # Gauss's rule of three points integrates the area exactly
+    rule = ((0.5 - math.sqrt(0.15), 5 / 18), (0.5, 8 / 18), (0.5 + math.sqrt(0.15), 5 / 18))
+    mass = density * length * sum(weight * _area(beam, part) for part, weight in rule)
     return {
         "length": (length,),
         "axis": tuple(value for point in axis for value in (point.real, point.imag)),
@@ -109,7 +95,7 @@ def _beam(beam: Table) -> Numbers:
 
 
 def _area(beam: Table, part: float) -> float:
-    """Area of the section at a fraction of the length; Gauss's rule of three points integrates it exactly."""
+    """Area of the section at a fraction of the length."""
     if "area" in beam:
         return float(beam["area"])
     first, last = (_along(beam[key])[:: len(PLACES) - 1] for key in ("width", "height"))
@@ -121,41 +107,28 @@ def _histories(increments: list[Any], times: list[float]) -> tuple[float, ...]:
     rows = []
     for t in times:
         parts = [min(max(t - k, 0.0), 1.0) for k in range(len(increments))]
-        rows.append(
-            [
-                math.fsum(part * inc for part, inc in zip(parts, column, strict=True))
-                for column in zip(*increments, strict=True)
-            ]
-        )
-    return tuple(value for row in rows for value in row)
+        for column in zip(*increments, strict=True):
+            rows += [math.fsum(part * inc for part, inc in zip(parts, column, strict=True))]
+    return tuple(rows)
 
 
 def _supports(file: Table, stages: list[Table], beams: dict[str, Table], times: list[float]) -> Numbers:
     """Motions x, y and rotation of the supported ends; NaN where free. A later motion may name any beam's end at the same place."""
-    own = [
-        {"beam": name, "end": end, "kind": "clamped"}
-        for name, beam in beams.items()
-        for end in beam.get("clamped", [])
-    ] + file.get("support", [])
-    found = {}
+    found, clamped = {}, [(name, end) for name, beam in beams.items() for end in beam.get("clamped", [])]
+    own = [{"beam": name, "end": end, "kind": "clamped"} for name, end in clamped] + file.get("support", [])
     for support in own:
-        kind = support.get("kind", "")
-        held = (
-            HELD[f"{kind} {support['free']}" if kind == "roller" else kind]
-            if kind
-            else [c[0] for c in support["fixed"]]
-        )
+        kind = " ".join(support[key] for key in ("kind", "free") if key in support)
+        held = HELD[kind] if kind else [component[0] for component in support["fixed"]]
         place = beams[support["beam"]][support["end"]]
-        moves = [support, *(
-            next((move for move in stage.get("support", []) if beams[move["beam"]][move["end"]] == place), {})
-            for stage in stages[1:]
-        )]  # fmt: skip
+        moves = [support]
+        for stage in stages[1:]:
+            here = [move for move in stage.get("support", []) if beams[move["beam"]][move["end"]] == place]
+            moves.append(here[0] if here else {})
         increments = [(*move.get("displacement", (0.0, 0.0)), move.get("rotation", 0.0)) for move in moves]
         free = [component not in held for component in "xyr"]
         values = _histories(increments, times)
-        found[f"{support['beam']}.{support['end']} motion"] = tuple(
-            math.nan if free[k % 3] else value for k, value in enumerate(values)
-        )
+        motion = tuple(math.nan if free[k % 3] else value for k, value in enumerate(values))
+        found[f"{support['beam']}.{support['end']} motion"] = motion
     return found
 
 
@@ -164,12 +137,11 @@ def _loads(stages: list[Table], times: list[float]) -> Numbers:
     amounts: dict[str, list[tuple[float, ...]]] = {}
     for k, stage in enumerate(stages):
         for load in stage.get("load", []):
+            where = load["end"] if "end" in load else f"at {load.get('at')}"
+            amount = (*load.get("force", (0.0, 0.0)), load.get("moment", 0.0))
             if "force_per_length" in load:
                 where = "from {} to {}".format(*map(float, load.get("part", (0.0, 1.0))))
                 amount = (*load["force_per_length"], 0.0)
-            else:
-                where = load["end"] if "end" in load else f"at {load['at']}"
-                amount = (*load.get("force", (0.0, 0.0)), load.get("moment", 0.0))
             history = amounts.setdefault(f"{load['beam']} {where} load", [(0.0,) * 3] * len(stages))
             history[k] = amount
     return {name: _histories(history, times) for name, history in amounts.items()}

@@ -1,7 +1,7 @@
 """Numbers that the pages state, each behind a mark with its name: ``<!--name-->1.5e-5``. `make results` writes them anew.
 
 A mark names the number behind it, ``<!--name x3-->`` the first three, before the next mark; a name may stand on several pages. A test
-measures the numbers of a name and judges them as a claim on every page, at the digits stated there.
+measures the numbers of a name and judges them on every page, at the digits stated there.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
-from comparisons.claims.claim import Allowance, Claim, Quantity, judge
-from comparisons.files import alone_in
+from filelock import FileLock
 
 ROOT = Path(__file__).parents[1]
 MARK = re.compile(r"<!--([a-z][\w.-]*)(?: x\d+)?-->")
@@ -43,13 +42,8 @@ class Stated:
     end: int
 
     @property
-    def unit(self) -> float:
-        """0.01 of a number in per cent."""
-        return 0.01 if self.percent else 1.0
-
-    @property
     def value(self) -> float:
-        return float(self.text.replace(",", "")) * self.unit
+        return float(self.text.replace(",", "")) * (0.01 if self.percent else 1.0)
 
     @property
     def decimals(self) -> int:
@@ -58,8 +52,8 @@ class Stated:
     @property
     def half_unit(self) -> float:
         """Half a unit of the last digit."""
-        exponent = int(self.text.partition("e")[2] or 0)
-        return 0.5 * 10.0 ** (exponent - self.decimals) * self.unit
+        exponent = int(self.text.partition("e")[2] or 0) - self.decimals - 2 * self.percent
+        return 0.5 * 10.0**exponent
 
     def rewritten(self, value: float, *, up: bool) -> str:
         """Return a value with as many digits and in the same form, rounded up if it is a bound.
@@ -71,7 +65,7 @@ class Stated:
         >>> Stated(".4", True, 0, 2).rewritten(0.00511, up=True)
         '.6'
         """
-        number = Decimal(value / self.unit)
+        number = Decimal(100.0 * value if self.percent else value)
         scientific = "e" in self.text
         last = (number.adjusted() if scientific else 0) - self.decimals
         number = number.quantize(Decimal(1).scaleb(last), ROUND_CEILING if up else ROUND_HALF_EVEN)
@@ -101,50 +95,11 @@ def marked(text: str, mark: re.Match[str]) -> list[Stated]:
     return found[: count(mark)]
 
 
-def numbers(text: str, name: str, size: int) -> Iterator[list[Stated]]:
-    """Yield the numbers behind every mark of this name.
-
-    Raises
-    ------
-    ValueError
-        If a mark names another number of numbers.
-    """
-    for mark in MARK.finditer(text):
-        if mark[1] == name:
-            found = marked(text, mark)
-            if len(found) != size:
-                raise ValueError(f"mark {name}: {size} numbers are measured")
-            yield found
-
-
-def claim(
-    name: str,
-    page: str,
-    stated: list[Stated],
-    values: tuple[float, ...],
-    least: float | None,
-    relative: float | None,
-) -> Claim:
-    """Return the claim that the values are the stated numbers, or at least a part and at most the whole of them."""
+def holds(one: Stated, value: float, least: float | None = None, relative: float | None = None) -> bool:
+    """Whether a value is the stated number, to half a unit of its last digit or a part of it; or at most it, and at least a part of it."""
     if least is not None:
-        low, half = 0.5 * (1.0 + least), 0.5 * (1.0 - least) * (1.0 + 1e-9)
-        quantities = [
-            Quantity(name=f"<= {one.text}", exact=low * abs(one.value), scale=half * abs(one.value))
-            for one in stated
-        ]
-        why = f"a bound is at most {LOOSE:g} times what is measured"
-    elif relative is not None:
-        quantities = [
-            Quantity(name=one.text, exact=one.value, scale=relative * abs(one.value)) for one in stated
-        ]
-        why = "what differs from processor to processor"
-    else:
-        quantities = [Quantity(name=one.text, exact=one.value, scale=one.half_unit) for one in stated]
-        why = "half a unit of the last digit stated"
-    return Claim(
-        name=name, statement=f"{name} of {page}", source=page, quantities=tuple(quantities),
-        allowance=Allowance(error=1.0, why=why), measure=lambda: values,
-    )  # fmt: skip
+        return least * abs(one.value) * (1.0 - 1e-9) <= abs(value) <= abs(one.value) * (1.0 + 1e-9)
+    return abs(value - one.value) <= (one.half_unit if relative is None else relative * abs(one.value))
 
 
 def check(
@@ -157,20 +112,9 @@ def check(
 ) -> None:
     """Judge measured values against what every page states under a name, or write what does not hold.
 
-    Parameters
-    ----------
-    name : str
-        Of the marks.
-    *values : float
-        As many as the numbers behind each mark.
-    bound : bool
-        The numbers are bounds, which are not below the values, and at most `LOOSE` times these.
-    part : bool
-        The numbers are bounds of several measurements, of which this is one: the largest is judged by `left` at the end of a whole run.
-    relative : float, optional
-        Part of a number by which the value may differ. Otherwise it may by half a unit of the last digit stated.
-    write : bool
-        Whether numbers that do not hold are replaced in the pages.
+    The numbers of a `bound` are not below the values, and at most `LOOSE` times these; of `part` they are bounds of several measurements,
+    of which this is one: the largest is judged by `left` at the end of a whole run. By `relative`, a part of the number, a value may
+    differ, otherwise by half a unit of the last digit stated. With `write`, numbers that do not hold are replaced in the pages.
     """
     measured, places = tuple(map(float, values)), 0
     record(name, bound or part, measured)
@@ -178,22 +122,24 @@ def check(
         # no arithmetic is better than its last bit
         measured = tuple(max(abs(value), 0.0 if part else EPS) for value in measured)
     least = 0.0 if part else 1.0 / LOOSE if bound else None
-    with alone_in(ROOT / "docs"):
+    up = least is not None
+    with FileLock(ROOT / "out" / "pages.lock"):
         for path in pages():
             text = path.read_text(encoding="utf-8")
-            stated = list(numbers(text, name, len(measured)))
-            places += len(stated)
-            judged = [judge(claim(name, path.name, one, measured, least, relative)) for one in stated]
-            failures = [f"{path.name}: {name}: {one.failure}" for one in judged if not one.passed]
-            if failures and write:
-                up = least is not None
-                for one in reversed(stated):
+            for mark in reversed([mark for mark in MARK.finditer(text) if mark[1] == name]):
+                stated, places = marked(text, mark), places + 1
+                pairs = zip(stated, measured, strict=True)
+                wrong = [
+                    f"{value:.6g} for {one.text}"
+                    for one, value in pairs
+                    if not holds(one, value, least, relative)
+                ]
+                assert write or not wrong, f"{path.name}: {name}: {', '.join(wrong)}"
+                if wrong:
                     text = replaced(
-                        text, one, tuple(0.5 * LOOSE * value for value in measured) if up else measured, up=up
+                        text, stated, [0.5 * LOOSE * value for value in measured] if up else measured, up=up
                     )
-                path.write_text(text, encoding="utf-8")
-            else:
-                assert not failures, failures
+                    path.write_text(text, encoding="utf-8")
     assert places, f"{name}: no page has this mark"
 
 
@@ -219,7 +165,7 @@ def left(*, write: bool) -> Iterator[str]:
     )
 
 
-def replaced(text: str, stated: list[Stated], values: tuple[float, ...], *, up: bool) -> str:
+def replaced(text: str, stated: list[Stated], values: Sequence[float], *, up: bool) -> str:
     """Return the text with other values of stated numbers."""
     for one, value in reversed(list(zip(stated, values, strict=True))):
         text = text[: one.start] + one.rewritten(value, up=up) + text[one.end :]

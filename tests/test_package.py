@@ -1,51 +1,47 @@
-"""What is built can be installed by itself and runs from anywhere."""
+"""What is built can be installed by itself and runs from anywhere; what is said of it in its files for others agrees."""
 
+import ast
+import importlib
 import re
+import runpy
 import subprocess
 import sys
 import sysconfig
+import tarfile
+import tomllib
 import venv
-from collections.abc import Callable
 from importlib import metadata
 from importlib.util import cache_from_source
 from pathlib import Path
 
 import pytest
+import yaml
+from markdown_it import MarkdownIt
 from packaging.requirements import Requirement
 
+from docs.extensions.description import description
+
 ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+SYSTEMS = {"ubuntu": "POSIX :: Linux", "macos": "MacOS", "windows": "Microsoft :: Windows"}
+PACKAGES = ("tsm", "fem_reference", "comparisons")
+OPTIONAL = {"pyvista", "meshio"}
+"""Libraries of a plain installation that everything but their own pictures and files works without."""
+
+
+def run(*command: object, folder: Path = ROOT, status: int = 0) -> "subprocess.CompletedProcess[str]":
+    words = list(map(str, command))
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == status, done.stderr
+    return done
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with the sdist and the wheel that is built of it."""
     folder = tmp_path_factory.mktemp("dist")
-    subprocess.run(
-        [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)],
-        check=True,
-        capture_output=True,
-    )
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", folder)
     return folder
-
-
-@pytest.fixture(scope="module")
-def python(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Interpreter of an environment that has the wheel, and of this one the libraries but not the project."""
-    home = tmp_path_factory.mktemp("environment")
-    site = environment(home, built)
-    (site / "libraries.pth").write_text(sysconfig.get_path("purelib"))
-    return home / "bin" / "python"
-
-
-@pytest.fixture(scope="module")
-def bare(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Interpreter of an environment with the wheel and what it requires, and nothing else: no pyvista, no meshio."""
-    home = tmp_path_factory.mktemp("bare")
-    site = environment(home, built)
-    for name in required("tsm-crossval"):
-        for entry in {file.parts[0] for file in metadata.files(name) or ()} - {"..", "__pycache__"}:
-            (site / entry).symlink_to(Path(str(metadata.distribution(name).locate_file(entry))))
-    return home / "bin" / "python"
 
 
 def environment(home: Path, built: Path) -> Path:
@@ -53,13 +49,8 @@ def environment(home: Path, built: Path) -> Path:
     venv.create(home, with_pip=False)
     [site] = home.glob("lib/python*/site-packages")
     [wheel] = built.glob("*.whl")
-    target = ["--target", str(site), "--no-deps", "--no-index"]
-    subprocess.run([sys.executable, "-m", "pip", "install", "-q", *target, str(wheel)], check=True)
+    run(sys.executable, "-m", "pip", "install", "-q", "--target", site, "--no-deps", "--no-index", wheel)
     return site
-
-
-OPTIONAL = {"pyvista", "meshio"}
-"""Libraries of a plain installation that everything but their own pictures and files works without."""
 
 
 def required(*names: str) -> set[str]:
@@ -67,8 +58,7 @@ def required(*names: str) -> set[str]:
     found: set[str] = set()
     wanted = list(names)
     while wanted:
-        for line in metadata.requires(wanted.pop()) or ():
-            requirement = Requirement(line)
+        for requirement in map(Requirement, metadata.requires(wanted.pop()) or ()):
             name = re.sub(r"[-_.]+", "-", requirement.name).lower()
             needed = requirement.marker is None or requirement.marker.evaluate({"extra": ""})
             if needed and name not in found | OPTIONAL:
@@ -84,73 +74,61 @@ def installed_size(name: str) -> int:
     return sum(path.stat().st_size for path in sources | compiled if path.is_file())
 
 
-def crossval(python: Path, folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
+def crossval(home: Path, folder: Path, line: str, status: int = 0) -> "subprocess.CompletedProcess[str]":
     code = "import sys; from comparisons.cli import main; sys.exit(main())"
-    return subprocess.run(
-        [str(python), "-I", "-c", code, *arguments], cwd=folder, check=False, capture_output=True, text=True
-    )
-
-
-def run(python: Path, folder: Path, *arguments: str) -> str:
-    done = crossval(python, folder, *arguments)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return run(home / "bin" / "python", "-I", "-c", code, *line.split(), folder=folder, status=status)
 
 
 @pytest.mark.slow
-def test_the_wheel_is_what_runs(python: Path, tmp_path: Path) -> None:
-    code = "import comparisons, tsm, fem_reference; print(comparisons.__file__, tsm.__file__, fem_reference.__file__)"
-    where = subprocess.run(
-        [str(python), "-I", "-c", code], cwd=tmp_path, check=True, capture_output=True, text=True
-    )
-    assert all(file.startswith(str(python.parents[1])) for file in where.stdout.split())
-
-
-@pytest.mark.slow
-def test_new_check_and_compare_run_from_the_wheel(python: Path, tmp_path: Path) -> None:
-    run(python, tmp_path, "new", "strip")
-    run(python, tmp_path, "check", "strip.toml")
-    assert '"$schema"' in run(python, tmp_path, "schema")
-    out = run(python, tmp_path, "compare", "ks-cantilever", "--out", "out")
-    assert "exact rod" in out
+def test_new_check_and_compare_run_from_the_wheel(built, tmp_path):
+    """In an environment that has the wheel, and of this one the libraries but not the project."""
+    home = tmp_path / "environment"
+    (environment(home, built) / "libraries.pth").write_text(sysconfig.get_path("purelib"))
+    code = f"import {', '.join(PACKAGES)}; print(tsm.__file__, fem_reference.__file__, comparisons.__file__)"
+    where = run(home / "bin" / "python", "-I", "-c", code, folder=tmp_path).stdout.split()
+    assert all(file.startswith(str(home)) for file in where)
+    crossval(home, tmp_path, "new strip")
+    crossval(home, tmp_path, "check strip.toml")
+    assert '"$schema"' in crossval(home, tmp_path, "schema").stdout
+    assert "exact rod" in crossval(home, tmp_path, "compare ks-cantilever --out out").stdout
     assert (tmp_path / "out" / "report.html").stat().st_size < 3e6
 
 
 @pytest.mark.slow
-def test_an_installation_without_pyvista_and_meshio(
-    bare: Path, tmp_path: Path, stated: Callable[..., None]
-) -> None:
+def test_an_installation_without_pyvista_and_meshio(built, tmp_path, stated):
     """It compares and views by matplotlib, refuses to read VTU files, and is small."""
-    lines = run(bare, tmp_path, "doctor").splitlines()
-    assert {line.split()[1] for line in lines if line.startswith("-")} >= OPTIONAL
-    assert not [line for line in lines if line.startswith("MISSING")]
-    done = crossval(bare, tmp_path, "compare", "ks-cantilever", "--out", "out")
-    assert done.returncode == 0
+    home = tmp_path / "bare"
+    site = environment(home, built)
+    for name in required("tsm-crossval"):
+        for entry in {file.parts[0] for file in metadata.files(name) or ()} - {"..", "__pycache__"}:
+            (site / entry).symlink_to(Path(str(metadata.distribution(name).locate_file(entry))))
+    looked_at = map(str.split, crossval(home, tmp_path, "doctor").stdout.splitlines())
+    marks = {what: mark for mark, what, *_ in looked_at}
+    assert {marks[name] for name in OPTIONAL} == {"-"}
+    assert "MISSING" not in marks.values()
+    done = crossval(home, tmp_path, "compare ks-cantilever --out out")
     assert [line for line in done.stderr.splitlines() if "tsm-crossval[" in line] == [
-        "side-by-side.png: pyvista is not installed (install tsm-crossval[view]), matplotlib drew the picture instead",
+        "side-by-side.png: pyvista is not installed (install tsm-crossval[view]), matplotlib drew the picture instead"
     ]
     assert {path.name for path in (tmp_path / "out").iterdir() if path.name[0] != "."} == {
         "report.html", "summary.json", "table.csv", "shapes.png", "shapes.svg", "side-by-side.png",
         "budget.png", "budget.svg", "budget.json", "tsm", "solid",
     }  # fmt: skip
-    run(bare, tmp_path, "view", "tip-load", "--mesh", "20x1", "--out", "view")
+    crossval(home, tmp_path, "view tip-load --mesh 20x1 --out view")
     assert (tmp_path / "view" / "view.gif").stat().st_size > 1000
-    done = crossval(bare, tmp_path, "view", "out/tsm", "--out", "view")
-    assert done.returncode == 2
-    assert done.stderr == "crossval: meshio: cannot be imported, install tsm-crossval[io]\n"
+    refused = crossval(home, tmp_path, "view out/tsm --out view", status=2)
+    assert refused.stderr == "crossval: meshio: cannot be imported, install tsm-crossval[io]\n"
     size = sum(map(installed_size, required("tsm-crossval"))) / 1e6
     assert size <= 330
     stated("install.without-pyvista", size, relative=0.2)
 
 
 @pytest.mark.slow
-def test_the_sdist_has_what_its_tests_need(built: Path) -> None:
-    import tarfile
-
+def test_the_sdist_has_what_its_tests_need(built):
     [sdist] = built.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    assert {
+    files = {
         "README.md",
         "CHANGELOG.md",
         "LICENSE",
@@ -158,7 +136,107 @@ def test_the_sdist_has_what_its_tests_need(built: Path) -> None:
         "Makefile",
         ".constraints.txt",
         "pyproject.toml",
-    } <= names
-    for folder in ("tsm", "comparisons", "fem_reference", "tests", "docs"):
-        assert any(name.startswith(f"{folder}/") for name in names)
+    }
+    assert files | {"tests", "docs", *PACKAGES} <= names | {name.partition("/")[0] for name in names}
     assert not [name for name in names if "__pycache__" in name or "_generated" in name]
+
+
+FRONTS = [
+    file.parent
+    for package in PACKAGES
+    for file in (ROOT / package).rglob("__init__.py")
+    if "__all__" in file.read_text()
+]
+
+
+@pytest.mark.parametrize("folder", [front.relative_to(ROOT) for front in FRONTS], ids=str)
+def test_a_package_shows_its_public_names_only_and_knows_its_version(folder):
+    package = importlib.import_module(".".join(folder.parts))
+    assert set(dir(package)) - {"__version__"} == set(package.__all__)
+    assert all(hasattr(package, name) for name in dir(package))
+    with pytest.raises(AttributeError, match="has no attribute 'nosuch'"):
+        package.nosuch  # noqa: B018
+    if len(folder.parts) == 1:
+        assert package.__version__ == metadata.version("tsm-crossval")
+        assert "__version__" in dir(package)
+
+
+COMMAND = "from comparisons.cli import main\ntry:\n    main({})\nexcept SystemExit:\n    pass"
+SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "4"]
+
+
+@pytest.mark.parametrize(
+    ("code", "there", "absent"),
+    [
+        ("import tsm", "numpy", {"scipy", "importlib.metadata"}),
+        (COMMAND.format(["-h"]), "comparisons.cli", {"numpy", "importlib.metadata", "psutil", "filelock"}),
+        (COMMAND.format(SOLVE), "tsm", {"scipy.linalg", "scipy.optimize", "scipy.sparse", "fem_reference"}),
+    ],
+    ids=["tsm", "help", "solve"],
+)
+def test_a_start_imports_what_it_uses(code, there, absent):
+    """The modules that cost most only where they are used; `make bench` measures the times."""
+    done = run(sys.executable, "-c", f"{code}\nimport sys\nprint(*sys.modules, file=sys.stderr)")
+    modules = set(done.stderr.split())
+    assert there in modules
+    assert not modules & absent
+
+
+def classified(kind: str) -> set[str]:
+    return {line.removeprefix(kind) for line in PROJECT["classifiers"] if line.startswith(kind)}
+
+
+def workflow(name: str) -> dict:
+    return yaml.safe_load((ROOT / ".github" / "workflows" / name).read_text())
+
+
+def test_every_system_and_the_oldest_and_newest_python_are_tried_at_one_version():
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())["version"]
+    released = re.search(r"^## (\d\S*)", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert cited == released[1] == PROJECT["version"] == metadata.version("tsm-crossval")
+    named = {item for item in classified("Programming Language :: Python :: ") if "." in item}
+    oldest, *_, newest = pythons = sorted(named, key=lambda version: int(version.partition(".")[2]))
+    assert PROJECT["requires-python"] == f">={oldest}"
+    for job in ("wheel", "fast"):
+        matrix = workflow("tests.yml")["jobs"][job]["strategy"]["matrix"]
+        assert matrix["python"] == [oldest, newest]
+        systems = {SYSTEMS[system.partition("-")[0]] for system in matrix["os"]}
+        assert systems == classified("Operating System :: ")
+    assert yaml.safe_load((ROOT / ".readthedocs.yaml").read_text())["build"]["tools"]["python"] in pythons
+    platforms = re.search(r"(?m)^PYTHONS = (.*)$", (ROOT / "tests/platforms/noxfile.py").read_text())
+    assert list(ast.literal_eval(platforms[1])) == pythons
+
+
+def test_a_workflow_runs_what_there_is():
+    jobs = [job for name in ("tests.yml", "docs.yml") for job in workflow(name)["jobs"].values()]
+    runs = [step["run"] for job in jobs for step in job["steps"] if "run" in step]
+    targets = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    assert {line.split()[1] for line in runs if line.startswith("make ")} <= targets
+    assert ".ci/run" in runs
+    assert (ROOT / ".ci" / "run").is_file()
+
+
+def test_the_description_is_whole_without_the_repository():
+    readme = (ROOT / "README.md").read_text()
+    text = description(readme)
+    tokens = [part for one in MarkdownIt("commonmark").parse(text) for part in (one, *(one.children or ()))]
+    assert not [part for part in tokens if part.type in {"image", "html_inline", "html_block"}]
+    links = [str(part.attrs["href"]) for part in tokens if part.type == "link_open"]
+    assert [link for link in links if not link.startswith("https://")] == []
+    for kept in (r"(?m)^#+ .*", r"(?s)```.*?```"):
+        assert re.findall(kept, text) == re.findall(kept, readme)
+
+
+def test_a_set_up_is_one_line_a_bar_and_what_a_failed_installer_said(tmp_path):
+    waiting = ROOT / ".ci" / "waiting.py"
+    (tmp_path / ".constraints.txt").write_text("a==1\nb==2\n")
+    for code, status, said in (
+        ("print('Collecting a')", 0, ""),
+        ("import sys; sys.exit('boom')", 1, "boom\n"),
+    ):
+        command = (sys.executable, waiting, "installing", ".venv", sys.executable, "-c", code)
+        done = run(*command, folder=tmp_path, status=status)
+        assert (done.stdout, done.stderr) == ("", f"installing\n{said}")
+    part = runpy.run_path(str(waiting))["part"]
+    log = "Collecting a\n  Downloading a.whl\nCollecting b (from a)\n"
+    assert [part("", 0, 4), part(log, 0, 4), part(log, 4, 4), part(log, 9, 4)] == [0.0, 0.25, 1.0, 1.0]

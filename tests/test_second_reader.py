@@ -56,28 +56,26 @@ def misread(text: str) -> dict[str, tuple[object, object]]:
     scene, again = read_scene(text, "scene"), read(text)
     once = stated(scene)
     assert once.keys() == again.keys()
-    reach = max(abs(value) for beam in scene.beams for value in (*beam.start, *beam.end, beam.length))
-    for pin in scene.pins:
-        reach = max(reach, *(abs(value) for point in pin.points for value in point))
+    sizes = [value for beam in scene.beams for value in (*beam.start, *beam.end, beam.length)]
+    sizes += [value for pin in scene.pins for point in pin.points for value in point]
+    reach = max(map(abs, sizes))
     wrong = {}
     for name, values in once.items():
-        others = again[name]
-        size = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
-        scale = max(size, reach) if name.endswith((" axis", " positions")) else size
-        apart = [
-            abs(a - b) for a, b in zip(values, others, strict=True) if not (math.isnan(a) and math.isnan(b))
-        ]
+        scale = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+        scale = max(scale, reach) if name.endswith((" axis", " positions")) else scale
+        pairs = zip(values, again[name], strict=True)
+        apart = [abs(a - b) for a, b in pairs if not (math.isnan(a) and math.isnan(b))]
         if not max(apart, default=0.0) <= EXACT * scale:
-            wrong[name] = (values, others)
+            wrong[name] = (values, again[name])
     return wrong
 
 
 @pytest.mark.parametrize("name", built_in_scenes())
-def test_a_built_in_scene_is_read_as_it_stands(name: str) -> None:
+def test_a_built_in_scene_is_read_as_it_stands(name):
     assert not misread(built_in_scenes()[name])
 
 
 @pytest.mark.parametrize("first", range(0, DRAWN, CHUNK))
-def test_drawn_scenes_are_read_as_they_stand(first: int) -> None:
+def test_drawn_scenes_are_read_as_they_stand(first):
     for seed in range(first, first + CHUNK):
         assert not misread(to_toml(drawn_special(seed))), f"seed {seed}"

@@ -1,4 +1,4 @@
-"""Files are whole or not there."""
+"""Files are whole or not there, and no file of a user is replaced."""
 
 import errno
 import os
@@ -9,79 +9,68 @@ from threading import Thread
 
 import pytest
 
+from comparisons import files  # faults of a disk are made here
 from comparisons.cli import main
-from comparisons.files import (
-    WRITTEN,
-    OutputError,
-    alone_in,
-    replacing,
-    result_file,
-    writable_file,
-    writable_folder,
-    write_text,
-)
 from comparisons.scene import load_scene, to_toml
 
 
-def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        (RuntimeError("power cut"), "^power cut$"),
+        (
+            OSError(errno.ENOSPC, "No space left on device"),
+            r"a\.txt: cannot be written: No space left on device$",
+        ),
+    ],
+)
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(fault, told, tmp_path):
     path = tmp_path / "a.txt"
-    write_text(path, "old")
 
     def fail() -> None:
-        with replacing(path) as temporary:
-            temporary.write_text("half")
+        with files.replacing(path) as temporary:
             assert temporary.suffix == path.suffix
-            raise RuntimeError("power cut")
+            temporary.write_text("half")
+            raise fault
 
-    with pytest.raises(RuntimeError, match="power cut"):
-        fail()
-    assert path.read_text() == "old"
-    assert sorted(tmp_path.iterdir()) == [tmp_path / WRITTEN, path]
-    write_text(path, "new")
+    for old in (None, "old"):
+        if old:
+            files.write_text(path, old)
+        there = {file.name: file.read_text() for file in tmp_path.iterdir()}
+        with pytest.raises((RuntimeError, ValueError), match=told):
+            fail()
+        assert {file.name: file.read_text() for file in tmp_path.iterdir()} == there
+    assert there.keys() == {"a.txt", ".crossval"}
+    files.write_text(path, "new")
     assert path.read_text() == "new"
 
 
-def test_places_that_cannot_be_written(tmp_path: Path) -> None:
+def test_places_that_cannot_be_written_are_named_and_a_link_is_followed(tmp_path):
     (tmp_path / "file").write_text("")
-    for folder in ("file", "file/below", "nul\0l"):
-        with pytest.raises(OutputError, match="cannot be written"):
-            writable_folder(tmp_path / folder)
     os.mkfifo(tmp_path / "pipe")
-    for file in (tmp_path, tmp_path / "pipe", tmp_path / "none" / "a.json"):
-        with pytest.raises(OutputError, match="cannot be written"):
-            writable_file(file)
-    assert writable_file(tmp_path / "a.json").parent == writable_folder(tmp_path / "new").parent
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "new", "pipe"]
-
-
-def test_a_link_is_followed_not_replaced(tmp_path: Path) -> None:
+    for name in ("file", "file/below", "nul\0l"):
+        with pytest.raises(ValueError, match="cannot be written"):
+            files.writable_folder(tmp_path / name)
+    for name in (".", "pipe", "none/a.json"):
+        with pytest.raises(ValueError, match="cannot be written"):
+            files.result_file(tmp_path / name)
     target, link = tmp_path / "target.json", tmp_path / "link.json"
-    write_text(target, "old")
+    files.write_text(target, "old")
     link.symlink_to(target)
-    write_text(result_file(link), "new")
+    files.write_text(files.result_file(link), "new")
     assert link.is_symlink()
     assert target.read_text() == "new"
 
 
-def test_no_room_names_the_file(tmp_path: Path) -> None:
-    def fill() -> None:
-        with replacing(tmp_path / "a.txt"):
-            raise OSError(errno.ENOSPC, "No space left on device")
-
-    with pytest.raises(OutputError, match=r"a\.txt: cannot be written: No space left on device"):
-        fill()
-    assert not list(tmp_path.iterdir())
-
-
-def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
+def test_sets_of_files_are_written_one_after_the_other(tmp_path):
     order: list[str] = []
 
     def write() -> None:
-        with alone_in(tmp_path):
+        with files.alone_in(tmp_path):
             order.append("second")
 
     other = Thread(target=write)
-    with alone_in(tmp_path):
+    with files.alone_in(tmp_path):
         other.start()
         other.join(0.2)
         order.append("first")
@@ -91,92 +80,85 @@ def test_sets_of_files_are_written_one_after_the_other(tmp_path: Path) -> None:
 
 HERE = "of a user"
 """What a command must leave alone."""
-INTO_A_FILE = {
-    "check": (["check", "s.toml", "--json", "FILE"], ["check", "s.toml", "--out", "FILE.png"]),
-    "solve": tuple(
-        ["solve", "s.toml", option, f"FILE{ending}"]
-        for option, ending in (("--json", ""), ("--csv", ""), ("--plot", ".svg"))
-    ),
-    "certify": (["certify", "s.toml", "--json", "FILE"],),
-    "gate": (["gate", "s.toml", "--max-error", "force=1", "--junit", "FILE"],),
-    "manual": (["manual", "--only", "roll-up", "--quiet", "--out", "new", "--junit", "FILE"],),
-}
+INTO_A_FILE = """check s.toml --json FILE
+check s.toml --out FILE.png
+solve s.toml --json FILE
+solve s.toml --csv FILE
+solve s.toml --plot FILE.svg
+certify s.toml --json FILE
+gate s.toml --max-error force=1 --junit FILE
+manual --only roll-up --quiet --out new --junit FILE"""
 INTO_A_FOLDER = {
-    "compare": (["compare", "s.toml"], ("report.html", "budget.json", "tsm/tsm.pvd", "solid/solid-0002.vtm")),
-    "view": (["view", "s.toml"], ("view.png", "view.gif")),
-    "trade": (["trade", "s.toml", "--quick"], ("trade.csv", "report.html")),
-    "league": (["league", "s.toml"], ("league.svg", "report.html")),
-    "reproduce": (["reproduce", "fig8", "--quick"], ("report.html",)),
-    "extremes": (["extremes", "--quick"], ("extremes.csv",)),
-    "study": (["study", "locking"], ("locking.csv",)),
-    "manual": (["manual", "--only", "roll-up", "--quiet"], ("index.md", "roll-up.svg")),
-    "cards": (["manual", "--only", "roll-up", "--cards"], ("roll-up.json", "card.schema.json")),
+    "compare s.toml --out": ("report.html", "budget.json", "tsm/tsm.pvd", "solid/solid-0002.vtm"),
+    "view s.toml --out": ("view.png", "view.gif"),
+    "trade s.toml --quick --out": ("trade.csv", "report.html"),
+    "league s.toml --out": ("league.svg", "report.html"),
+    "reproduce fig8 --quick --out": ("report.html",),
+    "extremes --quick --out": ("extremes.csv",),
+    "study locking --out": ("locking.csv",),
+    "manual --only roll-up --quiet --out": ("index.md", "roll-up.svg"),
+    "manual --only roll-up --cards": ("roll-up.json", "card.schema.json"),
 }
 
 
 @pytest.fixture
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.chdir(tmp_path)
-    path = tmp_path / "s.toml"
-    path.write_text(to_toml(replace(load_scene("tip-load"), load_parameters=2)))
-    return path
+    text = to_toml(replace(load_scene("tip-load"), load_parameters=2))
+    Path("s.toml").write_text(text)
+    return text
 
 
-@pytest.mark.parametrize("command", INTO_A_FILE)
-def test_no_file_of_a_user_is_replaced(command: str, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("line", INTO_A_FILE.splitlines())
+def test_no_file_of_a_user_is_replaced(line, scene, capsys):
     """The scene itself among them; and the same command replaces what it wrote, until that is edited."""
-    text = scene.read_text()
-    for arguments in INTO_A_FILE[command]:
-        mine = Path(next(word for word in arguments if word.startswith("FILE")).replace("FILE", "mine"))
-        mine.write_text(HERE)
-        for file, there in ((str(mine), HERE), ("s.toml", text)):
-            given = [file if word.startswith("FILE") else word for word in arguments]
-            assert main(given) == 2
-            error = capsys.readouterr().err
-            assert error.count("\n") == 1
-            assert re.search(r"is there already, and is not as crossval wrote it|must end in", error)
-            assert Path(file).read_text() == there
-        mine.unlink()
-        given = [str(mine) if word.startswith("FILE") else word for word in arguments]
-        assert main(given) == main(given) == 0
-        with mine.open("a") as file:
-            file.write("edited")
-        assert main(given) == 2
-        assert "is there already" in capsys.readouterr().err
-        assert mine.read_bytes().endswith(b"edited")
+
+    def ended(file: str) -> int:
+        return main([file if word.startswith("FILE") else word for word in line.split()])
+
+    mine = Path(re.findall(r"FILE\S*", line)[0].replace("FILE", "mine"))
+    mine.write_text(HERE)
+    for file, there in ((str(mine), HERE), ("s.toml", scene)):
+        assert ended(file) == 2
+        (error,) = capsys.readouterr().err.splitlines()
+        assert re.search(r"is there already, and is not as crossval wrote it|must end in", error)
+        assert Path(file).read_text() == there
+    mine.unlink()
+    assert ended(str(mine)) == ended(str(mine)) == 0
+    with mine.open("a") as file:
+        file.write("edited")
+    assert ended(str(mine)) == 2
+    assert "is there already" in capsys.readouterr().err
+    assert mine.read_bytes().endswith(b"edited")
 
 
-@pytest.mark.parametrize("command", INTO_A_FOLDER)
-def test_a_folder_of_a_user_is_left_alone(
-    command: str, scene: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.usefixtures("scene")
+@pytest.mark.parametrize("line", INTO_A_FOLDER)
+def test_a_folder_of_a_user_is_left_alone(line, capsys):
     """Before anything is computed, but for a few files whose names are not known by then."""
-    arguments, names = INTO_A_FOLDER[command]
-    for number, name in enumerate(names):
+    for number, name in enumerate(INTO_A_FOLDER[line]):
         mine = Path(str(number), name)
         mine.parent.mkdir(parents=True)
         mine.write_text(HERE)
-        assert main([*arguments, *([] if "--cards" in arguments else ["--out"]), str(number)]) == 2
-        error = capsys.readouterr().err.splitlines()
-        assert error[-1].startswith(f"crossval: {mine}: is there already, and is not as crossval wrote it")
+        assert main([*line.split(), str(number)]) == 2
+        error = capsys.readouterr().err.splitlines()[-1]
+        assert error.startswith(f"crossval: {mine}: is there already, and is not as crossval wrote it")
         assert mine.read_text() == HERE
-    assert scene.is_file()
 
 
-def test_an_answer_is_not_replaced_by_its_certificate(
-    scene: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["solve", str(scene), "--json", "a.json"]) == 0
-    answer = Path("a.json").read_bytes()
-    assert main(["certify", "a.json", "--scene", "s.toml", "--json", "./a.json"]) == 2
-    assert "--json ./a.json: is the answer to be judged" in capsys.readouterr().err
-    assert Path("a.json").read_bytes() == answer
-
-
-def test_a_new_scene_is_a_users_from_the_beginning(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["new", "mine", "--like", "tip-load"]) == 0
-    text = Path("mine.toml").read_text()
-    assert main(["check", "mine.toml", "--json", "mine.toml"]) == 2
-    assert "mine.toml: is there already" in capsys.readouterr().err
-    assert Path("mine.toml").read_text() == text
-    assert scene.is_file()
+@pytest.mark.usefixtures("scene")
+def test_an_answer_is_not_replaced_by_its_certificate_nor_a_new_scene_by_anything(capsys):
+    assert main(["solve", "s.toml", "--json", "a.json"]) == main(["new", "mine", "--like", "tip-load"]) == 0
+    judged = (
+        "certify a.json --scene s.toml --json ./a.json",
+        "a.json",
+        "--json ./a.json: is the answer to be judged",
+    )
+    for line, file, told in (
+        judged,
+        ("check mine.toml --json mine.toml", "mine.toml", "mine.toml: is there already"),
+    ):
+        there = Path(file).read_bytes()
+        assert main(line.split()) == 2
+        assert told in capsys.readouterr().err
+        assert Path(file).read_bytes() == there

@@ -12,15 +12,17 @@ from pathlib import Path
 from comparisons.cli import main
 
 ROOT = Path(__file__).parents[2]
-SLOW = (
-    "crossval trade",
-    "crossval compare",
-    "crossval study",
-    "crossval reproduce",
-    "crossval league",
-    "crossval view",
+SLOW = tuple(
+    f"crossval {command}" for command in ("trade", "compare", "study", "reproduce", "league", "view")
 )
 """Commands of many seconds, left to the slow tests."""
+TARGETS = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+
+
+def pages() -> dict[str, str]:
+    """Return the texts of the README and of the pages that are written by hand, by their paths."""
+    files = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    return {str(path.relative_to(ROOT)): path.read_text() for path in files if "_generated" not in path.parts}
 
 
 def blocks(markdown: str) -> list[tuple[str, str]]:
@@ -28,16 +30,11 @@ def blocks(markdown: str) -> list[tuple[str, str]]:
     return re.findall(r"^```(\w*)\n(.*?)^```$", markdown, re.DOTALL | re.MULTILINE)
 
 
-def make_targets() -> set[str]:
-    """Return the targets of the Makefile."""
-    return set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
-
-
 def run_line(line: str) -> str:
     """Run one line of a shell block in this process and return what it printed; its exit status is 0 or as its comment says."""
     program, *arguments = shlex.split(line, comments=True)
     if program == "make":
-        assert set(arguments) <= make_targets(), line
+        assert set(arguments) <= TARGETS, line
         return ""
     assert program == "crossval", line
     stated = re.search(r"# exit status (\d+)$", line)
@@ -50,15 +47,9 @@ def run_line(line: str) -> str:
 
 def run_python(source: str, folder: Path) -> str:
     """Run a Python block in a process of its own and return what it printed; warnings are errors."""
-    path = os.pathsep.join([str(ROOT), str(folder)])
-    run = subprocess.run(
-        [sys.executable, "-W", "error", "-c", source],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(folder)])}
+    command = [sys.executable, "-W", "error", "-c", source]
+    run = subprocess.run(command, cwd=folder, env=path, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     return run.stdout
 
@@ -89,10 +80,8 @@ def run_page(markdown: str, folder: Path, *, slow: bool) -> None:
             printed = run_python(text, folder)
         elif kind == "sh":
             lines = [line for line in text.splitlines() if line]
-            if not slow and any(line.startswith(SLOW) for line in lines):
-                printed = None
-                continue
-            printed = "".join(run_line(line) for line in lines)
+            left_out = not slow and any(line.startswith(SLOW) for line in lines)
+            printed = None if left_out else "".join(run_line(line) for line in lines)
         elif kind == "toml":
             assert name, f"a scene needs a first line with its file: {text[:60]}"
         elif kind == "text" and printed is not None:

@@ -2,83 +2,55 @@
 
 import json
 import re
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
 import pytest
 
-import comparisons
 import fem_reference
 import tsm
-from comparisons.cli import main
 from comparisons.models.options import ModelError, Options
-from comparisons.models.outside.request import request
-from comparisons.models.outside.status import ProgramStatus
+from comparisons.models.outside.request import request  # what a program reads: no command shows it
 from comparisons.referee import Verdict
-from comparisons.scene import SPECIAL, LoadSpec, Scene, built_in_scenes, load_scene, to_toml, unstated
-from comparisons.scene.keys import PROGRAMS, special_keys
-from comparisons.scene.read import LIST_FIELDS, LISTS, STAGE_LISTS
-from comparisons.scene.words import NOT_MODELLED
+from comparisons.scene import SPECIAL, built_in_scenes, load_scene, to_toml, unstated
 from docs.extensions import response, scene_file, scope, statuses
 from docs.extensions.generated import PAGES, write_pages
+from tests.docs.snippets import ROOT, run_line
 
-FINDINGS = Path(__file__).parents[1] / "comparisons" / "findings"
-
-
-def test_every_key_of_a_scene_is_listed() -> None:
-    sections = dict(part.partition("\n")[::2] for part in scene_file.page().split("## ")[1:])
-    moves = {
-        f"`{name} of [[stage]]`": record for name, record in STAGE_LISTS.items() if record is not LoadSpec
-    }
-    records = {**{f"`[[{kind}]]`": record for kind, record in LISTS.items()}, **moves}
-    assert set(sections) == {"`[scene]`", *records}
-    for header, record in records.items():
-        rows = [line for line in sections[header].splitlines() if line.startswith("| `")]
-        assert [row.split("`")[1] for row in rows] == [item.name for item in fields(record)]
-        assert all(row.rstrip(" |").rpartition("|")[2].strip() for row in rows), "a key without a meaning"
-
-
+FINDINGS = ROOT / "tests" / "comparisons" / "findings"
 NUMERICS = {
-    *(
-        "elements",
-        "nodes",
-        "mesh",
-        "solid_clamp",
-        "solid_mesh_file",
-        "solid_element",
-        "penalty",
-        "penetration",
-    ),
-    *(
-        "name",
-        "units",
-        "load_parameters",
-        "beam",
-        "end",
-        "keep",
-        "node",
-        "free",
-        "start",
-        "stiffness",
-        "surface",
-    ),
-}
+    "elements", "nodes", "mesh", "solid_clamp", "solid_mesh_file", "solid_element", "penalty", "penetration", "name", "units",
+    "load_parameters", "beam", "end", "keep", "node", "free", "start", "stiffness", "surface",
+}  # fmt: skip
 """Keys that say what something is called, where it is or how it is computed."""
 
 
-def test_every_key_answers_a_question() -> None:
-    page = scope.page()
-    named = set(re.findall(r"`(?:\[\[)?(\w+)", page.partition("## What is not modelled")[0]))
-    keys = {item.name for record in (*LISTS.values(), Scene) for item in fields(record)} - LIST_FIELDS
-    assert keys - NUMERICS <= named
-    assert set(LISTS) - {"beam"} <= named
-    assert all(f"`{word}`" in page for topic in NOT_MODELLED for word in topic.words.split())
+@pytest.fixture(scope="module")
+def tables() -> dict[str, dict[str, dict]]:
+    """The tables of a scene file and their keys, as the schema has them."""
+    found = json.loads(run_line("crossval schema"))["properties"]
+    lists = {f"[[{name}]]": one["items"] for name, one in found.items() if name != "scene"}
+    return {header: one["properties"] for header, one in {"[scene]": found["scene"], **lists}.items()}
 
 
-def test_a_question_has_a_scene_that_says_it() -> None:
+def test_every_key_of_a_scene_is_listed_with_a_meaning(tables):
+    sections = dict(part.partition("`\n")[::2] for part in scene_file.page().split("## `")[1:])
+    row = re.compile(r"(?m)^\| `(\w+)` .*\| (.*?) *\|$")
+    rows = {header: row.findall(text) for header, text in sections.items()}
+    for header, keys in tables.items():
+        assert [key for key, _ in rows[header]] == list(keys), header
+    assert sections.keys() - tables.keys() == {"support of [[stage]]", "pin of [[stage]]"}
+    assert all(meaning for listed in rows.values() for _, meaning in listed), "a key without a meaning"
+
+
+def test_every_key_answers_a_question_that_a_scene_asks(tables):
+    named = set(re.findall(r"`(?:\[\[)?(\w+)", scope.page().partition("## What is not modelled")[0]))
+    keys = {key for own in tables.values() for key in own} | {header.strip("[]") for header in tables}
+    assert keys - NUMERICS - {"scene"} <= named
     questions = [item for group in scope.GROUPS.values() for item in group]
-    assert {key for item in questions for key in special_keys(item.scene)} == set(SPECIAL)
+    for key in SPECIAL:
+        assert any(unstated(item.scene, "", SPECIAL.keys() - {key}) for item in questions), key
     friction = next(item for item in questions if item.wish == "friction")
     assert friction.scene.contacts[0].friction > 0
     assert len({to_toml(item.scene) for item in questions}) == len(questions) - 1, "two pins answer twice"
@@ -95,84 +67,73 @@ IN_CODE = (
 """How a status stands in a module, besides as a member of a class of statuses."""
 
 
-def test_every_status_in_the_code_is_on_the_page() -> None:
+def test_every_status_in_the_code_is_on_the_page():
     page = statuses.page()
-    modules = [Path(package.__path__[0]) for package in (comparisons, tsm, fem_reference)]
-    texts = [path.read_text(encoding="utf-8") for module in modules for path in module.rglob("*.py")]
-    found = {name for text in texts for one in IN_CODE for name in re.findall(one, text, re.MULTILINE)}
-    found |= {one.name for kind in (tsm.Status, fem_reference.Status, ProgramStatus, Verdict) for one in kind}
+    packages = [ROOT / name for name in ("comparisons", "tsm", "fem_reference")]
+    files = [file for package in packages for file in package.rglob("*.py")]
+    text = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    found = {name for one in IN_CODE for name in re.findall(one, text, re.MULTILINE)}
+    kinds = (tsm.Status, fem_reference.Status, statuses.ProgramStatus, Verdict)
+    found |= {one.name for kind in kinds for one in kind}
     assert not [name for name in sorted(found) if f"`{name}`" not in page]
-    assert set(statuses.CHECKS) | set(statuses.CASES) | {"LOST", "JAMMED", "SLIPPED_OFF"} <= found
+    assert {*statuses.CHECKS, *statuses.CASES, "LOST", "JAMMED", "SLIPPED_OFF"} <= found
 
 
-@pytest.mark.slow_at(
-    "double-beam --model tsm --elements 5",
-    "ks-cantilever --model rod",
-    "ks-cantilever --model solid --mesh 16x1",
-    "ks-cantilever --model tsm --elements 5",
-    "ks-tied-tip --model tsm --element exact",
-)
+def check_schema(schema: dict, data: dict) -> None:
+    """The data obeys a schema that is one, and that allows nothing else."""
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.Draft202012Validator(schema).validate(data)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft202012Validator(schema).validate({**data, "unheard_of": 1})
+
+
 @pytest.mark.parametrize(
-    "arguments",
+    ("scene", "options"),
     [
-        "ks-cantilever --model tsm --elements 5",
-        "ks-cantilever --model rod",
-        "ks-cantilever --model elastica",
-        "ks-cantilever --model solid --mesh 16x1",
-        "double-beam --model tsm --elements 5",
-        "ks-tied-tip --model tsm --element exact",
-        "ks-cantilever --accuracy 1e-3",
+        ("ks-cantilever", "--model tsm --elements 5"),
+        ("ks-cantilever", "--model elastica"),
+        ("ks-cantilever", "--accuracy 1e-3"),
+        ("double-beam", "--model tsm --elements 5"),
+        ("ks-tied-tip", "--model tsm --element exact"),
+        ("ks-face", "--model tsm"),
+        pytest.param("ks-face", "--model rod", marks=pytest.mark.slow),
+        pytest.param("ks-face", "--model solid", marks=pytest.mark.slow),
     ],
 )
-def test_json_output_obeys_its_schema(arguments: str, tmp_path: Path) -> None:
-    path = tmp_path / "response.json"
-    assert main(["solve", *arguments.split(), "--json", str(path)]) == 0
-    found = json.loads(path.read_text())
-    jsonschema.Draft202012Validator.check_schema(response.SCHEMA)
-    jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.Draft202012Validator(response.SCHEMA).validate({**found, "unheard_of": 1})
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("model", ["tsm", pytest.param("rod", marks=pytest.mark.slow), "solid"])
-def test_json_output_with_friction_obeys_its_schema(
-    model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_json_output_obeys_its_schema(scene, options, tmp_path, monkeypatch):
+    """On the faces with friction, which slips both ways."""
     monkeypatch.chdir(tmp_path)
-    scene = load_scene("ks-face")
-    rough = replace(scene, contacts=(replace(scene.contacts[0], friction=0.3),))
-    Path("rough.toml").write_text(to_toml(rough))
-    assert main(["solve", "rough.toml", "--model", model, "--json", "rough.json"]) == 0
-    found = json.loads(Path("rough.json").read_text())
-    jsonschema.Draft202012Validator(response.SCHEMA).validate(found)
-    (contact,) = found["contacts"].values()
-    assert set(contact["friction"]["slip"]) == {-1, 0, 1}
-    assert contact["friction"]["dissipated"][-1] > 0.0
-    assert ("work" in found) is (model != "solid")
-
-
-def test_every_kind_of_event_is_in_the_schema() -> None:
+    asked = load_scene(scene)
+    if scene == "ks-face":
+        asked = replace(asked, contacts=(replace(asked.contacts[0], friction=0.3),))
+    else:
+        asked = replace(asked, load_parameters=5)
+    Path("my.toml").write_text(to_toml(asked))
+    run_line(f"crossval solve my.toml {options} --json a.json")
+    found = json.loads(Path("a.json").read_text())
+    check_schema(response.SCHEMA, found)
+    if scene == "ks-face":
+        (contact,) = found["contacts"].values()
+        assert set(contact["friction"]["slip"]) == {-1, 0, 1}
+        assert contact["friction"]["dissipated"][-1] > 0.0
+        assert ("work" in found) is ("solid" not in options)
     kinds = response.SCHEMA["properties"]["events"]["items"]["properties"]["kind"]["enum"]
     assert set(kinds) == {kind.value for kind in tsm.EventKind}
 
 
 @pytest.mark.parametrize("scene", [*built_in_scenes(), *map(str, sorted(FINDINGS.glob("*.toml")))])
-def test_a_resolved_scene_obeys_its_schema(scene: str) -> None:
+def test_a_resolved_scene_obeys_its_schema(scene):
     found = load_scene(scene)
-    if unstated(found, "the resolved scene", PROGRAMS) is not None:
+    if unstated(found, "the resolved scene") is not None:
         with pytest.raises(ModelError, match="the resolved scene does not state"):
             request(found, Options(), found.times)
         return
     data = json.loads(request(found, Options(elements=7), found.times))
-    jsonschema.Draft202012Validator.check_schema(response.SCENE)
-    jsonschema.Draft202012Validator(response.SCENE).validate(data)
+    check_schema(response.SCENE, data)
     assert [beam["elements"] for beam in data["beams"]] == [7] * len(found.beams)
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.Draft202012Validator(response.SCENE).validate({**data, "unheard_of": 1})
 
 
-def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path: Path) -> None:
+def test_pages_are_written_and_an_unchanged_one_keeps_its_time(tmp_path):
     write_pages(tmp_path)
     times = {name: (tmp_path / name).stat().st_mtime_ns for name in PAGES}
     (tmp_path / "messages.md").write_text("stale")

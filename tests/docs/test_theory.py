@@ -6,15 +6,10 @@ import pytest
 
 from docs.extensions.mathml import mathml
 from docs.extensions.proofs import exists
-from tests.docs.snippets import ROOT
+from tests.docs.snippets import pages
 
-FOLDER = ROOT / "docs"
-PAGES = {
-    str(path.relative_to(FOLDER)): path.read_text()
-    for path in sorted(FOLDER.rglob("*.md"))
-    if "_generated" not in path.parts
-}
-THEORY = [page for page in PAGES if page.startswith("theory/")]
+PAGES = pages()
+THEORY = {page: text for page, text in PAGES.items() if page.startswith("docs/theory/")}
 EQUATION = re.compile(r"^```\{math\}\n:label: ([\w-]+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 TEST = re.compile(r"\{test\}`([^`]+)`")
 
@@ -35,31 +30,25 @@ def proofs(page: str) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("page", THEORY)
-def test_every_equation_names_its_proof(page: str) -> None:
-    text = PAGES[page]
-    proven = proofs(text)
-    assert len(proven) == len(re.findall(r"^```\{math\}", text, re.MULTILINE)) > 0
-    assert all(exists(test) for tests in proven.values() for test in tests)
+def test_every_equation_names_its_proof_and_becomes_mathml(page):
+    equations = EQUATION.findall(THEORY[page])
+    assert (
+        len(proofs(THEORY[page])) == len(re.findall(r"(?m)^```\{math\}", THEORY[page])) == len(equations) > 0
+    )
+    for formula in [text for _, text in equations] + re.findall(r"\$([^$\n]+)\$", THEORY[page]):
+        made = mathml(formula, "block")
+        assert made.startswith("<math")
+        assert "\\" not in re.sub(r"<annotation.*?</annotation>", "", made), formula
 
 
-def test_an_equation_without_proof_is_found() -> None:
+def test_an_equation_without_proof_is_found():
     equation = "```{math}\n:label: a\nx = 1\n```\n"
     assert proofs(f"# Title\n{equation}{{test}}`t`") == {"a": ["t"]}
     with pytest.raises(AssertionError, match="a"):
         proofs(f"# Title\n{equation}\n# Next\n{{test}}`t`")
 
 
-def test_every_test_named_exists() -> None:
+def test_every_test_named_exists():
     named = {test for text in PAGES.values() for test in TEST.findall(text)}
     assert len(named) > 80
     assert sorted(test for test in named if not exists(test)) == []
-
-
-def test_every_equation_becomes_mathml() -> None:
-    formulas = [formula for page in THEORY for _, formula in EQUATION.findall(PAGES[page])]
-    formulas += [formula for page in THEORY for formula in re.findall(r"\$([^$\n]+)\$", PAGES[page])]
-    assert len(formulas) > 80
-    for formula in formulas:
-        made = mathml(formula, "block")
-        assert made.startswith("<math")
-        assert "\\" not in re.sub(r"<annotation.*?</annotation>", "", made), formula

@@ -1,29 +1,41 @@
 """A short comparison with its page, and a browser to look at pages."""
 
+import io
 import json
 import re
 import shutil
 import subprocess
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from html import escape, unescape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
-from comparisons.compare import compare
-from comparisons.scene import load_scene
+from comparisons.cli import main
+from comparisons.scene import load_scene, to_toml
 
-STEPS = 10
+KS = replace(load_scene("ks-cantilever"), load_parameters=5)
+
+
+class Compared(NamedTuple):
+    """What a comparison wrote and said."""
+
+    folder: Path
+    printed: str
+    progress: str
 
 
 @pytest.fixture(scope="session")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of a comparison over ten load parameters."""
-    folder = tmp_path_factory.mktemp("compared")
-    found = compare(replace(load_scene("ks-cantilever"), load_parameters=STEPS), folder, lambda _: None)
-    assert folder / "report.html" in found.files
-    return folder
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
+    """A comparison of `KS` by the command."""
+    folder, out, err = tmp_path_factory.mktemp("compared"), io.StringIO(), io.StringIO()
+    scene = folder.with_suffix(".toml")
+    scene.write_text(to_toml(KS))
+    with redirect_stdout(out), redirect_stderr(err):
+        assert main(["compare", str(scene), "--out", str(folder)]) == 0
+    return Compared(folder, out.getvalue(), err.getvalue())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,44 +45,30 @@ class Browser:
     program: str
     folder: Path
 
-    def _run(self, page: Path, *flags: str) -> subprocess.CompletedProcess[str]:
+    def run(self, page: Path, *flags: str) -> subprocess.CompletedProcess[str]:
+        """Show a page."""
         command = [
             self.program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr",
             "--virtual-time-budget=4000", f"--user-data-dir={self.folder / 'profile'}", *flags, page.as_uri(),
         ]  # fmt: skip
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
 
-    def told(self, page: Path, script: str, *flags: str, width: int = 1200) -> Any:
-        """Run `script`, which fills the table `told`, in a copy of `page`; return the table and what the console says.
+    def told(self, page: Path, script: str, *, width: int = 1200) -> Any:
+        """Run `script`, which fills the table `told`, in a copy of `page` of that width; return the table. The console must say nothing.
 
-        The copy is in a frame of that width: windows are at least 500 pixels wide.
+        The copy is in a frame: windows are at least 500 pixels wide.
         """
         copy = self.folder / "copy.html"
-        probe = (
-            f"<script>{{ const told = {{}}; {script}; "
-            'parent.document.getElementById("told").textContent = JSON.stringify(told); }</script></body>'
-        )
+        answer = 'parent.document.getElementById("told").textContent = JSON.stringify(told);'
+        probe = f"<script>{{ const told = {{}}; {script}; {answer} }}</script></body>"
         inner = escape(page.read_text().replace("</body>", probe))
         frame = f'<iframe style="border:0;width:{width}px;height:900px" srcdoc="{inner}"></iframe>'
         copy.write_text(f'<!DOCTYPE html><meta charset="utf-8"><pre id="told"></pre>{frame}')
-        done = self._run(copy, "--window-size=1400,1000", "--dump-dom", *flags)
-        console = [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
+        done = self.run(copy, "--window-size=1400,1000", "--dump-dom")
+        assert [line for line in done.stderr.splitlines() if ":CONSOLE" in line] == []
         found = re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.DOTALL)
         assert found, done.stderr
-        assert found[1], console
-        return json.loads(unescape(found[1])), console
-
-    def screenshot(self, page: Path, *flags: str, width: int = 1200, height: int = 2400) -> Path:
-        """Return a picture of the page."""
-        picture = self.folder / "picture.png"
-        self._run(page, f"--window-size={width},{height}", f"--screenshot={picture}", *flags)
-        return picture
-
-    def printed(self, page: Path) -> Path:
-        """Return the page on paper."""
-        paper = self.folder / "paper.pdf"
-        self._run(page, f"--print-to-pdf={paper}")
-        return paper
+        return json.loads(unescape(found[1]))
 
 
 @pytest.fixture

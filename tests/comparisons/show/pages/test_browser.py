@@ -9,227 +9,163 @@ import pytest
 from matplotlib.image import imread
 
 from comparisons.models import solve
-from comparisons.scene import SupportSpec, load_scene, read_scene
+from comparisons.scene import SupportSpec, read_scene
 from comparisons.show.pages import Section, motion_section, page, tracks
-from tests.comparisons.show.pages.conftest import STEPS, Browser
+from tests.comparisons.show.pages.conftest import KS, Browser
 from tests.comparisons.show.specimen import SPECIMEN
 
 pytestmark = pytest.mark.slow
 MOVED = SupportSpec(beam="hook", end="start", kind="clamped", displacement=(0.0, 3.0))
-
 HELPERS = """
-const one = (selector) => document.querySelector(selector);
-const shape = (n) => one(`.shapes [data-run="${n}"]`).getAttribute("points");
+const one = (selector) => document.querySelector(selector), all = (selector) => [...document.querySelectorAll(selector)];
 const state = () => ({
-  output: one("output").textContent, value: one("input[type=range]").value, shapes: [0, 1, 2, 8].map(shape),
+  output: one("output").textContent, value: one("input[type=range]").value,
+  shapes: [0, 1, 2, 8].map((n) => one(`.shapes [data-run="${n}"]`).getAttribute("points")),
   zoom: one(".zoom [data-run='1']").getAttribute("points"), star: one(".shapes .pin").getAttribute("points"),
-  table: [...document.querySelectorAll(".values tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent)),
-  vtu: [...document.querySelectorAll(".vtu a")].map((link) => link.getAttribute("href")),
-  cursor: one(".chart .cursor").getAttribute("x1"),
+  table: all(".values tbody tr").map((row) => [...row.children].map((cell) => cell.textContent)),
+  vtu: all(".vtu a").map((link) => link.getAttribute("href")), cursor: one(".chart .cursor").getAttribute("x1"),
 });
 const slide = (k) => {
   one("input[type=range]").value = k;
   one("input[type=range]").dispatchEvent(new Event("input", { bubbles: true }));
 };
-const seen = (n) => [".shapes", ".zoom", ".chart"].map((drawing) => getComputedStyle(one(`${drawing} [data-run="${n}"]`)).display !== "none");
+const seen = () => [0, 1].map((n) => [".shapes", ".zoom", ".chart"].map((drawing) => getComputedStyle(one(`${drawing} [data-run="${n}"]`)).display !== "none"));
+const least = (selector) => Math.min(...all(selector).map((item) => item.getBoundingClientRect().height));
 """
 
 
-def told(browser: Browser, folder: Path, script: str, *flags: str, width: int = 1200) -> dict:
-    found, console = browser.told(folder / "report.html", HELPERS + script, *flags, width=width)
-    assert console == []
-    return found
+def told(browser: Browser, folder: Path, script: str, width: int = 1200) -> dict:
+    return browser.told(folder / "report.html", HELPERS + script, width=width)
 
 
-@pytest.mark.slow
-def test_the_slider_moves_shapes_marks_and_values(browser: Browser, compared: Path) -> None:
-    script = "told.end = state(); slide(3); told.fourth = state(); slide(9); told.again = state();"
-    found = told(browser, compared, script)
+def written(folder: Path, *sections: Section) -> Path:
+    (folder / "report.html").write_text(page("t", "", sections))
+    return folder
+
+
+def test_the_slider_moves_shapes_marks_and_values(browser, compared):
+    script = "told.end = state(); slide(3); told.fourth = state(); slide(4); told.again = state();"
+    found = told(browser, compared.folder, script)
     end, fourth = found["end"], found["fourth"]
     assert found["again"] == end
-    assert (end["output"], fourth["output"]) == ("t = 1", "t = 0.4")
-    assert end["value"] == "9"
-    for name in ("zoom", "star", "cursor"):
-        assert end[name] != fourth[name]
+    assert (end["output"], end["value"], fourth["output"]) == ("t = 1", "4", "t = 0.8")
+    assert [name for name in ("zoom", "star", "cursor") if end[name] == fourth[name]] == []
     assert all(a != b for a, b in zip(end["shapes"], fourth["shapes"], strict=True))
     assert fourth["vtu"] == ["tsm/tsm-0004.vtm", "solid/solid-0004.vtm"]
-    assert all((compared / name).is_file() for name in fourth["vtu"])
-    runs = {run["label"]: run for run in json.loads((compared / "summary.json").read_text())["runs"]}
+    assert all((compared.folder / name).is_file() for name in fourth["vtu"])
+    runs = {run["label"]: run for run in json.loads((compared.folder / "summary.json").read_text())["runs"]}
     assert {row[0] for row in fourth["table"]} == set(runs)
     for label, force, _, arc, _, moment, _, _, _ in fourth["table"]:
-        run = runs[label]
-        stated = (
-            run["contacts"]["pin->cantilever"]["force"][3],
-            run["contacts"]["pin->cantilever"]["arc_position"][3],
-            run["supports"]["cantilever.start"]["moment"][3],
-        )
+        (contact,), (support,) = runs[label]["contacts"].values(), runs[label]["supports"].values()
+        stated = [contact["force"][3], contact["arc_position"][3], support["moment"][3]]
         assert [float(force), float(arc), float(moment)] == pytest.approx(stated, rel=6e-5)
 
 
-def test_switches_hide_and_show_a_run_everywhere(browser: Browser, compared: Path) -> None:
+def test_switches_keys_pointer_and_play_act_and_have_names(browser, compared):
     script = """
-    const box = (n) => one(`[data-switch="${n}"]`);
-    told.before = [0, 1].map(seen); box(1).click(); told.off = [0, 1].map(seen);
-    slide(2); told.moved = [0, 1].map(seen); box(1).click(); told.on = [0, 1].map(seen);
-    """
-    found = told(browser, compared, script)
-    assert found["before"] == found["on"] == [[True] * 3] * 2
-    assert found["off"] == found["moved"] == [[True] * 3, [False] * 3]
-
-
-def test_charts_follow_the_keys_and_the_pointer(browser: Browser, compared: Path) -> None:
-    script = """
-    const chart = one(".chart"), key = (name) => chart.dispatchEvent(new KeyboardEvent("keydown", { key: name, cancelable: true }));
-    const value = () => Number(one("input[type=range]").value);
-    key("ArrowLeft"); told.left = value(); key("Home"); told.home = value(); key("ArrowLeft"); told.still = value();
-    key("End"); told.end = value();
+    const box = one('[data-switch="1"]'), chart = one(".chart"), value = () => Number(one("input[type=range]").value);
+    told.seen = [seen()]; box.click(); told.seen.push(seen()); slide(2); told.seen.push(seen()); box.click(); told.seen.push(seen()); slide(4);
+    const key = (name) => { chart.dispatchEvent(new KeyboardEvent("keydown", { key: name, cancelable: true })); return value(); };
+    told.keys = ["ArrowLeft", "Home", "ArrowLeft", "End"].map(key);
     const frame = chart.getBoundingClientRect();
-    const point = (part) => chart.dispatchEvent(new PointerEvent("pointermove", {
-      pointerType: "mouse", clientX: frame.left + 64 + part * (frame.width - 78) }));
-    point(0.5); told.half = one("output").textContent; point(0.0); told.first = one("output").textContent;
-    """
-    found = told(browser, compared, script)
-    assert [found[name] for name in ("left", "home", "still", "end")] == [STEPS - 2, 0, 0, STEPS - 1]
-    assert (found["half"], found["first"]) == ("t = 0.5", "t = 0.1")
-
-
-def test_play_runs_to_the_end_and_stops(browser: Browser, compared: Path) -> None:
-    script = """
+    const point = (part) => { chart.dispatchEvent(new PointerEvent("pointermove", {
+      pointerType: "mouse", clientX: frame.left + 64 + part * (frame.width - 78) })); return one("output").textContent; };
+    told.points = [0.6, 0.0].map(point); slide(4);
     let steps = 0, fire = null;
     window.setInterval = (call) => { fire = call; return 1; };
     window.clearInterval = () => { fire = null; };
-    const play = one(".play");
-    play.click(); told.pressed = play.getAttribute("aria-pressed"); told.start = one("output").textContent;
+    const play = one(".play"), now = () => [play.getAttribute("aria-pressed"), one("output").textContent];
+    play.click(); told.play = now();
     while (fire && steps < 100) { fire(); steps++; }
-    told.steps = steps; told.end = one("output").textContent; told.released = play.getAttribute("aria-pressed");
-    """
-    found = told(browser, compared, script)
-    assert found == {
-        "pressed": "true",
-        "start": "t = 0.1",
-        "steps": STEPS,
-        "end": "t = 1",
-        "released": "false",
-    }
-
-
-def test_everything_that_acts_has_a_name_and_a_place_among_the_tabs(browser: Browser, compared: Path) -> None:
-    script = """
-    const acting = [...document.querySelectorAll("a[href], input, button, summary, [tabindex]")];
+    told.play.push(steps, ...now());
+    const acting = all("a[href], input, button, summary, [tabindex]");
     told.negative = acting.filter((item) => item.tabIndex !== 0).length;
     told.unnamed = acting.filter((item) => !(item.getAttribute("aria-label") || item.closest("label")?.textContent.trim()
       || item.textContent.trim())).map((item) => item.outerHTML.slice(0, 80));
-    told.kinds = ["a", "input", "button", "svg"].map((name) => acting.filter((item) => item.localName === name).length);
-    one("input[type=range]").focus(); told.focus = document.activeElement.type;
-    told.aria = one("input[type=range]").getAttribute("aria-valuetext");
-    told.images = [...document.querySelectorAll("img")].filter((image) => !image.alt || !image.naturalWidth).length;
+    told.kinds = ["input", "button", "svg", "a"].map((name) => acting.filter((item) => item.localName === name).length);
+    one("input[type=range]").focus();
+    told.focus = [document.activeElement.type, one("input[type=range]").getAttribute("aria-valuetext")];
+    told.images = all("img").filter((image) => !image.alt || !image.naturalWidth).length;
     """
-    found = told(browser, compared, script)
+    found = told(browser, compared.folder, script)
+    on, off = [[True] * 3] * 2, [[True] * 3, [False] * 3]
+    assert found["seen"] == [on, off, off, on]
+    assert found["keys"] == [3, 0, 0, 4]
+    assert found["points"] == ["t = 0.6", "t = 0.2"]
+    assert found["play"] == ["true", "t = 0.2", 5, "false", "t = 1"]
     assert (found["negative"], found["unnamed"], found["images"]) == (0, [], 0)
-    links, inputs, buttons, charts = found["kinds"]
-    assert (inputs, buttons, charts) == (10, 1, 8)
-    assert links > 15
-    assert (found["focus"], found["aria"]) == ("range", "load parameter 1")
+    assert found["kinds"][:3] == [10, 1, 8]
+    assert found["kinds"][3] > 15
+    assert found["focus"] == ["range", "load parameter 1"]
 
 
-def test_a_phone_needs_no_sideways_scrolling(browser: Browser, compared: Path) -> None:
+def test_a_phone_needs_no_sideways_scrolling_and_letters_are_legible(browser, compared):
     script = """
-    told.widths = [innerWidth, document.documentElement.scrollWidth];
-    told.drawing = one(".shapes").clientWidth;
-    told.letters = Math.min(...[...document.querySelectorAll(".shapes text, .chart text")].map((text) => text.getBoundingClientRect().height));
-    told.reach = Math.min(...[...document.querySelectorAll(".switch, .play")].map((item) => item.getBoundingClientRect().height));
-    """
-    found = told(browser, compared, script, width=360)
-    assert found["widths"] == [360, 360]
-    assert found["drawing"] > 300
-    assert found["letters"] > 10
-    assert found["reach"] >= 32
-
-
-def test_letters_are_legible_at_1200_pixels(browser: Browser, compared: Path) -> None:
-    script = """
-    told.letters = Math.min(...[...document.querySelectorAll("svg text")].map((text) => text.getBoundingClientRect().height));
+    told.widths = [innerWidth, document.documentElement.scrollWidth, one(".shapes").clientWidth];
+    told.letters = least("svg text"); told.reach = least(".switch, .play");
     told.picture = one("#error-budget img").clientWidth / one("#error-budget img").naturalWidth;
     """
-    found = told(browser, compared, script)
-    assert found["letters"] > 10
-    assert found["picture"] > 1.0, "pictures are drawn with letters of 10 points"
+    phone, screen = (told(browser, compared.folder, script, width) for width in (360, 1200))
+    assert phone["widths"][:2] == [360, 360]
+    assert phone["widths"][2] > 300
+    assert phone["reach"] >= 32
+    assert min(phone["letters"], screen["letters"]) > 10
+    assert screen["picture"] > 1.0, "pictures are drawn with letters of 10 points"
 
 
-def brightness(picture: Path) -> float:
-    return float(np.median(imread(picture)[..., :3]))
+def test_light_dark_and_paper(browser, compared, tmp_path):
+    def printed(name: str, *flags: str) -> Path:
+        browser.run(compared.folder / "report.html", f"--{Path(name).stem}={tmp_path / name}", *flags)
+        return tmp_path / name
 
-
-@pytest.mark.slow
-def test_light_dark_and_paper(browser: Browser, compared: Path) -> None:
-    page = compared / "report.html"
-    light = browser.screenshot(page, height=3800)
-    pixels = np.round(255 * imread(light)[..., :3]).reshape(-1, 3)
-    assert brightness(light) > 0.9
+    tall = "--window-size=1200,3800"
+    light = imread(printed("screenshot.png", tall))[..., :3]
+    assert np.median(light) > 0.9
     for code in ("#0072B2", "#009E73", "#CC79A7", "#D55E00"):  # swatches, bars of the budget
-        near = np.abs(pixels - [int(code[i : i + 2], 16) for i in (1, 3, 5)]).max(axis=1) < 12
-        assert near.sum() > 20, code
-    assert brightness(browser.screenshot(page, "--blink-settings=preferredColorScheme=0")) < 0.2
-    paper = browser.printed(page).read_bytes()
+        colour = [int(code[i : i + 2], 16) for i in (1, 3, 5)]
+        assert (np.abs(np.round(255 * light) - colour).max(axis=-1) < 12).sum() > 20, code
+    dark = imread(printed("screenshot.png", tall, "--blink-settings=preferredColorScheme=0"))[..., :3]
+    assert np.median(dark) < 0.2
+    paper = printed("print-to-pdf.pdf").read_bytes()
     assert paper.startswith(b"%PDF")
     assert 3 <= paper.count(b"/Type /Page\n") <= 12
 
 
-def test_a_section_may_bring_a_script_and_data_of_its_own(browser: Browser, tmp_path: Path) -> None:
+def test_a_section_may_bring_a_script_and_data_of_its_own(browser, tmp_path):
+    own = 'const own = document.querySelector("#{0} p"); own.textContent = DATA["{0}"].sum.join("+");'
     sections = [
-        Section(
-            title=title,
-            html="<p>-</p>",
-            data={"sum": [number, 1]},
-            script=f'const own = document.querySelector("#{title} p"); own.textContent = DATA["{title}"].sum.join("+");',
-        )
+        Section(title=title, html="<p>-</p>", data={"sum": [number, 1]}, script=own.format(title))
         for title, number in (("first", 2), ("second", 3))
     ]
-    (tmp_path / "report.html").write_text(page("t", "", sections))
-    script = 'told.texts = [...document.querySelectorAll("section p")].map((p) => p.textContent);'
-    found, console = browser.told(tmp_path / "report.html", script)
-    assert console == []
+    found = told(
+        browser, written(tmp_path, *sections), 'told.texts = all("section p").map((p) => p.textContent);'
+    )
     assert found["texts"] == ["2+1", "3+1"]
 
 
-def test_true_pins_supports_and_arcs_are_drawn(browser: Browser, tmp_path: Path) -> None:
+def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
     scene = read_scene(SPECIMEN, "specimen")
     scene = replace(scene, beams=(replace(scene.beams[0], clamped=()), *scene.beams[1:]), supports=(MOVED,))
-    beams = solve(scene, "tsm")
-    section = motion_section("Drawn", scene, {"TSM mixed": beams}, [], focus="TSM mixed")
-    (tmp_path / "report.html").write_text(page("t", "", [section]))
+    section = motion_section("Drawn", scene, {"TSM mixed": solve(scene, "tsm")}, [], focus="TSM mixed")
     script = """
-    const box = (selector) => { const b = [...document.querySelectorAll(selector)].at(-1).getBBox(); return [b.x, b.y, b.width, b.height]; };
-    const look = () => ({
-      disc: box(".shapes .disc"), path: box(".shapes .path"),
-      symbol: box(".shapes .symbol"), arc: one(".shapes .rest").getAttribute("points").split(" ").length,
-    });
-    told.end = look(); slide(1); told.second = look();
+    const box = (selector) => { const b = all(selector).at(-1).getBBox(); return [b.x, b.y, b.width, b.height]; };
+    const look = () => [".shapes .disc", ".shapes .symbol", ".shapes .path"].map(box);
+    told.end = look(); told.arc = one(".shapes .rest").getAttribute("points").split(" ").length; slide(1); told.second = look();
     """
-    found = told(browser, tmp_path, script)
-    disc, path = found["end"]["disc"], found["end"]["path"]
+    found = told(browser, written(tmp_path, section), script)
+    disc, symbol, path = found["end"]
     assert disc[2] == pytest.approx(disc[3], rel=0.01)
     assert disc[2] / path[2] == pytest.approx(2 * 12 / 20, rel=0.01)  # the pin goes 20 mm to the right
-    assert found["end"]["arc"] == 25
-    assert found["end"]["symbol"] != found["second"]["symbol"]
-    assert found["end"]["disc"] != found["second"]["disc"]
+    assert found["arc"] == 25
+    assert symbol != found["second"][1]
+    assert disc != found["second"][0]
 
 
-def test_a_run_that_stopped_leaves_no_error(browser: Browser, tmp_path: Path) -> None:
-    scene = replace(load_scene("ks-cantilever"), load_parameters=4)
-    rod, beams = solve(scene, "rod"), solve(scene, "tsm")
-    responses = {
-        "TSM mixed": replace(beams, load_parameter=beams.load_parameter[:2]),
-        "TSM exact": replace(beams, load_parameter=beams.load_parameter[:0]),
-        "exact rod": rod,
-    }
-    made = tracks(responses, "exact rod", scene)
-    section = motion_section("Stopped", scene, responses, made, focus="TSM mixed")
-    (tmp_path / "report.html").write_text(page("t", "", [section]))
-    script = """
-    const count = () => [0, 1, 2].map((n) => document.querySelectorAll(`.shapes [data-run="${n}"]`).length);
-    told.end = count(); slide(1); told.second = count(); told.row = one(".values tbody tr").textContent;
-    """
-    found = told(browser, tmp_path, script)
-    assert (found["end"], found["second"]) == ([0, 0, 1], [1, 0, 1])
+def test_a_run_that_stopped_leaves_no_error(browser, tmp_path):
+    rod, beams = solve(KS, "rod"), solve(KS, "tsm")
+    mixed, exact = (replace(beams, load_parameter=beams.load_parameter[:k]) for k in (2, 0))
+    responses = {"TSM mixed": mixed, "TSM exact": exact, "exact rod": rod}
+    section = motion_section("Stopped", KS, responses, tracks(responses, "exact rod", KS), focus="TSM mixed")
+    script = 'const count = () => [0, 1, 2].map((n) => all(`.shapes [data-run="${n}"]`).length); told.end = count(); slide(1); told.second = count();'
+    assert told(browser, written(tmp_path, section), script) == {"end": [0, 0, 1], "second": [1, 0, 1]}

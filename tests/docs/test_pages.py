@@ -1,0 +1,180 @@
+"""The README and the pages: their commands and snippets run and print what they say, their links lead somewhere, their pictures are drawn."""
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from comparisons.cli import main
+from docs.extensions.figures import COMMANDS, FOLDER, draw
+from tests.docs.snippets import ROOT, SLOW, TARGETS, blocks, pages, run_line, run_page, shows
+
+TEXTS = pages()
+README, HOW_TO = TEXTS["README.md"], "docs/how-to/"
+RUN = {
+    name: text
+    for name, text in TEXTS.items()
+    if any(kind for kind, _ in blocks(text)) and name not in ("README.md", f"{HOW_TO}commands.md")
+}
+"""Pages that are run as a whole; the commands of the other two are run one by one."""
+LONG = {name for name, text in RUN.items() if any(f"\n{command}" in text for command in SLOW)}
+TAKE_SECONDS = re.compile(
+    r"/(accuracy|cards|ci-gate|element|material|paraview|program|python|scene|study)\.md"
+)
+SECONDS = {page for page in RUN if TAKE_SECONDS.search(page)}
+"""Pages that take more than a second without the commands of `SLOW`."""
+
+
+@pytest.mark.parametrize(
+    ("page", "slow"),
+    [
+        *((page, False) for page in RUN if page not in SECONDS),
+        *(pytest.param(page, True, marks=pytest.mark.slow) for page in RUN if page in SECONDS | LONG),
+    ],
+)
+def test_snippets_run_and_print_what_the_page_says(page, slow, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run_page(RUN[page], tmp_path, slow=slow)
+
+
+def test_the_pages_are_found():
+    assert {"docs/tutorial.md", f"{HOW_TO}study.md"} <= LONG
+    assert RUN.keys() >= SECONDS
+    # yaml is for a CI system, py and bash are for programs of others
+    known = {"python", "toml", "sh", "text", "yaml", "py", "bash"}
+    assert {kind for text in RUN.values() for kind, _ in blocks(text)} <= known
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "sh\ncrossval solve no-such-scene --model tsm", "sh\nrm -r /", "sh\nmake nothing", "python\n1 / 0", "toml\n[scene]",
+        "python\nprint(1 + 1)\n```\n\n```text\n3",
+    ],
+)  # fmt: skip
+def test_a_snippet_that_fails_or_prints_something_else_is_found(block, tmp_path):
+    with pytest.raises(AssertionError):
+        run_page(f"```{block}\n```\n", tmp_path, slow=False)
+    run_page("```python\nprint(1 + 1)\n```\n\n```text\n2\n```\n", tmp_path, slow=False)
+    assert not shows("1\n2\n3", "1\n3")
+
+
+LINES = dict.fromkeys(
+    shlex.join(shlex.split(line, comments=True))
+    for page in ("README.md", f"{HOW_TO}commands.md")
+    for kind, text in blocks(TEXTS[page])
+    if kind == "sh"
+    for line in text.splitlines()
+    if line.startswith("crossval") and "mine.toml" not in line
+)
+"""Each command once, but for those of the README's own scene."""
+SAID = {
+    "doctor": "numpy scikit-fem",
+    "scenes": "double-beam ks-tied-tip",
+    "new": "strip.toml",
+    "check": "tsm:_yes solid:_yes rod:_yes drawn:_ks.png",
+    "solve": "COMPLETED force",
+    "certify": "CERTIFIED",
+    "compare": "exact_rod summary.json",
+    "view": "view.png",
+    "gate": "force shape <=_0.001",
+    "reproduce": "claims-fig9.md",
+    "study": "thin-beams.csv",
+}
+"""What a command prints, beside its exit status."""
+ELSEWHERE = {"trade", "manual", "extremes", "league"}
+"""Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
+MORE = (
+    "crossval solve double-beam --model solid",
+    "crossval doctor",
+    "crossval solve ks-cantilever --model rod",
+)
+"""Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [pytest.param(line, marks=pytest.mark.slow if line.startswith((*SLOW, *MORE)) else ()) for line in LINES],
+)
+def test_commands_run_and_print_what_they_are_for(line, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    command = line.split()[1]
+    if command in ELSEWHERE:
+        with pytest.raises(SystemExit):
+            main([*shlex.split(line)[1:], "--invented"])
+        assert capsys.readouterr().err.endswith("error: unrecognized arguments: --invented\n")
+        return
+    out = run_line(line)
+    if "--json -" in line:
+        assert json.loads(out)["status"] == "COMPLETED"
+    else:
+        assert [word for word in SAID[command].split() if word.replace("_", " ") not in out] == []
+    for written in re.findall(r" (?:--out|--junit|--vtk) (\S+)", line):
+        assert Path(written).is_file() or any(Path(written).iterdir())
+
+
+def test_every_command_is_shown():
+    assert {line.split()[1] for line in LINES} == SAID.keys() | ELSEWHERE
+    assert len(LINES) >= 22
+
+
+def test_make_targets_links_and_pictures_are_there():
+    whole = "".join(TEXTS.values())
+    assert (
+        {"run", "test", "test-all", "bench"} <= {*re.findall(r"(?m)(?:^|`)make ([\w-]+)", whole)} <= TARGETS
+    )
+    picture = re.compile(r"!\[.*?\]\((.*?)\)")
+    shown = [Path(page).parent / name for page, text in TEXTS.items() for name in picture.findall(text)]
+    links = [Path(target) for target in re.findall(r"\]\(([^)]+)\)", README) if "://" not in target]
+    assert len(shown) > 5 < len(links)
+    assert [str(path) for path in (*shown, *links) if not (ROOT / path).is_file()] == []
+    kept = {name for text in TEXTS.values() for name in re.findall(r"\.figures/([\w-]+\.png)", text)}
+    assert kept == {path.name for path in FOLDER.iterdir()}
+    assert {name for drawn in COMMANDS.values() for name in drawn.values()} <= kept
+    assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 1.2e6
+
+
+def test_every_table_of_results_names_what_measures_it():
+    """Near every table of numbers stands a command or a test."""
+    sections = [
+        part for page, text in TEXTS.items() if "/results/" in page for part in re.split(r"(?m)^## ", text)
+    ]
+    measured = re.compile(r"`(?:crossval|make|python) [^`]+`|\{test\}`")
+    assert [part.splitlines()[0] for part in sections if "|---" in part and not measured.search(part)] == []
+
+
+@pytest.mark.parametrize("command", [line for line in COMMANDS if line.startswith(("check", "solve"))])
+def test_the_tutorial_shows_what_its_commands_draw(command, tmp_path):
+    (path,) = draw({command: COMMANDS[command]}, tmp_path)
+    drawn, kept = (imread(folder / path.name)[..., :3] for folder in (tmp_path, FOLDER))
+    assert drawn.shape == kept.shape
+    assert np.abs(drawn - kept).mean() < 0.01
+
+
+def test_the_readme_is_short_and_names_what_continuous_integration_runs():
+    lines = README.splitlines()
+    assert len(lines) <= 120
+    assert len(README.split()) <= 900
+    assert max(map(len, lines)) <= 160
+    rows = [line for line in lines if line.startswith("|")]
+    assert sum(bool(re.fullmatch(r"\|(-+\|)+", row)) for row in rows) == 1
+    assert len(rows) - 2 <= 8
+    ran = re.findall(r"^make ([\w-]+)$", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
+    assert ran
+    assert all(f"`make {target}`" in README for target in ran)
+    trust = README.partition("## How far to trust it\n")[2].partition("\n## ")[0].strip().splitlines()
+    assert len(trust) == 5
+    assert all(re.search(r"\(\[\w+\]\(docs/[\w/-]+\.md\)\)\.$", sentence) for sentence in trust)
+
+
+def test_the_first_scene_of_the_readme_prints_what_it_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    section = README.partition("## A first scene\n")[2].partition("\n## ")[0]
+    assert [kind for kind, _ in blocks(section)] == ["toml", "sh", "text"]
+    run_page(section, tmp_path, slow=False)
+    for model in ("tsm", "solid", "rod"):
+        assert "COMPLETED" in run_line(f"crossval solve mine.toml --model {model}")
