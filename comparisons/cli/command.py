@@ -13,8 +13,6 @@ from typing import NoReturn
 from comparisons.cli import (
     certify,
     compare,
-    completion,
-    doctor,
     extremes,
     gate,
     league,
@@ -27,7 +25,7 @@ from comparisons.cli import (
     trade,
     view,
 )
-from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, report
+from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import install
 from comparisons.files import OutputError, printable
 from comparisons.models.options import ModelError
@@ -48,17 +46,22 @@ COMMANDS = (
     results,
     manual,
     extremes,
-    doctor,
-    completion,
 )
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
+GONE = {"doctor": "crossval --version", "completion": "crossval --help"}
+"""Commands of earlier versions, and what does their work."""
+MARKS = {True: "ok", False: "MISSING", None: "-"}
+"""How ``--version`` marks what is there, what is missing, and what only an extra needs."""
 OWN = ("comparisons", "tsm", "fem_reference")
 """Packages whose absence is a bug and no missing library."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command and return its exit status: 0 done, 1 a wrong answer, 2 bad input, 3 a solution that stopped."""
+    first = next(iter(sys.argv[1:] if arguments is None else arguments), "")
     with _open_streams() as there:
+        if first in GONE:
+            return _told(f"{first}: is no longer a command, see {GONE[first]}", BAD_INPUT)
         return _run(arguments) if there else BAD_INPUT
 
 
@@ -133,13 +136,17 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _Version(argparse.Action):
-    """The version, looked up where it is asked for: the look-up imports more than the rest of the command."""
+    """The version and what this machine has, looked up where it is asked for: that imports more than the rest of the command."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from comparisons.cli.machine import examined
         from comparisons.version import release
 
         print(f"crossval {release()}")
-        parser.exit()
+        findings = list(examined())
+        for finding in findings:
+            print(f"{MARKS[finding.well]:8s}{finding.what:14s} {finding.state}")
+        parser.exit(DONE if all(finding.well is not False for finding in findings) else WRONG)
 
 
 def _drop_output() -> None:
@@ -155,9 +162,13 @@ def command_parser() -> argparse.ArgumentParser:
         description="Contact of beams: tangent stiffness method, 2D solid elements and exact answers on one scene.",
         epilog=EPILOG,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
+    parser.add_argument(
+        "--version",
+        action=_Version,
+        nargs=0,
+        help="print the version, and which libraries and programs are here",
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in COMMANDS:
         module.add_to(commands)
-    parser.set_defaults(parser=parser)
     return parser

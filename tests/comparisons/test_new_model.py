@@ -117,7 +117,6 @@ def test_commands_have_it(way: str, request: pytest.FixtureRequest) -> None:
         ("gate", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
         ("study", "study.toml", "--results", "s.sqlite", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
         ("results", "s.sqlite"): "chain",
-        **({("completion", "bash"): "chain"} if way == "registered" else {}),
     }.items():
         found = crossval(place, *arguments)
         assert found.returncode == 0, found.stderr

@@ -2,12 +2,10 @@
 
 import io
 import re
-import subprocess
 from dataclasses import replace
 
 import pytest
 
-from comparisons.cli import main
 from comparisons.cli import progress as shown  # its clock: a command draws what its own speed lets it
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -78,32 +76,3 @@ def test_without_a_terminal_there_are_lines_and_where_it_is_quiet_nothing(quiet)
     with shown.staging("drawing", quiet=quiet, stream=stream) as count:
         count(1, 4)
     assert stream.getvalue() == ("" if quiet else "drawing\n")
-
-
-COMPLETED = {
-    "sol": "solve",
-    "solve m": "mine.toml more",
-    "view double-beam-": "double-beam-friction",
-    "solve tip-load --model el": "elastica",
-    "solve tip-load --element ex": "exact",
-    "study loc": "locking",
-    "certify m": "mine.toml more mine.json",
-    "manual --only eu": "euler-column",
-    "compare tip-load --out m": "more",
-}
-
-
-def test_shells_complete(tmp_path, capsys):
-    for shell in ("tcsh", "zsh", "bash"):
-        assert main(["completion", shell]) == 0
-        script = capsys.readouterr().out
-        assert "doctor" in script
-        assert ("--accuracy" in script) == (shell != "tcsh"), "of tcsh only commands are completed"
-    for name in ("crossval", "mine.toml", "mine.json", "mine.txt"):
-        (tmp_path / name).write_text(script)
-    (tmp_path / "more").mkdir()
-    for line, words in COMPLETED.items():
-        ask = f"COMP_WORDS=(crossval {line}); COMP_CWORD={len(line.split())}; _shtab_crossval; echo ${{COMPREPLY[*]}}"
-        bash = ["bash", "-c", f"source ./crossval; {ask}"]
-        told = subprocess.run(bash, capture_output=True, text=True, check=True, cwd=tmp_path)
-        assert set(told.stdout.split()) == set(words.split()), line

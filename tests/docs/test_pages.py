@@ -73,7 +73,7 @@ LINES = dict.fromkeys(
 )
 """Each command once, but for those of the README's own scene."""
 SAID = {
-    "doctor": "numpy scikit-fem",
+    "--version": "numpy scikit-fem",
     "scenes": "double-beam ks-tied-tip",
     "new": "strip.toml",
     "check": "tsm:_yes solid:_yes rod:_yes drawn:_ks.png",
@@ -90,7 +90,7 @@ ELSEWHERE = {"trade", "manual", "extremes", "league"}
 """Commands of a minute and more, which have slow tests of their own: here only their arguments are read."""
 MORE = (
     "crossval solve double-beam --model solid",
-    "crossval doctor",
+    "crossval --version",
     "crossval solve ks-cantilever --model rod",
 )
 """Lines of more than a second besides those of `SLOW`; the fast tests of the commands run them on smaller scenes."""
