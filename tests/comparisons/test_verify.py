@@ -35,18 +35,15 @@ def at(values: np.ndarray, k: int, value: float) -> np.ndarray:
 
 def without_force(response: Response) -> Response:
     """What a program reports that lost the contact on the way: no force, the beam straight, no word about it."""
-    arc = np.linspace(0.0, 1.0, 11)
-    straight = np.stack([arc, 0.0 * arc], axis=1)
-    lost = contact(response, force=np.zeros(5), arc_position=np.full(5, np.nan), gap=np.full(5, np.nan))
+    arc, none = np.linspace(0.0, 1.0, 11), np.full(5, np.nan)
+    lost = contact(response, force=np.zeros(5), arc_position=none, gap=none)
     lost = support(lost, force=np.zeros((5, 2)), moment=np.zeros(5))
-    return replace(lost, axis_line=lambda _, __: (arc, straight))
+    return replace(lost, axis_line=lambda _, __: (arc, np.stack([arc, 0.0 * arc], axis=1)))
 
 
 BREAKS: dict[str, tuple[Change, str]] = {
     "short": (lambda r: replace(r, load_parameter=r.load_parameter[:3]), "3 of 5 load parameters reached"),
-    "other load parameters": (lambda r: replace(r, load_parameter=r.load_parameter * 0.999), "load parameters reached"),
     "nan force": (lambda r: contact(r, force=at(r.contacts[PAIR].force, 2, np.nan)), "force of .* is not finite"),
-    "nan arc": (lambda r: contact(r, arc_position=at(r.contacts[PAIR].arc_position, 2, np.nan)), "arc position of"),
     "inf tip": (lambda r: replace(r, tips={BEAM: at(r.tips[BEAM], 2, np.inf)}), "tip of .* is not finite"),
     "pull": (lambda r: contact(r, force=at(r.contacts[PAIR].force, 2, -1e-9)), "pulls at load parameter 0.6"),
     "ajar": (lambda r: contact(r, gap=at(r.contacts[PAIR].gap, 2, 1e-6)), "open gap at load parameter 0.6"),
@@ -57,7 +54,6 @@ BREAKS: dict[str, tuple[Change, str]] = {
     ),
     "reaction": (lambda r: support(r, force=r.supports[CLAMP].force * (1 + 1e-5)), "support reactions do not balance"),
     "moment": (lambda r: support(r, moment=r.supports[CLAMP].moment * (1 + 1e-5)), "support moments do not balance"),
-    "sign of the moment": (lambda r: support(r, moment=-r.supports[CLAMP].moment), "support moments do not balance"),
     "sign of the reaction": (lambda r: support(r, force=-r.supports[CLAMP].force), "support moments do not balance"),
     "lost contact": (without_force, "open and its node goes through the beam up to load parameter 0.2"),
 }  # fmt: skip
@@ -180,20 +176,19 @@ def test_a_round_pin_that_rubs_is_in_balance() -> None:
 
 
 def test_what_is_round_off_has_the_units_of_its_quantity() -> None:
-    """A metre is a thousand millimetres, and so is every length, with the force left as it is."""
-    unit = 1e3
+    """Of a strip of length 2, and of one in millimetres with the same force."""
     beam = replace(SCENE.beams[0], end=(2.0, 0.0), width=0.1, height=0.1, youngs_modulus=1e7)
-    size = {name: unit * getattr(beam, name) for name in ("width", "height")}
-    scaled = replace(beam, **size, end=(2.0 * unit, 0.0), youngs_modulus=1e7 / unit**2)
-    found = []
-    for one in (beam, scaled):
-        load = LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-3))
-        scene = replace(SCENE, beams=(one,), pins=(), contacts=(), loads=(load,), load_parameters=1)
-        found.append(round_off(solve(scene, "tsm", Options(element="exact")), scene))
+    milli = replace(beam, end=(2e3, 0.0), width=1e2, height=1e2, youngs_modulus=1e1)
+    load = LoadSpec(beam=BEAM, end="end", force=(0.0, 1e-3))
+    scenes = [
+        replace(SCENE, beams=(one,), pins=(), contacts=(), loads=(load,), load_parameters=1)
+        for one in (beam, milli)
+    ]
+    found = [round_off(solve(scene, "tsm", Options(element="exact")), scene) for scene in scenes]
     for name, power in {"force": 0, "moment": 1, "energy": 1, "length": 1, "stress": -2}.items():
         assert getattr(found[1], name) == pytest.approx(
-            unit**power * getattr(found[0], name), rel=1e-6, abs=0.0
+            1e3**power * getattr(found[0], name), rel=1e-6, abs=0.0
         ), name
     assert found[0].force == pytest.approx(RESIDUAL * beam.EI / 4.0, rel=1e-9, abs=0.0)
-    assert least_force(scene) == pytest.approx(LEAST * scaled.EI / (2.0 * unit) ** 2, rel=1e-9, abs=0.0)
+    assert least_force(scenes[1]) == pytest.approx(LEAST * milli.EI / 2e3**2, rel=1e-9, abs=0.0)
     assert found[0].length == pytest.approx(found[0].force * 8.0 / beam.EI, rel=1e-9, abs=0.0)

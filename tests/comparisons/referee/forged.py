@@ -1,14 +1,21 @@
 """Answers that are wrong in a known way, and exact ones stated as a model would state them."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import Scene
+from comparisons.scene import Scene, load_scene
 
 POINTS = 201
+
+
+def scene_of(name: str, **changes: object) -> Scene:
+    """Return a scene of `scenes`, with changes."""
+    scene = load_scene(str(Path(__file__).parent / "scenes" / f"{name}.toml"))
+    return replace(scene, **changes)  # type: ignore[arg-type]
 
 
 def contact(response: Response, **changes: object) -> Response:

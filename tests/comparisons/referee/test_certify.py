@@ -13,13 +13,14 @@ from comparisons.models.options import Options
 from comparisons.referee import Verdict, certify
 from comparisons.response import Response
 from comparisons.scene import (
+    ContactSpec,
     PinMove,
+    PinSpec,
     Scene,
     StageSpec,
     load_scene,
-    read_scene,
 )
-from tests.comparisons.referee.forged import bent, contact, stated
+from tests.comparisons.referee.forged import bent, contact, scene_of, stated
 
 PAIR, BEAM = "pin->cantilever", "cantilever"
 KS = replace(load_scene("ks-cantilever"), load_parameters=40)
@@ -93,12 +94,6 @@ def test_a_contact_without_force_at_a_tip_is_open(beyond: float, force: float, t
     assert certify(contact(response, arc_position=arc, force=size, vector=vector), scene).certified == true
 
 
-NOSE = """
-scene = {{ name = "nose", units = "N, mm", load_parameters = 1 }}
-beam = [{{ name = "b", start = [0, 0], end = [40, 0], clamped = ["start"], width = 5, height = 0.8, youngs_modulus = 2e5, poissons_ratio = 0.3 }}]
-pin = [{{ name = "ball", start = [{x}, -4], displacement = [0, {rise}]{radius} }}]
-contact = [{{ node = "ball", beam = "b", side = "right", surface = "{surface}" }}]
-"""
 CORNER = 4.0 - 0.4 - np.sqrt(2.5**2 - 0.5**2)
 """Rise at which the ball touches the corner (40, -.4)."""
 
@@ -121,8 +116,8 @@ def test_what_is_inside_the_end_of_a_beam_is_inadmissible(
     x: float, rise: float, radius: float, surface: str, words: str
 ) -> None:
     """A beam that has not moved, and a ball or point at its end."""
-    round_pin = f", radius = {radius}" if radius else ""
-    scene = read_scene(NOSE.format(x=x, rise=rise, radius=round_pin, surface=surface), "nose")
+    scene = scene_of("nose", pins=(PinSpec(name="ball", path=((x, -4.0), (x, rise - 4.0)), radius=radius or None),),
+                     contacts=(ContactSpec(node="ball", beam="b", side="right", surface=surface),))  # fmt: skip
     line = np.stack([np.linspace(0.0, 40.0, 41), np.zeros(41)], axis=1)
     found = certify(stated(scene, [bent(scene, 1.0, {"b": line})]), scene, at=[0])
     assert (found.judged[0].verdict is Verdict.INADMISSIBLE) == bool(words), found.line()

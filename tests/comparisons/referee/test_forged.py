@@ -14,20 +14,12 @@ from comparisons.cli import main
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
-from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene, read_scene, to_toml
+from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene, to_toml
+from tests.comparisons.referee.forged import scene_of
 
 Data = dict[str, Any]
 Forgery = Callable[[Data], object]
 PAIR, BEAM, CLAMP, STEPS = "pin->cantilever", "cantilever", "cantilever.start", 10
-STEEL = read_scene(
-    """
-scene = { name = "steel", units = "N, mm", load_parameters = 4 }
-beam = [{ name = "cantilever", start = [0, 0], end = [1000, 0], clamped = ["start"], width = 40, height = 15.8, youngs_modulus = 2.1e5, poissons_ratio = 0.3 }]
-load = [{ beam = "cantilever", end = "end", force = [0, -50] }]
-""",
-    "steel",
-)
-"""A strip of 1 m that bends by .6 % of its length."""
 
 
 def cantilever(
@@ -44,11 +36,10 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
     "ks": (cantilever(), EXACT),
     "mixed": (cantilever(), ("--element", "mixed", "--elements", "10")),
     "solid": (cantilever(), ("--model", "solid")),
-    "face": (replace(load_scene("ks-face"), load_parameters=STEPS), EXACT),
     "again": (load_scene("touch-again"), EXACT),
     "portal": (load_scene("portal-frame"), EXACT),
-    "steel": (STEEL, EXACT),
-    "steel solid": (STEEL, ("--model", "solid")),
+    "steel": (scene_of("steel"), EXACT),
+    "steel solid": (scene_of("steel"), ("--model", "solid")),
     "rubbed": (cantilever(0.3, 20), EXACT),
     "more rubbed": (cantilever(0.303, 20), EXACT),
     "smooth": (cantilever(0.0, 20), EXACT),
@@ -188,20 +179,6 @@ def lost(data: Data) -> None:
     data.update(events=[], material_force={}, index=[0] * STEPS, load_parameter=(np.arange(1.0, STEPS + 1.0) / STEPS).tolist())  # fmt: skip
 
 
-def turned(data: Data) -> None:
-    """All contact forces by 45 degrees, with the reactions that balance them."""
-    vector = np.array(data["contacts"][PAIR]["vector"]) @ np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2.0)
-    pins = np.array([SOURCES["ks"][0].pins[0].position(t) for t in data["load_parameter"]])
-    data["contacts"][PAIR]["vector"] = vector.tolist()
-    moment = pins[:, 1] * vector[:, 0] - pins[:, 0] * vector[:, 1]
-    data["supports"][CLAMP].update(force=(-vector).tolist(), moment=moment.tolist())
-
-
-def without_lever(data: Data) -> None:
-    """The moment of the support as if the contact force acted on the axis of the undeformed beam, half a height away."""
-    clamp("moment", plus(0.01 * np.array(data["contacts"][PAIR]["vector"])[:, 0]))(data)
-
-
 def reordered(*order: int) -> Forgery:
     """States in another order, or some of them."""
     own = ("load_parameter", "stage")
@@ -239,66 +216,32 @@ def shifted(kind: str, **by: float) -> Forgery:
     return forge
 
 
-def open_gap(data: Data) -> None:
-    """Enlarge the first gap of an open contact."""
-    gaps, force = data["contacts"][PAIR]["gap"], data["contacts"][PAIR]["force"]
-    gaps[next(k for k in range(len(gaps)) if not force[k] and gaps[k])] += 30.0
-
-
-def stuck_outside(data: Data) -> None:
-    """A slip that is stated as stick, with the force outside the cone."""
-    friction = data["contacts"][PAIR]["friction"]
-    lean = np.arctan2(friction["tangential"], friction["normal"]) * 1.05
-    force = np.array(data["contacts"][PAIR]["force"])
-    friction.update(tangential=(force * np.sin(lean)).tolist(), normal=(force * np.cos(lean)).tolist(), slip=[0] * 20)  # fmt: skip
-
-
-def smooth_and_stuck(data: Data) -> None:
-    """The answer without friction, called stick: its force is inside the cone."""
-    instead("smooth")(data)
-    nothing = [0.0] * 20
-    data["contacts"][PAIR]["friction"] = {"tangential": nothing, "normal": data["contacts"][PAIR]["force"], "slip": [0] * 20, "dissipated": nothing}  # fmt: skip
-
-
-def dissipating(data: Data) -> None:
-    """More work, all of it dissipated."""
-    more = 0.01 * np.array(data["work"])
-    put("work", to=plus(more))(data)
-    rubs("dissipated", plus(more))(data)
-
-
-PROGRAM, SOLID = claimed(model="other"), claimed(model="solid", continuum=True)
-OUTSIDE, CONTINUUM = claimed(outside=True), claimed(continuum=True)
+PROGRAM, OUTSIDE = claimed(model="other"), claimed(outside=True, continuum=True)
+CONE, STEEP = np.arctan(0.3), 1.05 * np.arctan(0.3)
 BUT_ONE, ONE = slice(STEPS - 1), slice(4, 5)
 WRONG, NOT = "NOT_AN_EQUILIBRIUM: ", "INADMISSIBLE: "
 BALANCE = "NOT_AN_EQUILIBRIUM: the support reactions do not balance contact forces and loads"
 FORGED: dict[str, tuple[str, Forgery, str]] = {
     "nothing moves": ("steel", moved(0.0), WRONG + "displacement off by 25 % (cantilever), allowed 5 %"),
     "nothing moves, by a program": ("steel", both(moved(0.0), PROGRAM), WRONG + "displacement off by 25 %"),
-    "nothing moves, as if of a solid": ("steel", both(moved(0.0), SOLID), WRONG + "displacement off by 25 % (cantilever), allowed 6.58 %"),
     "nothing moves, of a solid": ("steel solid", moved(0.0), WRONG + "displacement off by 25 % (cantilever), allowed 6.58 %"),
     "nothing acts": ("steel", both(moved(0.0), held(0.0)), WRONG + "displacement off by 25 %"),
-    "displacements times 3": ("steel", moved(3.0), WRONG + "displacement off by 50 %"),
     "displacements times -1, of a solid": ("steel solid", moved(-1.0), WRONG + "displacement off by 50 %"),
     "displacements times 1.2, by a program": ("steel", both(moved(1.2), PROGRAM), WRONG + "displacement off by 5 % (cantilever), allowed 5 %"),
     "reactions times 3": ("steel", held(3.0), WRONG + "reaction off by 50 % (moment of cantilever.start)"),
     "forces times 3 at all but one": ("ks", both(pushed(3.0, BUT_ONE), held(3.0, BUT_ONE)), WRONG + "force off by 2e+02 % (pin->cantilever)"),
     "forces times 3 at all but one, by a program": ("ks", both(pushed(3.0, BUT_ONE), held(3.0, BUT_ONE), PROGRAM), WRONG + "force off by 2e+02 %"),
     "forces times 3 at one alone": ("mixed", both(pushed(3.0, ONE), held(3.0, ONE)), WRONG + "force off by 2e+02 %"),
-    "force turned by 45 degrees": ("ks", turned, WRONG + "force off by 77 %"),
     "two states exchanged": ("ks", exchanged(4, 7), WRONG + "supports and contacts are off by 0.36 L (pin->cantilever) at load parameter 0.5"),
     "states of the load parameter before": ("ks", reordered(0, *range(STEPS - 1)), WRONG + "supports and contacts are off by 0.12 L"),
     "half an answer": ("ks", reordered(*range(STEPS // 2)), "load_parameter: has 5 of 10 load parameters, and the status is COMPLETED"),
     "contact force times 1.009": ("ks", pushed(1.009), BALANCE),
     "contact force times 1.009, outside claimed": ("ks", both(pushed(1.009), OUTSIDE), BALANCE),
-    "contact force times 1.009, a continuum claimed": ("ks", both(pushed(1.009), CONTINUUM), BALANCE),
     "contact force times 1.009, of a solid": ("solid", pushed(1.009), BALANCE),
-    "contact force times 1.06, by a program": ("ks", both(pushed(1.06), held(1.06), PROGRAM, CONTINUUM), WRONG + "force off by 6 % (pin->cantilever), allowed 5 %"),
-    "missing moment of an offset": ("face", without_lever, WRONG + "the support moments do not balance"),
+    "contact force times 1.06, by a program": ("ks", both(pushed(1.06), held(1.06), PROGRAM, OUTSIDE), WRONG + "force off by 6 % (pin->cantilever), allowed 5 %"),
     "all arc positions .3": ("ks", pin("arc_position", [0.3] * STEPS), WRONG + "supports and contacts are off by 0.6 L"),
     "tip moved by 7": ("ks", put("tips", BEAM, to=plus(7.0)), WRONG + "tip off by 9.9e+02 %"),
     "lost contact": ("ks", lost, NOT + "pin->cantilever is open and its node goes through the beam up to load parameter 0.1"),
-    "claimed slip-off": ("ks", both(lost, pin("slip_off", 0.15)), NOT + "pin->cantilever is open and its node goes through the beam"),
     "a pin that goes through": ("through", both(instead("ks"), lost), NOT + "pin->cantilever is open and its node goes through the beam"),
     "a pin around the end": ("around", both(instead("ks"), lost), "NOT_JUDGED: nothing to judge: no load, support or contact carries a force"),
     "a pull": ("ks", pin("force", -1.0, 6), WRONG + "the contact force of pin->cantilever pulls"),
@@ -307,10 +250,9 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "index 7": ("ks", put("index", 6, to=7), WRONG + "index 7 is stated, the equilibrium has 0 at load parameter 0.7"),
     "a gap of -.1 L at a closed contact": ("ks", pin("gap", -0.1, 6), WRONG + "gap off by 10 % (pin->cantilever)"),
     "a gap of .1 L, of a solid": ("solid", pin("gap", 0.1, 6), WRONG + "gap off by 10 % (pin->cantilever), allowed 7 %"),
-    "a gap of .3 L at an open contact": ("again", open_gap, WRONG + "gap off by 30 %"),
+    "a gap of 30 at an open contact": ("again", put("contacts", PAIR, "gap", 0, to=30.0), WRONG + "gap off by 28 %"),
     "an arc position beyond the end": ("ks", pin("arc_position", 1.1, 6), WRONG + "the arc position of pin->cantilever is not on its beam"),
     "an invented release": ("ks", events(lambda own: own.append(event("release", 0.505))), NOT + "release of pin->cantilever at load parameter 0.505: arc position off by 0.11"),
-    "an invented release and touch": ("ks", events(lambda own: own.extend([event("release", 0.501), event("touch", 0.502)])), NOT + "release of pin->cantilever"),
     "an event of another pair": ("ks", events(lambda own: own.append(event("touch", 0.5, pair="pin->other"))), NOT + "no contact of the scene has the event touch"),
     "an event after the end": ("ks", events(lambda own: own.append(event("release", 1.5))), NOT + "no contact of the scene has the event release"),
     "an event of an unknown kind": ("ks", events(lambda own: own.append(event("weld", 0.5))), NOT + "no contact of the scene has the event weld"),
@@ -318,7 +260,6 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "a displaced event": ("again", shifted("touch", load_parameter=0.2), NOT + "pin->cantilever closes without an event"),
     "an event at another place": ("again", shifted("touch", arc_position=-30.0), NOT + "touch of pin->cantilever at load parameter 0.636364: arc position off by 0.3"),
     "an event with another force": ("again", shifted("release", force=1.0), NOT + "release of pin->cantilever at load parameter 0.454545: contact force off"),
-    "a material force": ("ks", put("material_force", to={BEAM: [1e6] * STEPS}), WRONG + "the material force of cantilever is not that of its reactions"),
     "a material force at one alone": ("ks", put("material_force", BEAM, 6, to=1e-3), WRONG + "the material force of cantilever"),
     "a status": ("ks", claimed(status="NOT_CONVERGED"), "NOT_JUDGED: the answer stopped: NOT_CONVERGED, off by less than 1e-07 % where it was judged"),
     "no reported success": ("ks", claimed(reported_success=False), NOT + "the status is COMPLETED, and reported_success is false"),
@@ -328,23 +269,20 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "drag reversed": ("rubbed", rubs("tangential", by(-1.0)), NOT + "pin->cantilever slips with F_t = 0.3 F_n, not -0.3 F_n"),
     "cone on the other side": ("rubbed", rubs("normal", by(-1.0)), NOT + "pin->cantilever slips with F_t = 0.3 F_n, not -0.3 F_n"),
     "stick that moves": ("rubbed", pin("arc_position", plus(1e-3), 12), NOT + "pin->cantilever sticks and moves by 0.001 L"),
-    "stick outside the cone": ("rubbed", both(stuck_outside, claimed(events=None)), NOT + "pin->cantilever sticks with a force outside its cone"),
+    "stick outside the cone": ("rubbed", both(rubs("slip", [0] * 20), rubs("tangential", by(np.sin(STEEP) / np.sin(CONE))), rubs("normal", by(np.cos(STEEP) / np.cos(CONE))), claimed(events=None)), NOT + "pin->cantilever sticks with a force outside its cone"),
     "no friction": ("rubbed", instead("smooth"), WRONG + "force off by 35 %"),
-    "no friction, stuck": ("rubbed", smooth_and_stuck, NOT + "pin->cantilever sticks and moves by -0.35 L"),
     "dissipation that falls": ("rubbed", rubs("dissipated", lambda own: [*own[:-1], 0.9 * own[-2]]), NOT + "the dissipation of pin->cantilever falls"),
     "work": ("rubbed", put("work", to=by(1.01)), NOT + "the work is not strain energy and dissipation at load parameter 0.6, off by 0.0099"),
-    "dissipation": ("rubbed", dissipating, NOT + "the dissipation of pin->cantilever up to load parameter 0.6 is off by 0.0024 of the work"),
+    "dissipation": ("rubbed", both(rubs("dissipated", by(1.5)), claimed(work=None)), NOT + "the dissipation of pin->cantilever up to load parameter 0.6 is off by 0.0054 of the work"),
     "stick is not stated": ("rubbed", events(lambda own: own.pop(0)), NOT + "pin->cantilever sticks without an event up to load parameter 0.65"),
     "stick is stated too early": ("rubbed", shifted("stick", load_parameter=-0.015), NOT + "pin->cantilever sticks from load parameter 0.605498, exactly from 0.620498"),
     "slip is stated too late": ("rubbed", shifted("slip", load_parameter=0.015), NOT + "pin->cantilever slips from load parameter 0.698287, exactly from 0.683287"),
     "stick is stated elsewhere": ("rubbed", shifted("stick", load_parameter=-0.1), NOT + "pin->cantilever slips after an event of kind stick"),
     "no axes": ("ks", lambda data: data.pop("axes"), "axes = (missing): must be a table"),
     "empty axes": ("ks", claimed(axes={}), "axes: must have cantilever, has none"),
-    "empty tips": ("ks", claimed(tips={}), "tips: must have cantilever, has none"),
     "no status": ("ks", lambda data: data.pop("status"), "status = (missing): must be given"),
     "a renamed beam": ("ks", lambda data: data["axes"].update(column=data["axes"].pop(BEAM)), "axes: must have cantilever, has column"),
     "a short list": ("ks", pin("force", [1.0]), "force = [1.0]: must be a list of 10 numbers, one for each load parameter, has 1"),
-    "no list": ("ks", claimed(load_parameter="x"), 'load_parameter = "x": must be a list of numbers'),
     "other load parameters": ("ks", put("load_parameter", to=by(0.999)), "load_parameter: must be those of the scene"),
     "texts": ("ks", pin("force", "1.5", 0), "must be a list of 10 numbers"),
     "a truth value": ("ks", put("tips", BEAM, 3, 0, to=True), "must be a list of 10 x 2 numbers"),
@@ -395,7 +333,7 @@ def test_a_damaged_file_is_one_line(damage: str, judged: Certify) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["ks", "mixed", "solid", "face", "again", "portal", "steel", "steel solid", "rubbed"]
+    "name", ["ks", "mixed", "solid", "again", "portal", "steel", "steel solid", "rubbed"]
 )
 def test_the_true_file_is_certified(name: str, judged: Certify) -> None:
     """Whatever it claims to be."""

@@ -26,14 +26,13 @@ from comparisons.scene import (
     ContactSpec,
     HingeSpec,
     LoadSpec,
-    PinSpec,
     Scene,
     SpringSpec,
     StageSpec,
     SupportSpec,
     load_scene,
 )
-from tests.comparisons.referee.forged import stated
+from tests.comparisons.referee.forged import scene_of, stated
 
 MATERIAL = {"youngs_modulus": 1e6, "poissons_ratio": 0.3}
 GRAVITY = (2.0, -20.0)
@@ -84,18 +83,9 @@ ALONE = {
 }  # fmt: skip
 
 
-def everything() -> Scene:
-    beam = strip(turn=0.8, density=3.0, height=(0.05, 0.03), width=(1.0, 0.6))
-    return Scene(
-        name="all", load_parameters=1, beams=(beam,), gravity=GRAVITY, loads=(PART, INSIDE), springs=(SPRING,),
-        pins=(PinSpec(name="pin", start=(0.6, -0.15), displacement=(0.02, 0.2)),),
-        contacts=(ContactSpec(node="pin", beam="a", side="right"),),
-    )  # fmt: skip
-
-
 def on_its_face() -> Scene:
     """The same with a thicker strip, whose face leans, under a round pin."""
-    scene = everything()
+    scene = scene_of("everything")
     return replace(
         scene,
         beams=(replace(scene.beams[0], height=(0.12, 0.06), poissons_ratio=0.4),),
@@ -106,7 +96,7 @@ def on_its_face() -> Scene:
 
 def nearest(scene: Scene) -> Equilibrium:
     """The equilibrium at the end next to the undeformed beam under a push, or to the answer of a model."""
-    if scene.name == "all":
+    if scene.name == "everything":
         push = (-10.0, 60.0) if scene.pins[0].radius else (-3.0, 10.0)
         return found(scene, undeformed(scene, arcs={"pin->a": 0.62}, forces={"pin->a": push}))
     if scene.name == "alone":
@@ -216,25 +206,14 @@ def step_to_truth(scene: Scene, exact: Equilibrium) -> np.ndarray:
     return np.linalg.solve(jacobian, misses(scene, exact, z))
 
 
-BEAM = {"name": "b", "end": (1.0, 0.0), "youngs_modulus": 1e7}
-PINS = (
-    PinSpec(name="p", start=(0.4, -0.07), displacement=(0.05, 0.12), radius=0.01),
-    PinSpec(name="q", start=(0.8, 0.06), displacement=(-0.1, -0.03)),
-)
 SHOT = {
     **{key: Scene(name="alone", load_parameters=1, **given) for key, given in ALONE.items()},
-    "everything": everything(),
+    "everything": scene_of("everything"),
     "everything under a round pin on its face": on_its_face(),
-    "strong shear": Scene(
-        name="shear", load_parameters=4, beams=(strip(**BEAM, width=0.025, height=0.025, shear_modulus=1e4, poissons_ratio=None),),
-        loads=(LoadSpec(beam="b", end="end", force=(0.7, -4.0), moment=0.3),),
-    ),
+    "strong shear": scene_of("shear"),
     "moved tip": replace(load_scene("ks-tied-tip"), load_parameters=4),
     "under a face": replace(load_scene("ks-face"), load_parameters=4),
-    "two pins": Scene(
-        name="two-pins", load_parameters=2, beams=(strip(**BEAM, width=0.12, height=0.12, poissons_ratio=0.25),), pins=PINS,
-        contacts=tuple(ContactSpec(node=node, beam="b", side=side, surface="face") for node, side in (("p", "right"), ("q", "left"))),
-    ),
+    "two pins": scene_of("two-pins"),
 }  # fmt: skip
 
 
@@ -315,7 +294,7 @@ def test_the_answer_to_another_scene_is_refused(key: str) -> None:
 
 def test_no_key_is_left_out_of_the_balance() -> None:
     """All keys at once with a pin in contact: the stated forces alone balance to 1e-6 with the scene's loads and springs."""
-    right = everything()
+    right = scene_of("everything")
     answer = stated(right, [nearest(right)])
     assert certify(answer, right, allowance=TIGHT).certified
     others = {"gravity": (2.0, -20.0 * (1.0 - 1e-3)), "springs": (replace(SPRING, stiffness=(2.0, 5.01)),)}

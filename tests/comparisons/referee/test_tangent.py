@@ -40,11 +40,11 @@ TWO = Scene(
 HOLD = Hold(load_parameter=0.0, arc_position=0.7, stretch=1.02, shear=0.1, direction=0.3)
 
 
-def on_a_face(radius: float | None, hold: Hold | None, height: float | tuple[float, float] = 0.2) -> Layout:
-    """A thick cantilever that slips, or sticks, on a sharp or a round pin."""
+def on_a_face(height: float | tuple[float, float], hold: Hold | None) -> Layout:
+    """A thick cantilever that slips, or sticks, on a round pin."""
     scene = Scene(
         name="face", load_parameters=1, beams=(strip(end=(1.0, 0.2), width=0.1, height=height),),
-        pins=(PinSpec(name="p", path=((0.8, -0.2), (0.7, 0.2)), radius=radius),),
+        pins=(PinSpec(name="p", path=((0.8, -0.2), (0.7, 0.2)), radius=0.15),),
         contacts=(ContactSpec(node="p", beam="a", side="right", surface="face", friction=0.4),),
     )  # fmt: skip
     grip = Grip(friction=0.4, slip=0 if hold else 1, hold=hold)
@@ -53,11 +53,9 @@ def on_a_face(radius: float | None, hold: Hold | None, height: float | tuple[flo
 
 LAYOUTS = {
     "every key": lay_out(TWO, 1.0, {"p->a": 0.45, "q->a": 0.6}),
-    "slip": on_a_face(None, None),
-    "slip on a round pin": on_a_face(0.15, None),
-    "stick": on_a_face(None, HOLD),
-    "stick on a round pin": on_a_face(0.15, HOLD),
-    "stick on a face that tapers": on_a_face(0.15, HOLD, (0.2, 0.1)),
+    "slip": on_a_face(0.2, None),
+    "stick": on_a_face(0.2, HOLD),
+    "stick on a face that tapers": on_a_face((0.2, 0.1), HOLD),
 }
 
 

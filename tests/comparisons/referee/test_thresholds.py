@@ -13,30 +13,24 @@ from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
 from comparisons.response import ContactHistory, Deformation, Response
 from comparisons.scene import (
-    BeamSpec,
     ContactSpec,
-    LoadSpec,
     PinSpec,
     Scene,
     SpringSpec,
     load_scene,
 )
-from tests.comparisons.referee.forged import contact, support
+from tests.comparisons.referee.forged import contact, scene_of, support
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 RUBBED = replace(load_scene("ks-friction"), load_parameters=6)
 SLIPS = replace(RUBBED, load_parameters=2, pins=(replace(RUBBED.pins[0], displacement=(-0.5, 1.0 / np.pi)),))
 """The first half of it, in which the pin does not stick."""
 PAIR, CLAMP = "pin->cantilever", "cantilever.start"
-STRIP = BeamSpec(name="cantilever", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=1.0, second_moment=1e-4,
-                 shear_area=1.0, youngs_modulus=1e4, shear_modulus=1e4)  # fmt: skip
-ARC = Scene(
-    name="arc", load_parameters=1, beams=(STRIP,), loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)
-)
-"""A strip of EI = 1 that a moment bends to an arc of radius 1 about (0, 1)."""
+ARC = scene_of("arc")
+(STRIP,) = ARC.beams
 SOFTER = replace(STRIP, name="softer", start=(0.0, 5.0), end=(1.0, 5.0), second_moment=1e-7)
 TWO = replace(ARC, beams=(STRIP, SOFTER))
-"""The same, and a softer strip, on which nothing depends."""
+"""The strip of ARC, and a softer one, on which nothing depends."""
 SPRUNG = replace(
     ARC, springs=(SpringSpec(beam="cantilever", end="end", stiffness=(0.0, 0.0), rotation=0.25),)
 )
