@@ -11,7 +11,7 @@ from comparisons.exact import rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Verdict, certify
-from comparisons.response import Response
+from comparisons.response import Response, Sections
 from comparisons.scene import (
     ContactSpec,
     PinMove,
@@ -59,11 +59,23 @@ def test_the_error_of_an_answer_is_judged_to_five_digits(scene: Scene) -> None:
     assert "allowed 0.0001 %" in refused.reason
 
 
+def bent_more(response: Response) -> Response:
+    sections = response.sections
+    assert sections is not None
+
+    def larger(beam: str, k: int) -> Sections:
+        there = sections(beam, k)
+        return replace(there, M=1.1 * there.M)
+
+    return replace(response, sections=larger)
+
+
 IMPOSSIBLE: dict[str, tuple[Callable[[Response], Response], str]] = {
     "no load parameter": (lambda r: replace(r, load_parameter=np.zeros(0)), "NOT_JUDGED: no load parameter was reached"),
     "other load parameters": (lambda r: replace(r, load_parameter=r.load_parameter * 0.999), "is none of the scene's"),
     "a pair of another name": (lambda r: replace(r, contacts={"other->beam": r.contacts[PAIR]}), "the contact pairs are not the scene's"),
     "a support of another name": (lambda r: replace(r, supports={"other.end": r.supports["cantilever.start"]}), "the supported ends are not the scene's"),
+    "a moment along the beam that is a tenth larger": (bent_more, "sections off by"),
     "a tip that is no number": (lambda r: replace(r, tips={BEAM: r.tips[BEAM] * np.nan}), "the position of cantilever is not finite"),
     "a force that is no number": (lambda r: contact(r, force=r.contacts[PAIR].force * np.nan), "the force of pin->cantilever is not finite"),
 }  # fmt: skip

@@ -12,17 +12,21 @@ from comparisons.referee.elements import mesh_of, properties
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.friction import Grip, Hold
 from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.march import tangent
 from comparisons.referee.stability import _directions
 from comparisons.referee.state import _tangents
-from comparisons.scene import ContactSpec, HingeSpec, PinSpec, Scene
+from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec
 from tests.comparisons.referee.test_specimens import (
+    ALONE,
     GRAVITY,
     INSIDE,
     PART,
     SPRING,
+    found,
     nearest,
     on_its_face,
     strip,
+    undeformed,
 )
 
 FIRST = strip(turn=1.1, end=(1.0, 0.2), height=(0.1, 0.06), width=(1.0, 1.4), density=2.0)
@@ -105,3 +109,11 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis() -> None:
         e = 1e-6 * np.eye(len(z))[k]
         difference = (phi(z + e) - phi(z - e)) / 2e-6
         assert directions[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
+
+
+def test_nothing_moves_in_a_stage_that_changes_nothing() -> None:
+    """The round-off of an equilibrium does not count as a rate: over a short step it would lead the path elsewhere."""
+    rest = StageSpec(load_parameters=1, load=(LoadSpec(beam="a", end="start", force=(0.0, 1.0)),))
+    idle = Scene(name="idle", load_parameters=2, stages=(rest,), **ALONE["heavy taper"])
+    for rate in tangent(idle, found(idle, undeformed(idle, 1.5)).solution, 1e-7):
+        assert not np.any(rate)
