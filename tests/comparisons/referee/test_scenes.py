@@ -46,7 +46,7 @@ TRUE: dict[str, tuple[Scene, str, float | None, tuple[int, ...] | None]] = {
 """A scene, the element that answers, the allowance, and the load parameters that are judged."""
 
 
-@pytest.mark.slow_at("passing", "coarse", "soft", "corner")
+@pytest.mark.slow_at("passing", "coarse", "soft")
 @pytest.mark.parametrize("name", TRUE)
 def test_a_true_answer_is_certified(name: str) -> None:
     scene, element, allowance, at = TRUE[name]

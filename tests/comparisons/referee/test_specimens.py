@@ -266,6 +266,11 @@ CLAMPED = {"beams": (strip(end=(1.0, 0.0)),), "supports": (ROLLER,), "loads": (P
 HINGED = CLAMPED | {"hinges": (HingeSpec(beam="a", end="start", stiffness=20.0),)}
 UP, ALONG = LoadSpec(beam="a", end="end", force=(0.0, 5.0)), LoadSpec(beam="a", end="end", force=(-5.0, 1.0))
 STAGED = {"beams": (strip(),), "loads": (UP,), "stages": (StageSpec(load_parameters=2, load=(ALONG,)),)}
+LOOSE = (
+    SpringSpec(beam="a", end="start", stiffness=(0.0, 400.0)),
+    SpringSpec(beam="a", end="end", stiffness=(0.0, 400.0)),
+)
+SPRUNG = {"beams": (strip(end=(1.0, 0.0), clamped=()),), "springs": LOOSE, "loads": (INSIDE,), "supports": (SupportSpec(beam="a", end="start", fixed=("x",)),)}  # fmt: skip
 MORE = 1.0 + 1e-6
 OTHERS: dict[str, tuple[dict[str, object], dict[str, object], bool]] = {
     "weight": (WEIGHT, {"gravity": (2.0 * MORE, -20.0 * MORE)}, False),
@@ -275,6 +280,7 @@ OTHERS: dict[str, tuple[dict[str, object], dict[str, object], bool]] = {
     "load on a part": (ALONE["load on a part"], {"loads": (replace(PART, force_per_length=(5.0 * MORE, -10.0 * MORE)),)}, False),
     "force inside": (ALONE["force inside"], {"loads": (replace(INSIDE, at=0.8001),)}, False),
     "spring": (ALONE["spring"], {"springs": (replace(SPRING, stiffness=(1.98, 4.95), rotation=0.396),)}, False),
+    "springs alone": (SPRUNG, {"springs": (LOOSE[0], replace(LOOSE[1], stiffness=(0.0, 396.0)))}, False),
     "hinge": (HINGED, {"hinges": ()}, True),
     "stage": (STAGED, {"loads": (ALONG,), "stages": (StageSpec(load_parameters=2, load=(UP,)),)}, True),
 }  # fmt: skip
