@@ -10,9 +10,12 @@ import pytest
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, failures, verified
-from comparisons.response import ContactHistory, Response, SupportHistory
+from comparisons.response import Response
+
+# the units of what is round-off: a scene in other units has the same status whatever they are
 from comparisons.response.round_off import LEAST, RESIDUAL, least_force, round_off
 from comparisons.scene import ContactSpec, LoadSpec, PinSpec, load_scene
+from tests.comparisons.referee.forged import contact, support
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
 PAIR, BEAM, CLAMP = "pin->cantilever", "cantilever", "cantilever.start"
@@ -24,16 +27,6 @@ def good() -> Response:
     return solve(SCENE, "rod")
 
 
-def with_contact(response: Response, **changes: object) -> Response:
-    contact: ContactHistory = replace(response.contacts[PAIR], **changes)  # type: ignore[arg-type]
-    return replace(response, contacts={PAIR: contact})
-
-
-def with_support(response: Response, **changes: object) -> Response:
-    support: SupportHistory = replace(response.supports[CLAMP], **changes)  # type: ignore[arg-type]
-    return replace(response, supports={CLAMP: support})
-
-
 def at(values: np.ndarray, k: int, value: float) -> np.ndarray:
     changed = values.copy()
     changed[k] = value
@@ -42,30 +35,20 @@ def at(values: np.ndarray, k: int, value: float) -> np.ndarray:
 
 def without_force(response: Response) -> Response:
     """What a program reports that lost the contact on the way: no force, the beam straight, no word about it."""
-    arc = np.linspace(0.0, 1.0, 11)
-    straight = np.stack([arc, 0.0 * arc], axis=1)
-    lost = with_contact(response, force=np.zeros(5), arc_position=np.full(5, np.nan), gap=np.full(5, np.nan))
-    lost = with_support(lost, force=np.zeros((5, 2)), moment=np.zeros(5))
-    return replace(lost, axis_line=lambda _, __: (arc, straight))
+    arc, none = np.linspace(0.0, 1.0, 11), np.full(5, np.nan)
+    lost = contact(response, force=np.zeros(5), arc_position=none, gap=none)
+    lost = support(lost, force=np.zeros((5, 2)), moment=np.zeros(5))
+    return replace(lost, axis_line=lambda _, __: (arc, np.stack([arc, 0.0 * arc], axis=1)))
 
 
 BREAKS: dict[str, tuple[Change, str]] = {
     "short": (lambda r: replace(r, load_parameter=r.load_parameter[:3]), "3 of 5 load parameters reached"),
-    "other load parameters": (lambda r: replace(r, load_parameter=r.load_parameter * 0.999), "load parameters reached"),
-    "nan force": (lambda r: with_contact(r, force=at(r.contacts[PAIR].force, 2, np.nan)), "force of .* is not finite"),
-    "nan arc": (lambda r: with_contact(r, arc_position=at(r.contacts[PAIR].arc_position, 2, np.nan)), "arc position of"),
+    "nan force": (lambda r: contact(r, force=at(r.contacts[PAIR].force, 2, np.nan)), "force of .* is not finite"),
     "inf tip": (lambda r: replace(r, tips={BEAM: at(r.tips[BEAM], 2, np.inf)}), "tip of .* is not finite"),
-    "pull": (lambda r: with_contact(r, force=at(r.contacts[PAIR].force, 2, -1e-9)), "pulls at load parameter 0.6"),
-    "ajar": (lambda r: with_contact(r, gap=at(r.contacts[PAIR].gap, 2, 1e-6)), "open gap at load parameter 0.6"),
-    "wrong compliance": (lambda r: with_contact(r, compliance=1.0), "open gap"),
-    "deep": (
-        lambda r: with_contact(r, compliance=10.0, gap=-10.0 * r.contacts[PAIR].force),
-        "penetration of .* exceeds 1% of the length at load parameter",
-    ),
-    "reaction": (lambda r: with_support(r, force=r.supports[CLAMP].force * (1 + 1e-5)), "support reactions do not balance"),
-    "moment": (lambda r: with_support(r, moment=r.supports[CLAMP].moment * (1 + 1e-5)), "support moments do not balance"),
-    "sign of the moment": (lambda r: with_support(r, moment=-r.supports[CLAMP].moment), "support moments do not balance"),
-    "sign of the reaction": (lambda r: with_support(r, force=-r.supports[CLAMP].force), "support moments do not balance"),
+    "ajar": (lambda r: contact(r, gap=at(r.contacts[PAIR].gap, 2, 1e-6)), "open gap at load parameter 0.6"),
+    "wrong compliance": (lambda r: contact(r, compliance=1.0), "open gap"),
+    "moment": (lambda r: support(r, moment=r.supports[CLAMP].moment * (1 + 1e-5)), "support moments do not balance"),
+    "sign of the reaction": (lambda r: support(r, force=-r.supports[CLAMP].force), "support moments do not balance"),
     "lost contact": (without_force, "open and its node goes through the beam up to load parameter 0.2"),
 }  # fmt: skip
 
@@ -78,22 +61,20 @@ def test_a_broken_response_is_not_a_success(good: Response, case: str) -> None:
     assert re.search(reason, checked.message)
 
 
-AROUND = ((1.2, 0.01), (1.2, -0.1), (0.6, -0.1))
-"""Past the free end and below the beam, which it never touches."""
-
-
-@pytest.mark.parametrize("load_parameters", [1, 2, 7])
 @pytest.mark.parametrize(
-    "path", [AROUND, ((0.5, 0.01), (1.2, 0.0), (0.5, -0.1)), ((-0.2, 0.1), (-0.2, -0.1), (0.5, -0.1))]
+    "path",
+    [
+        ((1.2, 0.01), (1.2, -0.1), (0.6, -0.1)),
+        ((0.5, 0.01), (1.2, 0.0), (0.5, -0.1)),
+        ((-0.2, 0.1), (-0.2, -0.1), (0.5, -0.1)),
+    ],
 )
-@pytest.mark.parametrize("model", ["tsm", "rod"])
-def test_a_pin_may_come_around_an_end(
-    model: str, path: tuple[tuple[float, float], ...], load_parameters: int
-) -> None:
-    scene = replace(SCENE, load_parameters=load_parameters, **above(path))
-    response = solve(scene, model)
-    assert response.completed, response.message
-    assert not response.contacts[PAIR].force.any()
+def test_a_pin_may_come_around_an_end(path: tuple[tuple[float, float], ...]) -> None:
+    """Below the beam, which it never touches, whatever the load parameters between which it passes."""
+    for load_parameters in (1, 2, 7):
+        response = solve(replace(SCENE, load_parameters=load_parameters, **above(path)), "tsm")
+        assert response.completed, response.message
+        assert not response.contacts[PAIR].force.any()
 
 
 @pytest.mark.parametrize(
@@ -121,7 +102,7 @@ def above(path: tuple[tuple[float, float], ...]) -> dict[str, object]:
 
 
 @pytest.mark.slow_at("solid")
-@pytest.mark.parametrize("model", ["rod", "tsm", "solid"])
+@pytest.mark.parametrize("model", ["tsm", "solid"])
 def test_a_beam_lies_outside_a_round_pin_along_all_of_its_axis(model: str) -> None:
     scene = replace(load_scene("ks-face"), load_parameters=5)
     response = solve(scene, model)
@@ -140,6 +121,7 @@ def test_a_stopped_response_keeps_its_own_reason(good: Response) -> None:
     assert verified(stopped, SCENE) is stopped
 
 
+@pytest.mark.slow_at("solid-options2-too few elements: one bends by 1.1 rad.*LIMIT_POINT")
 @pytest.mark.parametrize(
     ("model", "options", "reason"),
     [
@@ -159,18 +141,17 @@ def test_elements_that_bend_too_far_are_not_believed(model: str, options: Option
 def test_forces_beyond_the_shear_stiffness_are_not_believed() -> None:
     """The paper's element takes F/GA for small: at 2 its force is off by a quarter; the exact element does not."""
     beam = replace(SCENE.beams[0], poissons_ratio=None, shear_modulus=5e-2)
-    soft = replace(SCENE, beams=(beam,), load_parameters=10)
+    soft = replace(SCENE, beams=(beam,), load_parameters=4)
     response = solve(soft, "tsm", Options(element="timoshenko", elements=20))
     assert response.status == CHECK_FAILED
     assert "forces exceed 0.1 EA or GA" in response.message
     assert solve(soft, "tsm", Options(element="exact")).completed
 
 
-@pytest.mark.parametrize("model", ["tsm", "rod"])
-def test_a_motion_below_the_resolution_is_refused(model: str) -> None:
+def test_a_motion_below_the_resolution_is_refused() -> None:
     """Beside the clamp it would take a finite force, and no model sees it."""
     pin = PinSpec(name="pin", path=((1e-17, 0.0), (1e-17, 1e-18)))
-    response = solve(replace(SCENE, pins=(pin,)), model)
+    response = solve(replace(SCENE, pins=(pin,)), "tsm")
     assert response.status == CHECK_FAILED
     assert "pin moves by 1e-18" in response.message
 
@@ -179,8 +160,8 @@ def test_a_round_pin_that_rubs_is_in_balance() -> None:
     """Its tangential force acts on its surface, with a moment about its centre that statics alone would not see the sign of."""
     beam = replace(SCENE.beams[0], width=0.1, height=0.1)
     pin = PinSpec(name="pin", path=((0.7, -0.1), (0.69, -0.05)), radius=0.1)
-    contact = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
-    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(contact,), load_parameters=1)
+    spec = ContactSpec(node="pin", beam="cantilever", side="right", friction=0.3)
+    scene = replace(SCENE, beams=(beam,), pins=(pin,), contacts=(spec,), load_parameters=1)
     response = solve(scene, "tsm", Options(element="exact"))
     assert response.completed, response.message
     rubs = response.contacts["pin->cantilever"].friction
@@ -189,20 +170,19 @@ def test_a_round_pin_that_rubs_is_in_balance() -> None:
 
 
 def test_what_is_round_off_has_the_units_of_its_quantity() -> None:
-    """A metre is a thousand millimetres, and so is every length, with the force left as it is."""
-    unit = 1e3
+    """Of a strip of length 2, and of one in millimetres with the same force."""
     beam = replace(SCENE.beams[0], end=(2.0, 0.0), width=0.1, height=0.1, youngs_modulus=1e7)
-    size = {name: unit * getattr(beam, name) for name in ("width", "height")}
-    scaled = replace(beam, **size, end=(2.0 * unit, 0.0), youngs_modulus=1e7 / unit**2)
-    found = []
-    for one in (beam, scaled):
-        load = LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-3))
-        scene = replace(SCENE, beams=(one,), pins=(), contacts=(), loads=(load,), load_parameters=1)
-        found.append(round_off(solve(scene, "tsm", Options(element="exact")), scene))
+    milli = replace(beam, end=(2e3, 0.0), width=1e2, height=1e2, youngs_modulus=1e1)
+    load = LoadSpec(beam=BEAM, end="end", force=(0.0, 1e-3))
+    scenes = [
+        replace(SCENE, beams=(one,), pins=(), contacts=(), loads=(load,), load_parameters=1)
+        for one in (beam, milli)
+    ]
+    found = [round_off(solve(scene, "tsm", Options(element="exact")), scene) for scene in scenes]
     for name, power in {"force": 0, "moment": 1, "energy": 1, "length": 1, "stress": -2}.items():
         assert getattr(found[1], name) == pytest.approx(
-            unit**power * getattr(found[0], name), rel=1e-6, abs=0.0
+            1e3**power * getattr(found[0], name), rel=1e-6, abs=0.0
         ), name
     assert found[0].force == pytest.approx(RESIDUAL * beam.EI / 4.0, rel=1e-9, abs=0.0)
-    assert least_force(scene) == pytest.approx(LEAST * scaled.EI / (2.0 * unit) ** 2, rel=1e-9, abs=0.0)
+    assert least_force(scenes[1]) == pytest.approx(LEAST * milli.EI / 2e3**2, rel=1e-9, abs=0.0)
     assert found[0].length == pytest.approx(found[0].force * 8.0 / beam.EI, rel=1e-9, abs=0.0)

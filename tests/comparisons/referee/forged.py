@@ -1,43 +1,33 @@
 """Answers that are wrong in a known way, and exact ones stated as a model would state them."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
 from comparisons.response import ContactHistory, Response, SupportHistory
-from comparisons.scene import Scene
+from comparisons.scene import Scene, load_scene
 
 POINTS = 201
 
 
-def integrated(
-    scene: Scene, t: float, clamp: tuple[float, float, float], touches: list[tuple[str, float, np.ndarray]]
-) -> AnswerState:
-    """State of the first beam, clamped at its start along +x, from a reaction and contact forces at arc positions, by integration."""
-    beam = scene.beams[0]
-    n, state, begin = -np.array(clamp[:2]), [0.0, 0.0, 0.0, -clamp[2]], 0.0
-    arc, line = np.linspace(0.0, beam.length, POINTS), []
-    for end, force in [*((s, f) for _, s, f in touches), (beam.length, np.zeros(2))]:
+def scene_of(name: str, **changes: object) -> Scene:
+    """Return a scene of `scenes`, with changes."""
+    scene = load_scene(str(Path(__file__).parent / "scenes" / f"{name}.toml"))
+    return replace(scene, **changes)  # type: ignore[arg-type]
 
-        def rate(_: float, y: np.ndarray, n: np.ndarray = n) -> list[float]:
-            c, s = np.cos(y[2]), np.sin(y[2])
-            N, Q = n[0] * c + n[1] * s, n[1] * c - n[0] * s
-            dx, dy = (1.0 + N / beam.EA) * c - Q / beam.GA * s, (1.0 + N / beam.EA) * s + Q / beam.GA * c
-            return [dx, dy, y[3] / beam.EI, dy * n[0] - dx * n[1]]
 
-        inside = arc[(arc >= begin) & (arc < end)]
-        path = solve_ivp(rate, (begin, end), state, t_eval=np.append(inside, end), rtol=1e-9, atol=1e-12)
-        line.append(path.y[:2, : len(inside)].T)
-        state, begin, n = path.y[:, -1], end, n - force
-    axis = np.vstack([*line, state[:2]]) + np.array(beam.start)
-    return AnswerState(
-        load_parameter=t,
-        arcs={pair: s for pair, s, _ in touches},
-        forces={pair: (float(f[0]), float(f[1])) for pair, _, f in touches},
-        axes={beam.name: (arc, axis)},
-        reactions={f"{beam.name}.start": clamp},
-        tips={beam.name: (float(axis[-1, 0]), float(axis[-1, 1]))},
-    )
+def contact(response: Response, **changes: object) -> Response:
+    """Return an answer whose only contact states something else."""
+    ((pair, history),) = response.contacts.items()
+    return replace(response, contacts={pair: replace(history, **changes)})  # type: ignore[arg-type]
+
+
+def support(response: Response, **changes: object) -> Response:
+    """Return an answer whose first support states something else."""
+    node, history = next(iter(response.supports.items()))
+    return replace(response, supports={**response.supports, node: replace(history, **changes)})  # type: ignore[arg-type]
 
 
 def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Response:

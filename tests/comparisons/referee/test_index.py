@@ -1,6 +1,8 @@
-"""The referee's index against buckling loads, folds and units; its answer where there are many contacts, and on finer meshes."""
+"""The referee's index against critical loads in closed form, on both sides of each; a column of many beams; a fold."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,40 +10,51 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from comparisons.exact.elastica import fold_angle
-from comparisons.referee import AnswerState, Equilibrium, SearchStatus, equilibrium
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, PinSpec, Scene, SupportSpec
+from comparisons.referee import AnswerState, Equilibrium, SearchStatus, Verdict, certify, equilibrium
+from comparisons.scene import BeamSpec, ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, SupportSpec
+from tests.comparisons.referee.forged import bent, stated
 
 GA, EA = 50.0, 400.0
 SECTION = {"youngs_modulus": 1.0, "shear_modulus": 1.0, "second_moment": 1.0}
+STIFF = {"area": 1e9, "shear_area": 1e9, **SECTION}
+SUPPORTS = {
+    "clamped-free": (),
+    "pinned": (
+        SupportSpec(beam="b", end="start", kind="pinned"),
+        SupportSpec(beam="b", end="end", fixed=("y",)),
+    ),
+    "clamped": (SupportSpec(beam="b", end="end", fixed=("y", "rotation")),),
+    "clamped-pinned": (SupportSpec(beam="b", end="end", fixed=("y",)),),
+}
 
 
-def column(ends: str, load: float) -> Equilibrium:
-    """A straight column, EI = L = 1, under an end load, with the ends "clamped-free", "pinned", "clamped" or "clamped-pinned"."""
-    beam = BeamSpec(
-        name="b", start=(0.0, 0.0), end=(1.0, 0.0), area=EA, shear_area=GA, **SECTION,
-        clamped=() if ends == "pinned" else ("start",),
-    )  # fmt: skip
-    supports = {
-        "clamped-free": (),
-        "pinned": (
-            SupportSpec(beam="b", end="start", kind="pinned"),
-            SupportSpec(beam="b", end="end", fixed=("y",)),
-        ),
-        "clamped": (SupportSpec(beam="b", end="end", fixed=("y", "rotation")),),
-        "clamped-pinned": (SupportSpec(beam="b", end="end", fixed=("y",)),),
-    }[ends]
-    push = LoadSpec(beam="b", end="end", force=(-load, 0.0))
-    scene = Scene(name="column", load_parameters=1, beams=(beam,), supports=supports, loads=(push,))
-    arc = np.linspace(0.0, 1.0, 5)
-    line = np.stack([arc * (1.0 - load / EA), 0.0 * arc], axis=1)
+def straight(scene: Scene, short: float = 1.0) -> Equilibrium:
+    """The equilibrium of straight beams along x, shortened by a factor."""
+    axes = {
+        beam.name: (np.array([0.0, beam.length]), short * np.array([beam.start, beam.end]))
+        for beam in scene.beams
+    }
     exact = equilibrium(
-        scene,
-        AnswerState(load_parameter=1.0, arcs={}, forces={}, axes={"b": (arc, line)}, reactions={}, tips={}),
+        scene, AnswerState(load_parameter=1.0, arcs={}, forces={}, axes=axes, reactions={}, tips={})
     )
     assert exact.status is SearchStatus.FOUND
-    assert not exact.shape("b", arc).rotation.any()
+    assert (
+        np.abs(exact.shape(scene.beams[0].name, np.linspace(0.0, scene.beams[0].length, 5)).rotation).max()
+        < 1e-6
+    )
     return exact
+
+
+def column(ends: str, load: float, parts: int = 1) -> Equilibrium:
+    """A column, EI = L = 1, with shear and stretch, under an end load."""
+    names = ["b"] if parts == 1 else [f"b{k}" for k in range(parts)]
+    beams = tuple(
+        BeamSpec(name=name, start=(a, 0.0), end=(b, 0.0), area=EA, shear_area=GA, clamped=() if a or ends == "pinned" else ("start",), **SECTION)
+        for name, (a, b) in zip(names, pairwise(np.linspace(0.0, 1.0, parts + 1).tolist()), strict=True)
+    )  # fmt: skip
+    push = LoadSpec(beam=names[-1], end="end", force=(-load, 0.0))
+    scene = Scene(name="column", load_parameters=1, beams=beams, supports=SUPPORTS[ends], loads=(push,))
+    return straight(scene, 1.0 - load / EA)
 
 
 def critical(ends: str, mode: int) -> float:
@@ -58,45 +71,50 @@ def critical(ends: str, mode: int) -> float:
     return (math.sqrt(1.0 + 4.0 * a * k**2) - 1.0) / (2.0 * a)
 
 
-@pytest.mark.parametrize(
-    ("ends", "mode"),
-    [("clamped-free", 1), ("clamped-free", 2), ("clamped-free", 3), ("pinned", 1), ("pinned", 2), ("clamped", 1), ("clamped-pinned", 1)],
-)  # fmt: skip
-def test_the_index_grows_by_one_at_every_buckling_load_to_1e_10(ends: str, mode: int) -> None:
-    load = critical(ends, mode)
-    assert [column(ends, load * part).index for part in (1.0 - 1e-10, 1.0 + 1e-10)] == [mode - 1, mode]
+RIGID = BeamSpec(name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), **STIFF)
 
 
-@pytest.mark.parametrize("part", [1.0 - 1e-8, 1.0 + 1e-8])
-@pytest.mark.parametrize("mode", [1, 3])
-def test_the_index_of_many_beams_is_that_of_one(mode: int, part: float) -> None:
-    """A column of 120 beams, whose equations are solved and counted as nearly empty ones."""
-    load, ends = part * critical("clamped-free", mode), np.linspace(0.0, 1.0, 121)
-    section = {"area": EA, "shear_area": GA, **SECTION}
-    beams = tuple(
-        BeamSpec(name=f"b{k}", start=(a, 0.0), end=(b, 0.0), clamped=() if k else ("start",), **section)
-        for k, (a, b) in enumerate(pairwise(ends.tolist()))
+def heavy(load: float) -> Equilibrium:
+    """A column under its weight, that neither shears nor stretches."""
+    beam = replace(RIGID, density=load / RIGID.area)
+    return straight(Scene(name="heavy", load_parameters=1, beams=(beam,), gravity=(-1.0, 0.0)))
+
+
+def hinged(load: float) -> Equilibrium:
+    """The same on a hinge with a spring, under an end load."""
+    push, hinge = (
+        LoadSpec(beam="b", end="end", force=(-load, 0.0)),
+        HingeSpec(beam="b", end="start", stiffness=2.0),
     )
-    push = LoadSpec(beam="b119", end="end", force=(-load, 0.0))
-    scene = Scene(name="column", load_parameters=1, beams=beams, loads=(push,))
-    short = 1.0 - load / EA
-    axes = {
-        spec.name: (np.array([0.0, spec.length]), short * np.array([spec.start, spec.end])) for spec in beams
-    }
-    given = AnswerState(load_parameter=1.0, arcs={}, forces={}, axes=axes, reactions={}, tips={})
-    exact = equilibrium(scene, given)
-    assert exact.status is SearchStatus.FOUND
-    assert exact.index == mode - (part < 1.0)
+    return straight(Scene(name="hinged", load_parameters=1, beams=(RIGID,), loads=(push,), hinges=(hinge,)))
 
 
-def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, AnswerState]:
+LOADS: dict[str, tuple[Callable[[float], Equilibrium], float, int, float]] = {
+    **{f"{ends} {mode}": (lambda P, ends=ends: column(ends, P), critical(ends, mode), mode, 1e-10)
+       for ends, mode in (("clamped-free", 1), ("clamped-free", 2), ("clamped-free", 3), ("pinned", 1), ("pinned", 2), ("clamped", 1), ("clamped-pinned", 1))},
+    # solved and counted as nearly empty equations
+    "120 beams 3": (lambda P: column("clamped-free", P, 120), critical("clamped-free", 3), 3, 1e-8),
+    # Greenhill: nine quarters of the square of the first zero of J_-1/3
+    "weight": (heavy, 7.837347438943, 1, 1e-6),
+    # x tan x = k L/EI
+    "spring hinge": (hinged, brentq(lambda x: x * math.tan(x) - 2.0, 0.5, 1.5, xtol=1e-14) ** 2, 1, 1e-6),
+}  # fmt: skip
+"""Equilibrium at a load, the critical load, the index beyond it, and how near it is told."""
+
+
+@pytest.mark.parametrize("case", LOADS)
+def test_the_index_grows_by_one_at_every_critical_load(case: str) -> None:
+    at, load, index, near = LOADS[case]
+    assert [at(load * part).index for part in (1.0 - near, 1.0 + near)] == [index - 1, index]
+
+
+def elastica(tc: float, offset: float) -> tuple[Scene, AnswerState]:
     """A pin under a stiff rod, EI = 1, where the tangent has the angle tc at s = .9, and the shape of an elastica."""
-    EI, s = 1.0, 0.9
+    s = 0.9
 
     def rate(_: float, state: np.ndarray, force: float) -> list[float]:
         _, _, theta, m = state
-        c, si = math.cos(theta), math.sin(theta)
-        return [c, si, m, -force * (si * math.sin(tc) + c * math.cos(tc))]
+        return [math.cos(theta), math.sin(theta), m, -force * math.cos(theta - tc)]
 
     def shot(force: float) -> np.ndarray:
         back = solve_ivp(
@@ -107,41 +125,42 @@ def elastica(tc: float, offset: float = 0.0) -> tuple[Scene, AnswerState]:
     force = brentq(lambda f: shot(f)[0, 2], 0.5, next(f for f in np.arange(1.0, 60.0) if shot(f)[0, 2] < 0.0))
     line = shot(force)[:, :2]
     line -= line[0]
-    direction = np.array([math.cos(tc), math.sin(tc)])
+    direction, normal = np.array([math.cos(tc), math.sin(tc)]), np.array([-math.sin(tc), math.cos(tc)])
     tail = line[-1] + np.outer(np.linspace(0.01, 0.1, 10), direction)
-    arc = np.concatenate([np.linspace(0.0, s, 91), np.linspace(s + 0.01, 1.0, 10)])
-    normal = np.array([-direction[1], direction[0]])
-    pin = line[-1] - offset * normal
-    beam = BeamSpec(
-        name="b", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=1e9, shear_area=1e9, **SECTION
-    )
+    x, y = line[-1] - offset * normal
     scene = Scene(
         name="fold",
         load_parameters=1,
-        beams=(beam,),
-        pins=(PinSpec(name="p", path=((1.5, -1.0), (float(pin[0]), float(pin[1]))), radius=offset or None),),
+        beams=(RIGID,),
+        pins=(PinSpec(name="p", path=((1.5, -1.0), (float(x), float(y))), radius=offset or None),),
         contacts=(ContactSpec(node="p", beam="b", side="right"),),
     )
-    pushed = force * EI * normal
+    arc = np.concatenate([np.linspace(0.0, s, 91), np.linspace(s + 0.01, 1.0, 10)])
     given = AnswerState(
-        load_parameter=1.0, arcs={"p->b": s}, forces={"p->b": (float(pushed[0]), float(pushed[1]))},
+        load_parameter=1.0, arcs={"p->b": s}, forces={"p->b": tuple((force * normal).tolist())},
         axes={"b": (arc, np.vstack([line, tail]))}, reactions={}, tips={},
     )  # fmt: skip
     return scene, given
 
 
-@pytest.mark.parametrize("offset", [0.0, pytest.param(1e-6, marks=pytest.mark.slow)])
-@pytest.mark.parametrize(
-    ("beyond", "index"),
-    [
-        pytest.param(-0.02, 0, marks=pytest.mark.slow),
-        pytest.param(-0.005, 0, marks=pytest.mark.slow),
-        (0.005, 1),
-        pytest.param(0.02, 1, marks=pytest.mark.slow),
-    ],
-)
-def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(beyond: float, index: int, offset: float) -> None:
-    exact = equilibrium(*elastica(fold_angle() + beyond, offset))
-    assert exact.status is SearchStatus.FOUND
-    assert exact.contacts["p->b"].push > 0.0
-    assert exact.index == index
+FOLD = 2.983418482
+"""Tangent angle at the fold of the elastica: zero of ``1 + 2 k^2 + k cot tc``, with the ratio k of its two integrals."""
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-6])
+def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(offset: float) -> None:
+    for beyond, index in ((-0.005, 0), (0.005, 1)):
+        exact = equilibrium(*elastica(FOLD + beyond, offset))
+        assert exact.status is SearchStatus.FOUND
+        assert exact.contacts["p->b"].push > 0.0
+        assert exact.index == index
+
+
+def test_the_straight_branch_of_a_column_is_unstable() -> None:
+    """Under eight times Euler's load; the push aside is too small to bend it."""
+    push = LoadSpec(beam="b", end="end", force=(-20.0, 1e-6))
+    scene = Scene(name="column", load_parameters=2, beams=(RIGID,), loads=(push,))
+    line = {"b": np.array([[0.0, 0.0], [1.0, 0.0]])}
+    found = certify(stated(scene, [bent(scene, t, line) for t in (0.5, 1.0)]), scene)
+    assert found.verdict is Verdict.UNSTABLE
+    assert found.judged[0].index == 1

@@ -11,31 +11,26 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.verify import CHECK_FAILED, verified
 from comparisons.referee import certify
-from comparisons.response import ContactHistory, Deformation, Response, SupportHistory
+from comparisons.response import ContactHistory, Deformation, Response
 from comparisons.scene import (
-    BeamSpec,
     ContactSpec,
-    LoadSpec,
     PinSpec,
     Scene,
     SpringSpec,
-    StageSpec,
     load_scene,
 )
-from tests.comparisons.referee import forged
-from tests.comparisons.referee.forged import bent
+from tests.comparisons.referee.forged import contact, scene_of, support
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 RUBBED = replace(load_scene("ks-friction"), load_parameters=6)
+SLIPS = replace(RUBBED, load_parameters=2, pins=(replace(RUBBED.pins[0], displacement=(-0.5, 1.0 / np.pi)),))
+"""The first half of it, in which the pin does not stick."""
 PAIR, CLAMP = "pin->cantilever", "cantilever.start"
-STRIP = BeamSpec(name="cantilever", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=1.0, second_moment=1e-4,
-                 shear_area=1.0, youngs_modulus=1e4, shear_modulus=1e4)  # fmt: skip
-ARC = Scene(
-    name="arc", load_parameters=1, beams=(STRIP,), loads=(LoadSpec(beam="cantilever", end="end", moment=1.0),)
-)
-"""A strip of EI = 1 that a moment bends to an arc of radius 1 about (0, 1)."""
-BUCKLES = np.pi**2 / 4.0
-"""Force at which the strip buckles, without stretch and shear."""
+ARC = scene_of("arc")
+(STRIP,) = ARC.beams
+SOFTER = replace(STRIP, name="softer", start=(0.0, 5.0), end=(1.0, 5.0), second_moment=1e-7)
+TWO = replace(ARC, beams=(STRIP, SOFTER))
+"""The strip of ARC, and a softer one, on which nothing depends."""
 SPRUNG = replace(
     ARC, springs=(SpringSpec(beam="cantilever", end="end", stiffness=(0.0, 0.0), rotation=0.25),)
 )
@@ -46,11 +41,6 @@ def answer(scene: Scene) -> Response:
     found = solve(scene, "tsm", Options(element="exact"))
     assert found.completed, found.message
     return found
-
-
-def contact(response: Response, **changes: object) -> Response:
-    history: ContactHistory = replace(response.contacts[PAIR], **changes)  # type: ignore[arg-type]
-    return replace(response, contacts={PAIR: history})
 
 
 def more(values: np.ndarray, size: float, k: int = -1) -> np.ndarray:
@@ -66,7 +56,7 @@ def held(scene: Scene, force: float = 0.0, moment: float = 0.0) -> Response:
     new = (
         more(table, part * table[-1]) for table, part in ((history.force, force), (history.moment, moment))
     )
-    return replace(response, supports={CLAMP: SupportHistory(force=next(new), moment=next(new))})
+    return support(response, force=next(new), moment=next(new))
 
 
 def bulged(response: Response, size: float, first: float, last: float) -> Response:
@@ -81,14 +71,14 @@ def bulged(response: Response, size: float, first: float, last: float) -> Respon
 
 
 def on_the_arc(
-    gap: float = 0.0, radius: float | None = None, force: float = 0.0, way: float = 0.1
+    gap: float = 0.0, radius: float | None = None, force: float = 0.0, way: float = 0.1, base: Scene = ARC
 ) -> tuple[Response, Scene]:
     """The arc and a pin that comes from its centre to a gap from its middle, with a contact force that the beam does not feel."""
     out = np.array([np.sin(0.5), -np.cos(0.5)])
     place = np.array([0.0, 1.0]) + (1.0 - (radius or 0.0) - gap) * out
     start, motion = (tuple(map(float, vector)) for vector in (place - way * out, way * out))
     scene = replace(
-        ARC,
+        base,
         pins=(PinSpec(name="pin", start=start, displacement=motion, radius=radius),),
         contacts=(ContactSpec(node="pin", beam="cantilever", side="left"),),
     )
@@ -98,14 +88,14 @@ def on_the_arc(
         gap=np.array([gap]),
         vector=np.array([force * out]),
     )
-    return replace(answer(ARC), contacts={PAIR: history}), scene
+    return replace(answer(base), contacts={PAIR: history}), scene
 
 
 def off_the_cone(part: float) -> Response:
     """A slipping contact with more tangential force, by a part of the contact force."""
-    history = (response := answer(RUBBED)).contacts[PAIR]
+    history = (response := answer(SLIPS)).contacts[PAIR]
     assert history.friction is not None
-    assert history.friction.slip[-1] == 1
+    assert history.friction.slip[-1]
     drag = history.friction.tangential
     size = part * float(history.force[-1]) * np.sign(drag[-1])
     return contact(response, friction=replace(history.friction, tangential=more(drag, size)))
@@ -124,7 +114,7 @@ def regained(part: float) -> Response:
 
 def overpaid(part: float) -> Response:
     """More work at the end."""
-    response = answer(RUBBED)
+    response = answer(SLIPS)
     assert response.work is not None
     return replace(response, work=more(response.work, part * response.work.max()))
 
@@ -158,8 +148,8 @@ def strained(size: float) -> Response:
     )
 
 
-def refused(response: Response, scene: Scene) -> str:
-    found = certify(response, scene, at=[-1])
+def refused(response: Response, scene: Scene, allowance: float | None = None) -> str:
+    found = certify(response, scene, at=[-1], allowance=allowance)
     return "" if found.certified else found.line()
 
 
@@ -172,7 +162,7 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
     "certify.ALLOWED": (5e-2, lambda x: refused(bulged(answer(KS), x, 0.1, 0.4), KS), "shape off"),
     "judge.PLACE": (
         1e-3,
-        lambda x: refused(bulged(answer(KS), x, -0.1, 0.1), KS),
+        lambda x: refused(bulged(answer(KS), x, -0.1, 0.1), KS, 1.0),
         "supports and contacts are off",
     ),
     "judge.LAST_PLACES": (1e-9, lambda x: refused(grown(x), KS), "components differ"),
@@ -183,12 +173,12 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
         lambda x: refused(held(SPRUNG, moment=x / 0.8), SPRUNG),
         "moments do not balance",
     ),
-    "start.PULL": (1e-9, lambda x: refused(*on_the_arc(force=-x)), "pulls"),
+    "start.PULL": (1e-9, lambda x: refused(*on_the_arc(force=-x, base=TWO)), "pulls"),
     "admissible.INSIDE": (1e-9, lambda x: refused(*on_the_arc(-x, 0.1)), "inside the beam"),
-    "rubbing.LAW": (1e-6, lambda x: refused(off_the_cone(x), RUBBED), "slips with"),
+    "rubbing.LAW": (1e-6, lambda x: refused(off_the_cone(x), SLIPS), "slips with"),
     "rubbing.FALL": (1e-8, lambda x: refused(regained(x), RUBBED), "falls"),
-    "rubbing.ENERGY": (1e-4, lambda x: refused(overpaid(x), RUBBED), "the work is not"),
-    "verify.PULL": (1e-9, lambda x: failed(*on_the_arc(force=-x)), "pulls"),
+    "rubbing.ENERGY": (1e-4, lambda x: refused(overpaid(x), SLIPS), "the work is not"),
+    "verify.PULL": (1e-9, lambda x: failed(*on_the_arc(force=-x, base=TWO)), "pulls"),
     "verify.CLOSED": (1e-9, lambda x: failed(ajar(x), KS), "open gap"),
     "verify.PENETRATION": (1e-2, lambda x: failed(pressed(x), KS), "the penetration of"),
     "verify.INSIDE": (1e-3, lambda x: failed(*pressed_in(x)), "L inside beam"),
@@ -217,30 +207,3 @@ def test_a_coarse_axis_excuses_no_more_than_its_chords() -> None:
     coarse = replace(response, axis_line=lambda *_: (arc, line))
     assert refused(contact(coarse, arc_position=np.array([0.502])), scene) == ""
     assert "supports and contacts are off" in refused(contact(coarse, arc_position=np.array([0.506])), scene)
-
-
-def test_the_path_to_the_other_side_of_a_column_is_not_followed() -> None:
-    """Both sides are stable, and less than a tenth of the length apart."""
-    column = replace(
-        ARC,
-        load_parameters=2,
-        loads=(LoadSpec(beam="cantilever", end="end", force=(-BUCKLES * 1.0001, 0.0)),),
-        stages=(
-            StageSpec(
-                load_parameters=1,
-                load=(LoadSpec(beam="cantilever", end="end", force=(-BUCKLES * 1e-5, 0.0)),),
-            ),
-        ),
-    )
-    arc = np.linspace(0.0, 1.0, 41)
-    bow = 0.025 * (1.0 - np.cos(np.pi * arc / 2.0))
-    axes = [np.stack([arc, side * bow], axis=1) for side in (0.0, 1.0, -1.0)]
-    straight, left, right = (
-        bent(column, t, {"cantilever": line}) for t, line in zip((0.5, 1.0, 2.0), axes, strict=True)
-    )
-    same = bent(column, 2.0, {"cantilever": axes[1]})
-    assert 0.02 < np.hypot(*(same.ends["cantilever.end"] - right.ends["cantilever.end"])) < 0.1
-    for last, words in ((same, ""), (right, "ends on another branch")):
-        found = certify(forged.stated(column, [straight, left, last]), column, at=[1, 2])
-        assert found.certified is not bool(words), found.line()
-        assert words in found.line()
