@@ -9,27 +9,23 @@ import pytest
 import tsm
 from tests.tsm.friction_scenes import ks
 from tests.tsm.structures import as_mixed, hook, leaning, pushed, two_beams, two_pins
+
+# a residual and its tangent at a state that is no equilibrium are nowhere public
 from tsm.model import Model
 from tsm.newton import Newton
 from tsm.stability import _symmetric
 
 SCENES = {
-    "two beams": two_beams,
-    "two beams, two elements each": lambda: two_beams(2),
+    "two beams": lambda: two_beams(2),
     "tip on mixed": lambda: two_beams(2, "mixed"),
     "two pins": two_pins,
-    "varying": pushed,
     "varying, on a face": lambda: pushed(offset=0.04, end_offset=0.02),
     "varying, rubbed": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
     "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
     "leaning": leaning,
-    **{
-        f"rubbed {element} {place}": lambda element=element, count=count, place=place: ks(
-            0.3, face=place[0], radius=place[1]
-        ).structure(element, count)
-        for element, count in (("exact", 2), ("mixed", 6))
-        for place in ((0.0, 0.0), (0.03, 0.0), (0.02, 0.03))
-    },
+    "rubbed exact": lambda: ks(0.3, face=0.02, radius=0.03).structure("exact", 2),
+    "rubbed mixed": lambda: ks(0.3, face=0.02, radius=0.03).structure("mixed", 6),
+    "near a node": lambda: replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
 }
 
 
@@ -74,11 +70,10 @@ def symmetric(newton, equilibrium):
     return whole, model.units / math.sqrt(model.force_scale * model.length)
 
 
-@pytest.mark.parametrize("name", ["varying", "varying, on a face", "leaning", "two pins", "near a node"])
+@pytest.mark.parametrize("name", ["varying, on a face", "leaning", "two pins", "near a node"])
 def test_second_variation_answers_loads_as_the_tangent_does(name):
     """A force or moment on a node moves nodes and contacts by the symmetric matrix as by the tangent, which is not symmetric."""
-    near = replace(pushed(), beams=(hook().beams[0].divided(0.504133),))
-    result = tsm.solve({**SCENES, "near a node": lambda: near}[name](), np.array([0.5, 1.0]))
+    result = tsm.solve(SCENES[name](), np.array([0.5, 1.0]))
     model, equilibrium = result.model, result.equilibria[-1]
     if name == "near a node":
         assert min(min(touch.xi, 1 - touch.xi) for touch in equilibrium.state.touches) < 1e-4
