@@ -27,7 +27,9 @@ TENTHS = steps(10)
 def beam(name, start, end, *, section=KS, elements=None, element="exact", **more):
     """A beam of one exact element, or of ten others."""
     elements = elements or (1 if element == "exact" else 10)
-    return tsm.Beam(name=name, start=start, end=end, section=section, elements=elements, element=element, **more)
+    return tsm.Beam(
+        name=name, start=start, end=end, section=section, elements=elements, element=element, **more
+    )
 
 
 def raised(x, depth):

@@ -92,7 +92,9 @@ def test_mixed_contact_gradient_is_the_derivative_of_its_energy():
         state = p, x, lever, xi, force
         gradient, _ = mixed_contact.response(*state, *surface)
         direction = rng.normal(size=11)
-        up, down, here = (mixed_contact.energy(*along(direction, *state, step), *surface) for step in (h, -h, 0.0))
+        up, down, here = (
+            mixed_contact.energy(*along(direction, *state, step), *surface) for step in (h, -h, 0.0)
+        )
         # differences to second order: a step of 1e-6 of elements as short as 0.1
         scale = np.abs(gradient * direction).max() + abs(here)
         assert gradient @ direction == pytest.approx((up - down) / (2 * h), abs=1e-7 * scale)
@@ -251,12 +253,16 @@ def test_what_two_contacts_on_one_element_add_has_its_derivatives():
             d = STEP * direction.reshape(2, 3)
             at, (first, second) = tuple(xi + d[:, 2] / p.l0), forces + d[:, :2]
             stepped, _ = mixed_friction.crossing(p, at, first, second, rubs)
-            assert np.abs(tangent[:, column] - stepped.imag / abs(STEP)).max() <= 1e-10 * np.abs(tangent).max()
+            assert (
+                np.abs(tangent[:, column] - stepped.imag / abs(STEP)).max() <= 1e-10 * np.abs(tangent).max()
+            )
             gradient, _ = mixed_contact.crossing(p, at, first, second)
             value = -mixed_contact.cross_compliance(p, *at)[0] * (first @ second)
             scale = np.abs(gradient).max()
             assert gradient.real @ direction == pytest.approx(value.imag / abs(STEP), abs=1e-9 * scale)
-            assert np.abs(hessian[:, column] - gradient.imag / abs(STEP)).max() <= 1e-9 * np.abs(hessian).max()
+            assert (
+                np.abs(hessian[:, column] - gradient.imag / abs(STEP)).max() <= 1e-9 * np.abs(hessian).max()
+            )
         free = (Rub(0.0, None, 1.0),) * 2
         for one, other in zip(mixed_friction.crossing(p, tuple(xi), *forces, free), mixed_contact.crossing(p, tuple(xi), *forces), strict=True):  # fmt: skip
             assert np.abs(one - other).max() <= 1e-14 * np.abs(other).max()
@@ -284,7 +290,10 @@ def test_tables_of_collocation(order):
     assert np.abs(green - green.T).max() <= 1e-16
     near = np.concatenate([np.nextafter(table.c, 0), np.nextafter(table.c, 1), [1e-300]])
     x, degree = np.concatenate([np.linspace(0, 1, 33), near]), np.arange(order + 1)
-    assert np.abs(interpolation(order, x) @ table.stations[:, None] ** degree - x[:, None] ** degree).max() <= 1e-13
+    assert (
+        np.abs(interpolation(order, x) @ table.stations[:, None] ** degree - x[:, None] ** degree).max()
+        <= 1e-13
+    )
     assert np.array_equal(interpolation(order, table.stations), np.eye(order + 1))
 
 
@@ -318,8 +327,15 @@ def test_condensed_derivatives_are_those_of_the_whole_equations(order):
     given = [*at.angle.T, *(end[:, 0] for end in ends), *at.force[:, :, 0], at.length[:, 0]]
 
     def outputs_of(*values):
-        angle, (start, moment, end), force, length = values[:order], values[order:-3], values[-3:-1], values[-1]
-        moved = at._replace(angle=np.stack(angle, 1), force=np.stack(force)[:, :, None], length=length[:, None])
+        angle, (start, moment, end), force, length = (
+            values[:order],
+            values[order:-3],
+            values[-3:-1],
+            values[-1],
+        )
+        moved = at._replace(
+            angle=np.stack(angle, 1), force=np.stack(force)[:, :, None], length=length[:, None]
+        )
         return outputs(moved, start[:, None], moment[:, None], end[:, None])
 
     columns = [outputs_of(*(v + STEP * (k == n) for n, v in enumerate(given))) for k in range(len(given))]
