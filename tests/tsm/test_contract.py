@@ -112,6 +112,18 @@ def test_order_of_convergence(element, order):
     assert errors[1] <= 5e-3
 
 
+@pytest.mark.parametrize(("element", "bound"), [("mixed", 2e-5), ("exact", 1e-11)])
+def test_one_short_element_among_long_ones_changes_nothing(element, bound):
+    """In the middle of the pin's way, a millionth of the others."""
+    nodes = tuple(np.union1d(np.arange(1, 10) / 10, 0.75 + np.array([0.0, 1e-7])))
+    plain = cantilever(KS_PATH, section=KS, element="exact")
+    graded = replace(
+        plain, beams=(replace(plain.beams[0], element=element, elements=len(nodes) + 1, nodes=nodes),)
+    )
+    found, exact = (tsm.solve(structure, steps(20)).contacts["p0->b"].force for structure in (graded, plain))
+    assert found == pytest.approx(exact, abs=bound * exact.max())
+
+
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
 def test_error_estimate_is_an_upper_bound(tolerance):
     """What one exact element leaves is below `integration_tolerance`."""
