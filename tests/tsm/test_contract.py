@@ -51,10 +51,11 @@ def registered(monkeypatch):
         monkeypatch.setitem(tsm.ELEMENTS, name, kind)
 
 
-def pressed(element, *, section=SLACK, **more):
-    return cantilever(
-        ((0.6, -0.02), (0.58, 0.0232)), section=section, element=element, elements=4, offset=0.02, **more
-    )
+def pressed(element, *, section=SLACK):
+    """A cantilever pushed up by a pin, or by two on the same element where there may be two."""
+    pins = 2 if tsm.ELEMENTS[element].contact_unknowns else 1
+    paths = [((x, -0.02), (x - 0.02, 0.0232)) for x in (0.6, 0.7)][:pins]
+    return cantilever(*paths, section=section, element=element, elements=4, offset=0.02)
 
 
 def last_force(structure, t=(1.0,)):

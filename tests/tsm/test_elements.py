@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import root
 
 # what an element does at any state, in equilibrium or not, is nowhere public
-from tsm.elements import CLOSED_FORM, beam, mixed_contact, mixed_friction, rod
-from tsm.elements.collocation import collocation, interpolation
+from tsm.elements import CLOSED_FORM, beam, mixed_friction, rod
+from tsm.elements.collocation import collocation
 from tsm.elements.contact_law import Rub, Surface
-from tsm.elements.curve import Curve
 from tsm.elements.properties import Properties
 from tsm.elements.rod import Flexibility, Segments
 
@@ -84,111 +82,6 @@ def test_contact_whose_powers_of_the_length_cannot_be_stated_is_not_finite(name,
     assert all(np.isnan(part).any() for part in found)
 
 
-def test_mixed_contact_gradient_is_the_derivative_of_its_energy():
-    """With and without an offset, by central differences."""
-    rng, h = np.random.default_rng(11), 1e-6
-    for _ in range(100):
-        p, x, lever, xi, force, *surface = random_contact(rng, near=0.01)
-        state = p, x, lever, xi, force
-        gradient, _ = mixed_contact.response(*state, *surface)
-        direction = rng.normal(size=11)
-        up, down, here = (
-            mixed_contact.energy(*along(direction, *state, step), *surface) for step in (h, -h, 0.0)
-        )
-        # differences to second order: a step of 1e-6 of elements as short as 0.1
-        scale = np.abs(gradient * direction).max() + abs(here)
-        assert gradient @ direction == pytest.approx((up - down) / (2 * h), abs=1e-7 * scale)
-
-
-def clamped_deflection(Phi, xi, eta):
-    """Deflection at xi by a unit force at eta of Timoshenko's beam with EI = l0 = 1 between clamps, from its equations.
-
-    ``M = M0 + V0 s + <s - eta>``, ``theta' = M``, ``w' = theta - M' Phi/12``.
-    """
-
-    def at(s):
-        past = max(s - eta, 0.0)
-        rotation = np.array([s, s**2 / 2, past**2 / 2])
-        return rotation, np.array([s**2 / 2, s**3 / 6 - Phi / 12 * s, past**3 / 6 - Phi / 12 * past])
-
-    end = np.array(at(1.0))
-    M0, V0 = np.linalg.solve(end[:, :2], -end[:, 2])
-    return at(xi)[1] @ [M0, V0, 1.0]
-
-
-def test_compliance_of_an_element_is_a_clamped_beams():
-    rng = np.random.default_rng(12)
-    for _ in range(100):
-        p, (xi, eta) = random_properties(rng), rng.uniform(0.05, 0.95, 2)
-        unit = p.l0**3 / p.EI
-        across = mixed_contact.cross_compliance(p, xi, eta)[0]
-        assert across == pytest.approx(unit * clamped_deflection(p.Phi, xi, eta), rel=1e-10)
-        assert mixed_contact.cross_compliance(p, eta, xi)[0] == pytest.approx(across, rel=1e-14)
-        below = mixed_contact.compliance(p, xi)[0]
-        assert below == pytest.approx(unit * clamped_deflection(p.Phi, xi, xi), rel=1e-10)
-        assert mixed_contact.compliance(p, 0.0)[0] == mixed_contact.compliance(p, 1.0)[0] == 0
-
-
-def test_slopes_of_the_axis_are_the_rotations_plus_the_shear_strain():
-    """``w' = theta + gamma``, with the shear strain ``V/GA`` of Timoshenko's element; at the nodes no deflection."""
-    rng = np.random.default_rng(14)
-    for sheared in [True, False] * 25:
-        p = random_properties(rng)
-        p = p if sheared else p._replace(Phi=1e-15)
-        x = rng.normal(size=6) * np.array([0.05 * p.l0, 0.05 * p.l0, 0.2] * 2)
-        curve = Curve(p, x)
-        chord = np.arctan2(curve.dy, curve.dx) - np.arctan2(p.dy0, p.dx0)
-        theta = np.array([np.arctan2(np.sin(x[k] - chord), np.cos(x[k] - chord)) for k in (2, 5)])
-        GA = 12 * p.EI / (p.Phi * p.l0**2)
-        gamma = -12 * p.EI / (p.l0**2 * (1 + p.Phi)) * theta.mean() / GA
-        for xi, rotation in zip((0.0, 1.0), theta, strict=True):
-            assert curve.deflection(xi)[0] == 0
-            assert curve.deflection(xi)[1] == pytest.approx(np.tan(rotation + gamma), rel=1e-12, abs=1e-13)
-
-
-def rod_energy(p, theta_i, theta_j, e, points=12):
-    """Energy of a Reissner rod with given end rotations and elongation of its chord, by Ritz's method."""
-    node, weight = np.polynomial.legendre.leggauss(points)
-    s, weight = (node + 1) / 2, weight / 2
-    GA = 12 * p.EI / (p.Phi * p.l0**2)
-    powers = [np.polynomial.Polynomial([-1, 2]) ** k * np.polynomial.Polynomial([0, 1, -1]) for k in range(4)]
-    bubbles = np.stack([power(s) for power in powers])
-    dbubbles = np.stack([power.deriv()(s) for power in powers])
-
-    def functional(z):
-        N, V, c = z[0], z[1], z[2:]
-        theta = theta_i * (1 - s) + theta_j * s + c @ bubbles
-        kappa = (theta_j - theta_i + c @ dbubbles) / p.l0
-        along, across = N * np.cos(theta) + V * np.sin(theta), V * np.cos(theta) - N * np.sin(theta)
-        inside = along + along**2 / (2 * p.EA) + across**2 / (2 * GA) - p.EI / 2 * kappa**2
-        return N * (p.l0 + e) - p.l0 * (weight @ inside)
-
-    def gradient(z):
-        return np.array([functional(z + STEP * unit).imag / abs(STEP) for unit in np.eye(len(z))])
-
-    z = root(gradient, np.zeros(6), tol=1e-14).x
-    assert np.abs(gradient(z)).max() < 1e-9
-    return functional(z)
-
-
-@pytest.mark.parametrize("Phi", [0.05, 0.8, 5.0])
-@pytest.mark.parametrize(("power", "largest", "order"), [(2, 0.1, 6.0), (1, 0.025, 4.0)])
-def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi):
-    """Halving the rotations divides the energy's error by 2^6 where the elongation is of second order, by 2^4 where it is of first."""
-    p = Properties(1.0, 0.0, 1.0, 50.0, 2.0, Phi)
-    c = beam.bowed_coefficients(Properties(*(np.array([v]) for v in p)))
-    errors = []
-    for scale in (largest, largest / 2, largest / 4):
-        theta_i, theta_j, e = 0.9 * scale, 0.3 * scale, 0.4 * scale**power
-        m, h = (theta_i + theta_j) / 2, (theta_i - theta_j) / 2
-        polynomial = (c.constant + c.of_mm * m * m + c.of_hh * h * h)[:2, 0]
-        bending = float(c.constant[2, 0] * m * m + c.constant[3, 0] * h * h) / 2
-        quartic = float(c.r4[0] * m**4 / 8 + c.r2[0] * m * m * h * h / 4)
-        element_energy = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
-        errors.append(abs(element_energy - rod_energy(p, theta_i, theta_j, e)))
-    assert -np.diff(np.log2(errors)) == pytest.approx(order, abs=0.2)
-
-
 PLACES = {"axis": (0.0, 0.0), "round on the face": (0.1, 0.2)}
 
 
@@ -219,82 +112,6 @@ def test_tangent_of_a_contact_with_friction_is_the_derivative_of_every_row(stick
             expected = mixed_friction.response(*along(direction, *state), *law)[0].imag / abs(STEP)
             bound = 1e-8 * np.abs(expected).max() + 1e-13 * np.abs(tangent).max()
             assert np.abs(tangent[:, column] - expected).max() <= bound
-
-
-@pytest.mark.parametrize("place", PLACES)
-def test_work_of_a_contact_is_stored_or_dissipated(place):
-    """The power of the node is that of the nodal loads, the change of energy, and F_t times the slip rate; for any rates."""
-    rng = np.random.default_rng(8)
-    for _ in range(100):
-        (p, x, lever, xi, force), surface, rub = drawn(rng, stick=False, place=place)
-        residual, tangent = mixed_friction.response(p, x, lever, xi, force, surface, rub)
-        rate = rng.normal(size=11)
-        rate[[0, 1, 3, 4, 6, 7, 10]] *= p.l0
-        rate[8:10] *= np.linalg.norm(force)
-        # the node's velocity from the derivative of its two rows
-        rate[6:8] = 0.0
-        rate[6:8] = -tangent[8:10] @ rate
-        dE = mixed_friction.energy(*along(rate, p, x, lever, xi, force), surface, rub).imag / abs(STEP)
-        F_t, _, _ = mixed_friction.split(p, x, xi, force, surface, rub)
-        slip = mixed_friction.slip(p, x, xi, force, surface, rub) @ rate
-        parts = np.array([force @ rate[6:8], residual[:6] @ rate[:6], -dE, -F_t * slip])
-        assert abs(parts.sum()) <= 1e-11 * np.abs(parts).max()
-
-
-def test_what_two_contacts_on_one_element_add_has_its_derivatives():
-    """Of ``-C12 F_1 . F_2``, in force and arc position of either contact; without friction from the energy."""
-    rng = np.random.default_rng(5)
-    for n in range(40):
-        p = random_properties(rng)
-        xi, forces = rng.uniform(0.01, 0.99, 2), rng.normal(size=(2, 2))
-        rubs = drawn_rub(rng, p, stick=n % 2 == 0), drawn_rub(rng, p, stick=n % 3 == 0)
-        tangent, hessian = (law(p, tuple(xi), *forces, *more)[1] for law, more in ((mixed_friction.crossing, [rubs]), (mixed_contact.crossing, [])))  # fmt: skip
-        for column, direction in enumerate(np.eye(6)):
-            d = STEP * direction.reshape(2, 3)
-            at, (first, second) = tuple(xi + d[:, 2] / p.l0), forces + d[:, :2]
-            stepped, _ = mixed_friction.crossing(p, at, first, second, rubs)
-            assert (
-                np.abs(tangent[:, column] - stepped.imag / abs(STEP)).max() <= 1e-10 * np.abs(tangent).max()
-            )
-            gradient, _ = mixed_contact.crossing(p, at, first, second)
-            value = -mixed_contact.cross_compliance(p, *at)[0] * (first @ second)
-            scale = np.abs(gradient).max()
-            assert gradient.real @ direction == pytest.approx(value.imag / abs(STEP), abs=1e-9 * scale)
-            assert (
-                np.abs(hessian[:, column] - gradient.imag / abs(STEP)).max() <= 1e-9 * np.abs(hessian).max()
-            )
-        free = (Rub(0.0, None, 1.0),) * 2
-        for one, other in zip(mixed_friction.crossing(p, tuple(xi), *forces, free), mixed_contact.crossing(p, tuple(xi), *forces), strict=True):  # fmt: skip
-            assert np.abs(one - other).max() <= 1e-14 * np.abs(other).max()
-
-
-@pytest.mark.parametrize("order", [2, 5, 14, 40])
-def test_tables_of_collocation(order):
-    """Quadrature is exact to degree 2p - 1, the integrals at the nodes to p - 1 and p - 2, interpolation to p; Green's function is symmetric."""
-    table, degree = collocation(order), np.arange(2 * order)
-    powers = table.c ** degree[:, None]
-    twice = 1 / (degree + 1) / (degree + 2)
-    assert powers @ table.w == pytest.approx(1 / (degree + 1), rel=1e-13)
-    assert powers[:-1] @ table.ends[:, 1] == pytest.approx(twice[:-1], rel=1e-12)
-    # ``twice`` is less half the line to the integral at the far end
-    degree = np.arange(order)
-    powers, c = table.c[:, None] ** degree, table.c[:, None]
-    assert np.abs(table.once @ powers - c ** (degree + 1) / (degree + 1)).max() <= 1e-14
-    second = (c ** (degree + 2) - c / 2) / (degree + 1) / (degree + 2)
-    assert np.abs(table.twice @ powers - second)[:, :-1].max() <= 1e-14
-    polynomials = np.polynomial.legendre.legvander(2 * table.c - 1, order - 1)
-    assert np.abs(table.legendre @ polynomials - np.eye(order)).max() <= 1e-13
-    once = table.w[:, None] * table.once
-    assert np.abs(once + once.T - np.outer(table.w, table.w)).max() <= 1e-16
-    green = table.w[:, None] * (table.twice - np.outer(table.c, table.ends[:, 1]) / 2)
-    assert np.abs(green - green.T).max() <= 1e-16
-    near = np.concatenate([np.nextafter(table.c, 0), np.nextafter(table.c, 1), [1e-300]])
-    x, degree = np.concatenate([np.linspace(0, 1, 33), near]), np.arange(order + 1)
-    assert (
-        np.abs(interpolation(order, x) @ table.stations[:, None] ** degree - x[:, None] ** degree).max()
-        <= 1e-13
-    )
-    assert np.array_equal(interpolation(order, table.stations), np.eye(order + 1))
 
 
 def random_segments(rng, order, count):
@@ -352,34 +169,3 @@ def test_condensed_derivatives_are_those_of_the_whole_equations(order):
     identity = np.zeros((4, 5))
     identity[0, [0, 2]], identity[1, 1] = (1, -1), 1
     assert np.array_equal(condensed.transfer[0, :, :5], identity)
-
-
-@pytest.mark.parametrize("order", [14, 24])
-def test_half_way_elimination_is_regular_at_every_axial_force(order):
-    """Straight, ``N h^2/EI = k``: with the start's angle and moment held, or both angles, the same matrix is singular somewhere."""
-    table = collocation(order)
-    line = np.outer(table.c, table.ends[:, 1]) / 2
-
-    def condition(k, matrix):
-        return np.linalg.cond(np.eye(order) - k * matrix)
-
-    for k in (0.0, 1.0, 1e2, 1e4, 1e6):
-        assert condition(k, table.twice) <= 10 * (1 + k)
-    assert condition(1e3, table.twice + line) > 1e3 * condition(1e3, table.twice)
-    for k in (-(np.pi**2), -4 * np.pi**2):
-        assert condition(k, table.twice) <= 20
-        assert condition(k, table.twice - line) > 1e12
-
-
-@pytest.mark.parametrize("k", [-100.0, -4 * np.pi**2, -(np.pi**2), 0.0, 1.0, 1e2, 1e3])
-def test_straight_rod_under_axial_force_in_closed_form(k):
-    """Angles inside that turn with the end, ``m_i h/EI - phi_i`` held: ``sinh(sqrt(k) c)/(sqrt(k) + sinh(sqrt(k)))``."""
-    order, one = 40, np.ones((1, 1))
-    flexibility = Flexibility(1e-12 * one, 1e-12 * one, one)
-    at = Segments(flexibility, np.array([k, 0.0])[:, None, None], one, np.zeros((1, order)))
-    of = rod.field(at)
-    found = rod.arrival(at, of, 0 * one, 0 * one, 0 * one)
-    root, c = np.sqrt(complex(k)), collocation(order).c
-    exact = np.sinh(root * c) / (root + np.sinh(root)) if k else c / 2
-    inner = rod.condense(at, of, found, 0 * one).inner[0, :, 2]
-    assert np.abs(inner - exact.real).max() <= 1e-9 * np.abs(exact).max()

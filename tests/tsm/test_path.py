@@ -103,15 +103,6 @@ def test_a_perfect_column_ends_at_its_first_critical_load(ends):
         assert np.abs(point.mode["c"]).max(axis=0) == pytest.approx([0.0, 1.0], abs=1e-3)
 
 
-def test_mixed_elements_find_the_first_critical_load_with_their_order():
-    (first,), off = critical_loads("clamped-pinned", 1, 1e10, 1e10), []
-    for elements in (20, 40):
-        structure = column("clamped-pinned", 1.7 * first, "mixed", elements, STIFF)
-        off.append(1.7 * tsm.solve(structure, steps(5), throw=False).critical[0].load_parameter - 1.0)
-    assert np.log2(off[0] / off[1]) == pytest.approx(4.0, abs=0.2)
-    assert abs(off[1]) < 1e-6
-
-
 @pytest.mark.parametrize("degrees", [20.0, 160.0])
 def test_the_stable_branch_is_the_elastica(degrees):
     """P/P_1 = (2 K(p)/pi)^2 with p = sin(tip angle/2), in the slender limit."""
@@ -159,22 +150,6 @@ def test_index_does_not_see_where_a_contact_cuts(element, elements):
         result = tsm.solve(replace(structure, loads=(*structure.loads, down)), [0.5, 1.0])
         assert (result.contacts["p->c"].force > 0).all()
         assert result.index.tolist() == [0, 0]
-
-
-@pytest.mark.parametrize(("load", "expected"), [(5.0, 1), (60.0, 2)])
-def test_index_does_not_depend_on_the_mixture_of_elements(load, expected):
-    """A column of two beams, whose end could touch a third that knows no contact force."""
-    spans = {"a": ((0.0, 0.0), (0.5, 0.0)), "b": ((0.5, 0.0), (1.0, 0.0)), "far": ((0.0, 2.0), (2.0, 2.0))}
-    for mixture in (("exact", "exact"), ("exact", "mixed"), ("mixed", "exact"), ("mixed", "mixed")):
-        kinds = (*mixture, "timoshenko")
-        beams = [beam(name, *span, section=SECTION, element=kind) for (name, span), kind in zip(spans.items(), kinds, strict=True)]  # fmt: skip
-        structure = tsm.Structure(
-            beams=tuple(beams),
-            supports=(tsm.Support(beam="a", end="start"), tsm.Support(beam="far", end="start")),
-            contacts=(tsm.ContactPair(node="b.end", beam="far"),),
-            loads=(tsm.Load(beam="b", end="end", force=(-load, 0.0)),),
-        )
-        assert index(structure) == expected
 
 
 @pytest.mark.parametrize("elements", [pytest.param(1, marks=pytest.mark.slow), 10])

@@ -7,14 +7,14 @@ import numpy as np
 import tsm
 
 # the problems with known answers are stated once, for the manual, the paper's claims and these tests
-from comparisons.claims.problems import double_beam, frames
+from comparisons.claims.problems import double_beam, frames, friction
 from comparisons.exact import elastica, rod_under_pin
 from comparisons.exact.end_loads import tip_under_dead_load
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 from tests.tsm import structures
 
-__all__ = ["double_beam", "elastica", "frames", "tip_under_dead_load"]
+__all__ = ["double_beam", "elastica", "frames", "friction", "tip_under_dead_load"]
 
 PINS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 """Places of the pin in [P] 4.1."""

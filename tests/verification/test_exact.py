@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_bvp
-from scipy.interpolate import CubicSpline
 
 import tsm
 from comparisons.models import solve as solve_scene
+from comparisons.models.options import Options
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 from tests.tsm.structures import KS_PATH, essentials, raised, steps
@@ -30,7 +29,6 @@ from tests.verification.structures import (
     off_rod,
     oracle,
     slip_offs,
-    square,
     tip_under_dead_load,
 )  # fmt: skip
 
@@ -150,59 +148,6 @@ def test_double_beam_stages(element, elements, bound, stated):
         stated("exact.double-beam-events", off[1], bound=True)
 
 
-def test_elastica_ks(stated):
-    """Theory's digits: KS with stretch and shear ten decades stiffer."""
-    result = tsm.solve(cantilever(KS_PATH, section=STIFF), steps(4))
-    contact = result.contacts["p0->b"]
-    forces = [1.0618903425414, 4.66473101966107, 9.71796028591865, 8.18212814018414]
-    arcs = [0.77007264053193, 0.612622877902267, 0.615457399152221, 0.895721692009856]
-    moment = result.supports["b.start"].moment[-1] / STIFF.EI / -np.pi
-    differences = [*(contact.force / STIFF.EI / forces), *(contact.arc_position / arcs), moment]
-    error = np.abs(np.array(differences) - 1).max()
-    assert error <= 1e-9
-    stated("exact.elastica", error, part=True)
-    assert np.abs(result.tips["b"][-1] - [-0.0831776691, 0.6995120682]).max() <= 1e-9
-
-
-@pytest.mark.parametrize("x", [0.8, 0.99])
-def test_elastica_slip_off(x, stated):
-    for count in (1, 10):
-        (found,) = slip_offs(tsm.solve(cantilever(raised(x, 1.0), section=STIFF), steps(count)))
-        error = abs(found / elastica.slip_off_displacement(x) - 1)
-        assert error <= 1e-9
-        stated("exact.elastica", error, part=True)
-
-
-def top(x, y):
-    """Greatest value and its place of the polynomial through samples about a maximum."""
-    middle = x.mean()
-    fit = np.polynomial.Polynomial.fit(x - middle, y, len(x) - 1)
-    turn = next(r.real for r in fit.deriv().roots() if abs(r.imag) < 1e-12 and abs(r) < np.ptp(x) / 2)
-    return fit(turn), turn + middle
-
-
-def test_elastica_limit_points(stated):
-    """Greatest contact force, and greatest load of frictionless three-point bending (half of it)."""
-    limits = elastica.contact_force_limit(), elastica.three_point_bending_limit()
-    for limit, support in zip(limits, (False, True), strict=True):
-        depth = limit.displacement + 0.06 * np.cos(np.pi * (np.arange(13) + 0.5) / 13)[::-1]
-        result = tsm.solve(cantilever(raised(1.0, 1.0), section=STIFF, length=3.0), depth)
-        force = -2 * result.supports["b.start"].force[:, 1] if support else result.contacts["p0->b"].force
-        load, displacement = top(depth, force / STIFF.EI)
-        assert load == pytest.approx(limit.load, rel=1e-9)
-        stated("exact.elastica", abs(load / limit.load - 1), part=True)
-        assert displacement == pytest.approx(limit.displacement, abs=1e-8)
-
-
-@pytest.mark.parametrize("load", [1.0, 2.0, 5.0, 10.0])
-def test_elastica_dead_load(load, stated):
-    tip = tsm.Load(beam="b", end="end", force=(0.0, load * STIFF.EI))
-    result = tsm.solve(cantilever(section=STIFF, load=tip), steps(2))
-    error = np.abs(result.tips["b"][-1] - tip_under_dead_load(load)).max()
-    assert error <= 1e-9
-    stated("exact.elastica", error, part=True)
-
-
 @pytest.mark.parametrize(("turns", "elements"), [(1, 1), (2, 2), (2, 1)])
 def test_roll_up(turns, elements, stated):
     """Full circles under an end moment, on a slack and on a stiff section; a circular arc on the way."""
@@ -302,63 +247,49 @@ def test_near_the_tip(elements):
             )
 
 
-@pytest.mark.slow
-def test_random_pins_in_one_step_and_in_fifty():
-    """200 random ways of a pin under random cantilevers: both end alike, with the same answer or the same status."""
-    rng, completed = np.random.default_rng(0), 0
-    for _ in range(200):
-        x, angle, far = rng.uniform(0.2, 1.0), rng.uniform(0.02, 2.6), rng.uniform(0.15, 0.95)
-        path = ((x, 0.0), (far * np.cos(angle), far * np.sin(angle)))
-        structure = cantilever(path, section=square(10 ** -rng.uniform(1, 3)))
-        once, fine = (tsm.solve(structure, steps(count), throw=False) for count in (1, 50))
-        assert once.status is fine.status, structure
-        assert essentials(once) == essentials(fine), structure
-        if fine.status is tsm.Status.COMPLETED:
-            completed += 1
-            a, b = (dimensionless(result)[-1] for result in (once, fine))
-            assert np.array_equal(np.isnan(a), np.isnan(b)), structure
-            assert np.nanmax(np.abs(a - b)) <= 1e-7 * (1 + np.nanmax(np.abs(b))), structure
-    assert 100 <= completed < 200
+def test_elastica(stated):
+    """Theory's digits: KS with stretch and shear ten decades stiffer; slip-offs; limits of the contact force and of three-point bending; dead loads."""
+    result = tsm.solve(cantilever(KS_PATH, section=STIFF), steps(4))
+    contact, moment = result.contacts["p0->b"], result.supports["b.start"].moment[-1] / STIFF.EI
+    forces = [1.0618903425414, 4.66473101966107, 9.71796028591865, 8.18212814018414]
+    arcs = [0.77007264053193, 0.612622877902267, 0.615457399152221, 0.895721692009856]
+    ratios = [*(contact.force / STIFF.EI / forces), *(contact.arc_position / arcs), moment / -np.pi]
+    assert np.abs(result.tips["b"][-1] - [-0.0831776691, 0.6995120682]).max() <= 1e-9
+    for x in (0.8, 0.99):
+        for count in (1, 10):
+            (found,) = slip_offs(tsm.solve(cantilever(raised(x, 1.0), section=STIFF), steps(count)))
+            ratios.append(found / elastica.slip_off_displacement(x))
+    for limit, support in (
+        (elastica.contact_force_limit(), False),
+        (elastica.three_point_bending_limit(), True),
+    ):
+        depth = limit.displacement + 0.06 * np.cos(np.pi * (np.arange(13) + 0.5) / 13)[::-1]
+        result = tsm.solve(cantilever(raised(1.0, 1.0), section=STIFF, length=3.0), depth)
+        force = -2 * result.supports["b.start"].force[:, 1] if support else result.contacts["p0->b"].force
+        fit = np.polynomial.Polynomial.fit(depth - limit.displacement, force / STIFF.EI, len(depth) - 1)
+        top = min(fit.deriv().roots(), key=abs)
+        assert abs(top) <= 1e-8
+        ratios.append(fit(top.real) / limit.load)
+    error = np.abs(np.array(ratios) - 1).max()
+    for load in (1.0, 2.0, 5.0, 10.0):
+        tip = tsm.Load(beam="b", end="end", force=(0.0, load * STIFF.EI))
+        found = tsm.solve(cantilever(section=STIFF, load=tip), steps(2)).tips["b"][-1]
+        error = max(error, np.abs(found - tip_under_dead_load(load)).max())
+    assert error <= 1e-9
+    stated("exact.elastica", error, bound=True)
 
 
 def test_strong_tension():
-    """Clamped at both ends and pushed aside by a fifth of its length: against SciPy's boundary value solver for a half of it."""
-    s, depth = KS, 0.2
-
-    def rates(_, y, n):
-        c, sn = np.cos(y[0]), np.sin(y[0])
-        N, Q = n[0] * c + n[1] * sn, n[1] * c - n[0] * sn
-        dx, dy = (1 + N / s.EA) * c - Q / s.GA * sn, (1 + N / s.EA) * sn + Q / s.GA * c
-        return np.stack([y[1] / s.EI, n[0] * dy - n[1] * dx, dx, dy])
-
-    def misses(a, b, _):
-        return np.array([a[0], a[2], a[3], b[0], b[2] - 0.5, b[3] - depth])
-
-    pushed = cantilever(raised(0.5, depth))
-    clamps = (*pushed.supports, tsm.Support(beam="b", end="end"))
-    result = tsm.solve(replace(pushed, supports=clamps), steps(4))
-    support, force = result.supports["b.start"], result.contacts["p0->b"].force[-1]
-    arc = np.linspace(0, 0.5, 401)
-    xy = CubicSpline(*result.axis_line("b", -1, 800))(arc)
-    angle = np.arctan2(*np.gradient(xy, arc, axis=0).T[::-1])
-    moment = s.EI * np.gradient(angle, arc)
-    n = -1.001 * support.force[-1]
-    exact = solve_bvp(rates, misses, arc, np.stack([angle, moment, *xy.T]), p=n, tol=1e-10, max_nodes=100_000)
-    assert exact.success
-    assert exact.p[0] / s.EI > 500
-    assert force == pytest.approx(2 * abs(exact.p[1]), rel=1e-9)
-    assert support.moment[-1] == pytest.approx(-exact.y[1, 0], rel=1e-9)
-
-
-def test_moved_support_is_a_moved_pin():
-    """The support shifts and turns under a pin at rest: what an observer on the support sees is a moving pin."""
-    shift, turn, place = np.array([0.1, -0.2]), 0.1, np.array([0.8, 0.0])
-    support = tsm.Support(beam="b", end="start", ux=shift[0], uy=shift[1], rotation=turn)
-    back = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    a = tsm.solve(cantilever(raised(0.8, 1e-300), supports=(support,)), steps(5))
-    b = tsm.solve(cantilever(((0.8, 0.0), tuple((back @ (place - shift)).tolist()))), steps(5))
-    pushed, pushing = a.contacts["p0->b"], b.contacts["p0->b"]
-    assert pushing.force[-1] > 1e-4
-    assert pushed.force[-1] == pytest.approx(pushing.force[-1], rel=1e-9)
-    assert pushed.arc_position[-1] == pytest.approx(pushing.arc_position[-1], abs=1e-9)
-    assert np.abs(back @ (a.tips["b"][-1] - shift) - b.tips["b"][-1]).max() <= 1e-9
+    """Clamped at both ends and pushed aside by a fifth of its length: the referee's axial force is more than 500 EI/L^2."""
+    scene = load_scene("ks-cantilever")
+    beam = replace(scene.beams[0], clamped=("start", "end"))
+    pin = replace(scene.pins[0], start=(0.5, 0.0), displacement=(0.0, 0.2))
+    held = replace(scene, beams=(beam,), pins=(pin,), load_parameters=4)
+    answer, exact = (
+        solve_scene(held, name, options)
+        for name, options in (("tsm", Options(element="exact")), ("rod", Options()))
+    )
+    assert exact.supports["cantilever.start"].force[-1, 0] < -500 * KS.EI
+    for found, expected in ((answer.contacts, exact.contacts), (answer.supports, exact.supports)):
+        for name in expected:
+            assert found[name].force[-1] == pytest.approx(expected[name].force[-1], rel=1e-9)
