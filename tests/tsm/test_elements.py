@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import root
 
 # what an element does at any state, in equilibrium or not, is nowhere public
 from tsm.elements import CLOSED_FORM, beam, mixed_friction, rod
@@ -80,6 +81,48 @@ def test_contact_whose_powers_of_the_length_cannot_be_stated_is_not_finite(name,
     p = Properties(l0, 0.0, l0, 1.0, 1.0, 0.1)
     found = CLOSED_FORM[name].contact.response(p, [0.0] * 6, (-0.3 * l0, 0.1 * l0), 0.3, (0, 0), 1.0, 0.0)
     assert all(np.isnan(part).any() for part in found)
+
+
+def rod_energy(p, theta_i, theta_j, e, points=12):
+    """Energy of a Reissner rod with given end rotations and elongation of its chord, by Ritz's method."""
+    node, weight = np.polynomial.legendre.leggauss(points)
+    s, weight = (node + 1) / 2, weight / 2
+    GA = 12 * p.EI / (p.Phi * p.l0**2)
+    powers = [np.polynomial.Polynomial([-1, 2]) ** k * np.polynomial.Polynomial([0, 1, -1]) for k in range(4)]
+    bubbles, dbubbles = np.stack([f(s) for f in powers]), np.stack([f.deriv()(s) for f in powers])
+
+    def functional(z):
+        N, V, c = z[0], z[1], z[2:]
+        theta = theta_i * (1 - s) + theta_j * s + c @ bubbles
+        kappa = (theta_j - theta_i + c @ dbubbles) / p.l0
+        along, across = N * np.cos(theta) + V * np.sin(theta), V * np.cos(theta) - N * np.sin(theta)
+        inside = along + along**2 / (2 * p.EA) + across**2 / (2 * GA) - p.EI / 2 * kappa**2
+        return N * (p.l0 + e) - p.l0 * (weight @ inside)
+
+    def gradient(z):
+        return np.array([functional(z + STEP * unit).imag / abs(STEP) for unit in np.eye(len(z))])
+
+    z = root(gradient, np.zeros(6), tol=1e-14).x
+    assert np.abs(gradient(z)).max() < 1e-9
+    return functional(z)
+
+
+@pytest.mark.parametrize("Phi", [0.05, 0.8, 5.0])
+@pytest.mark.parametrize(("power", "largest", "order"), [(2, 0.1, 6.0), (1, 0.025, 4.0)])
+def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi):
+    """Halving the rotations divides the energy's error by 2^6 where the elongation is of second order, by 2^4 where it is of first."""
+    p = Properties(1.0, 0.0, 1.0, 50.0, 2.0, Phi)
+    c = beam.bowed_coefficients(Properties(*(np.array([v]) for v in p)))
+    errors = []
+    for scale in (largest, largest / 2, largest / 4):
+        theta_i, theta_j, e = 0.9 * scale, 0.3 * scale, 0.4 * scale**power
+        m, h = (theta_i + theta_j) / 2, (theta_i - theta_j) / 2
+        polynomial = (c.constant + c.of_mm * m * m + c.of_hh * h * h)[:2, 0]
+        bending = float(c.constant[2, 0] * m * m + c.constant[3, 0] * h * h) / 2
+        quartic = float(c.r4[0] * m**4 / 8 + c.r2[0] * m * m * h * h / 4)
+        element_energy = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
+        errors.append(abs(element_energy - rod_energy(p, theta_i, theta_j, e)))
+    assert -np.diff(np.log2(errors)) == pytest.approx(order, abs=0.2)
 
 
 PLACES = {"axis": (0.0, 0.0), "round on the face": (0.1, 0.2)}

@@ -8,7 +8,7 @@ import pytest
 
 import tsm
 from tests.tsm.friction_scenes import ks
-from tests.tsm.structures import as_mixed, hook, leaning, pushed, two_beams, two_pins
+from tests.tsm.structures import as_mixed, cantilever, hook, leaning, pushed, raised, two_beams, two_pins
 
 # a residual and its tangent at a state that is no equilibrium are nowhere public
 from tsm.model import Model
@@ -23,12 +23,16 @@ SCENES = {
     "varying, rubbed": lambda: pushed(offset=0.03, radius=0.01, friction=0.3),
     "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
     "leaning": leaning,
+    "rubbed mixed, two on an element": lambda: cantilever(
+        raised(0.62, 0.05), raised(0.68, 0.05), elements=4, friction=0.3
+    ),
     "rubbed exact": lambda: ks(0.3, face=0.02, radius=0.03).structure("exact", 2),
     "rubbed mixed": lambda: ks(0.3, face=0.02, radius=0.03).structure("mixed", 6),
     "near a node": lambda: replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
 }
 
 
+@pytest.mark.slow_at("varying, rubbed", "rubbed mixed")
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tangent_is_the_derivative(name: str) -> None:
     """In slip, in stick, and in the load parameter.
