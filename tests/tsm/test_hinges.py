@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 import tsm
 from tests.tsm.structures import TENTHS as T
 from tests.tsm.structures import beam as made
-from tests.tsm.structures import steps
 
 SECTION = tsm.Section(EA=1e4, GA=4e3, EI=2.0)
 TRUSS = tsm.Section(EA=100.0, GA=40.0, EI=30.0)
@@ -112,26 +111,6 @@ def test_a_column_on_a_spring_buckles_at_its_load(held):
     assert np.delete(followed.index, 4).tolist() == [0] * 4 + [1] * 5
 
 
-@pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_a_hinge_carries_a_pin_to_both_beams(element):
-    """A pin beside a hinge between two cantilevers: forces balance, and the hinge carries no moment."""
-    structure = tsm.Structure(
-        beams=(beam("a", (0, 0), (1, 0), element), beam("b", (1, 0), (2, 0), element)),
-        supports=(tsm.Support(beam="a", end="start"), tsm.Support(beam="b", end="end", ux=None)),
-        hinges=(tsm.Hinge(beam="b", end="start"),),
-        springs=(tsm.Spring(beam="a", end="end", y=6.0),),
-        pins=(tsm.Pin(name="p", path=((0.8, 0.0), (0.8, 0.3))),),
-        contacts=(tsm.ContactPair(node="p", beam="a"),),
-    )
-    result = tsm.solve(structure, [0.5, 1.0])
-    moment = result.section_forces("a", -1)[-1, 1, 2], result.section_forces("b", -1)[0, 0, 2]
-    assert np.array(moment) == pytest.approx(0.0, abs=1e-9)
-    joint = [result.shape("a", -1)[-1], result.shape("b", -1)[0]]
-    assert joint[0][:2] == pytest.approx(joint[1][:2], abs=1e-15)
-    assert abs(joint[0][2] - joint[1][2]) > 0.5
-    assert result.springs["a.end"].force[-1, 1] == pytest.approx(-6.0 * joint[0][1], abs=1e-12)
-
-
 def test_a_mechanism_has_a_name():
     """A frame of three beams with two hinges, unless a spring holds it; a beam that nothing holds."""
     corners = ((0, 0), (0, 1), (1, 1), (1, 0))
@@ -168,25 +147,6 @@ def test_a_contact_without_force_holds_no_mechanism(element, held):
         result = tsm.solve(replace(structure, loads=(replace(load, force=force),)), T, throw=False)
         assert result.status is tsm.Status.MECHANISM
         assert not len(result.load_parameter)
-
-
-@pytest.mark.parametrize(("length", "force"), [(1e-3, 1e8), (1e3, 1e-8)])
-def test_a_hinged_structure_in_small_or_large_units_is_no_mechanism(length, force):
-    """An open contact, whose unknowns nothing couples to the others, has no part in the singular values."""
-    section = tsm.Section(EA=1e4 * force, GA=4e3 * force, EI=force * length**2)
-    corner, top = (length, 0), (length, length)
-    frame = tsm.Structure(
-        beams=(
-            beam("a", (0, 0), corner, "exact", section=section),
-            beam("b", corner, top, "exact", section=section),
-        ),
-        supports=(tsm.Support(beam="a", end="start"), tsm.Support(beam="b", end="end", rotation=None)),
-        hinges=(tsm.Hinge(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=((0.5 * length, -0.1 * length), (0.5 * length, 0.1 * length))),),
-        contacts=(tsm.ContactPair(node="p", beam="a"),),
-    )
-    result = tsm.solve(frame, steps(4))
-    assert result.contacts["p->a"].arc_position[-1] / length == pytest.approx(0.51, abs=0.02)
 
 
 def test_many_slender_elements_are_no_mechanism():

@@ -1,6 +1,5 @@
 """Tangents of whole structures are the derivatives of their residuals, and lead Newton's method to the square of its error."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +12,6 @@ from tests.tsm.structures import as_mixed, cantilever, hook, leaning, pushed, ra
 # a residual and its tangent at a state that is no equilibrium are nowhere public
 from tsm.model import Model
 from tsm.newton import Newton
-from tsm.stability import _symmetric
 
 SCENES = {
     "two beams": lambda: two_beams(2),
@@ -58,36 +56,3 @@ def test_the_tangent_is_the_derivative(name: str) -> None:
             measured = (apart[0] - apart[1]) / 2e-5 / model.row_units
             expected = matrix @ way + dt * newton.assembler.rate(state) / model.row_units
             assert measured == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
-
-
-def symmetric(newton, equilibrium):
-    """The symmetric tangent as one matrix, and its units."""
-    model = newton.model
-    band, right, corner, units, _ = _symmetric(newton.assembler, equilibrium.state, equilibrium.system)
-    count, width = band.shape[1], len(corner)
-    whole = np.zeros((count + width, count + width))
-    for k, diagonal in enumerate(band):
-        for c in range(count - k):
-            whole[c + k, c] = whole[c, c + k] = diagonal[c] * units[c + k] * units[c]
-    whole[:count, count:] = right * units[:, None]
-    whole[count:, :count], whole[count:, count:] = whole[:count, count:].T, corner
-    return whole, model.units / math.sqrt(model.force_scale * model.length)
-
-
-@pytest.mark.parametrize("name", ["varying, on a face", "leaning", "two pins", "near a node"])
-def test_second_variation_answers_loads_as_the_tangent_does(name):
-    """A force or moment on a node moves nodes and contacts by the symmetric matrix as by the tangent, which is not symmetric."""
-    result = tsm.solve(SCENES[name](), np.array([0.5, 1.0]))
-    model, equilibrium = result.model, result.equilibria[-1]
-    if name == "near a node":
-        assert min(min(touch.xi, 1 - touch.xi) for touch in equilibrium.state.touches) < 1e-4
-    newton = Newton(model, tsm.Settings())
-    matrix = newton.assembler.whole(equilibrium.system.tangent).toarray()
-    whole, units = symmetric(newton, equilibrium)
-    assert np.abs(whole - whole.T).max() <= 1e-12 * np.abs(whole).max()
-    nodal = np.flatnonzero(model.free < 3 * len(model.coordinates))
-    shown = np.append(nodal, np.arange(model.equations, len(matrix)))
-    for column in nodal:
-        moved = np.linalg.solve(matrix, np.eye(len(matrix))[column])[shown]
-        again = np.linalg.solve(whole, units[column] * np.eye(len(whole))[column])[shown] * units[shown]
-        assert np.abs(moved - again).max() <= 1e-10 * np.abs(moved).max()
