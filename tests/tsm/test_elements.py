@@ -7,11 +7,8 @@ import pytest
 from scipy.optimize import root
 
 # what an element does at any state, in equilibrium or not, is nowhere public
-from tsm.elements import CLOSED_FORM, beam, mixed_friction, rod
-from tsm.elements.collocation import collocation
-from tsm.elements.contact_law import Rub, Surface
+from tsm.elements import CLOSED_FORM, beam
 from tsm.elements.properties import Properties
-from tsm.elements.rod import Flexibility, Segments
 
 STEP = 1e-30j
 CHORD = [name for name, kind in CLOSED_FORM.items() if not kind.contact_unknowns]
@@ -123,92 +120,3 @@ def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi)
         element_energy = (e + polynomial[0]) ** 2 / polynomial[1] / 2 + bending + quartic
         errors.append(abs(element_energy - rod_energy(p, theta_i, theta_j, e)))
     assert -np.diff(np.log2(errors)) == pytest.approx(order, abs=0.2)
-
-
-PLACES = {"axis": (0.0, 0.0), "round on the face": (0.1, 0.2)}
-
-
-def drawn_rub(rng, p, *, stick, place="axis"):
-    """Slip of any sign, or a stick that began nearby."""
-    unit, (face, radius) = p.EI / p.l0**3, PLACES[place]
-    held = float(rng.uniform(-1, 1)) * p.l0 if stick else None
-    lean = 0.0 if stick else float(rng.uniform(-0.9, 0.9))
-    return Rub(lean, held, unit, face * p.l0, radius * p.l0, *rng.uniform(0.5, 1.5, 3).tolist())
-
-
-def drawn(rng, *, stick, place="axis"):
-    """A state in the range of the element: the contact's dent is a part of its length."""
-    p, x, lever, xi, force, side, _ = random_contact(rng)
-    force = 0.3 * force * p.EI / p.l0**2 / (1 + p.Phi)
-    rub = drawn_rub(rng, p, stick=stick, place=place)
-    return (p, x, lever, xi, force), Surface(side, rub.face + rub.radius), rub
-
-
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("stick", [False, True])
-def test_tangent_of_a_contact_with_friction_is_the_derivative_of_every_row(stick, place):
-    rng = np.random.default_rng(1)
-    for _ in range(25):
-        state, *law = drawn(rng, stick=stick, place=place)
-        _, tangent = mixed_friction.response(*state, *law)
-        for column, direction in enumerate(np.eye(11)):
-            expected = mixed_friction.response(*along(direction, *state), *law)[0].imag / abs(STEP)
-            bound = 1e-8 * np.abs(expected).max() + 1e-13 * np.abs(tangent).max()
-            assert np.abs(tangent[:, column] - expected).max() <= bound
-
-
-def random_segments(rng, order, count):
-    """Slack and stiff sections, forces of any direction, lengths of both signs, one zero; ends that nothing fits."""
-    stretch, shear = 10 ** rng.uniform(-9, -0.5, (2, count, 1))
-    bend = 10 ** rng.uniform(-1, 1, (count, 1))
-    length = 10 ** rng.uniform(-3, 0.3, (count, 1)) * rng.choice([-1.0, 1.0], (count, 1))
-    length[0] = 0.0
-    force = rng.normal(size=(2, count, 1)) / bend
-    waves = rng.normal(size=(count, 3)) @ collocation(order).c ** np.arange(3)[:, None]
-    angle = rng.uniform(-np.pi, np.pi, (count, 1)) + waves + 0.01 * rng.normal(size=(count, order))
-    at = Segments(Flexibility(stretch, shear, bend), force, length, angle)
-    start, end = angle[:, :1] + 0.1 * rng.normal(size=(2, count, 1))
-    return at, start, rng.normal(size=(count, 1)), end
-
-
-def outputs(at, start, moment, end):
-    """Residual inside (p), then miss, moment at the end and vector, of the equations before elimination."""
-    of = rod.field(at)
-    found = rod.arrival(at, of, start, moment, end)
-    total = at.length * of.sums[:, :, 0].T
-    ends = [found.end_residual[:, None], moment + total[:, :1], total[:, 1:]]
-    return np.concatenate([found.inside, *ends], axis=1)
-
-
-@pytest.mark.parametrize("order", [4, 7, 20])
-def test_condensed_derivatives_are_those_of_the_whole_equations(order):
-    """60 random segments: every derivative by complex steps, condensed by numbers. A segment without length changes nothing."""
-    at, *ends = random_segments(np.random.default_rng(order), order, 60)
-    given = [*at.angle.T, *(end[:, 0] for end in ends), *at.force[:, :, 0], at.length[:, 0]]
-
-    def outputs_of(*values):
-        angle, (start, moment, end), force, length = (
-            values[:order],
-            values[order:-3],
-            values[-3:-1],
-            values[-1],
-        )
-        moved = at._replace(
-            angle=np.stack(angle, 1), force=np.stack(force)[:, :, None], length=length[:, None]
-        )
-        return outputs(moved, start[:, None], moment[:, None], end[:, None])
-
-    columns = [outputs_of(*(v + STEP * (k == n) for n, v in enumerate(given))) for k in range(len(given))]
-    whole = np.stack(columns, axis=2).imag / abs(STEP)
-    of = rod.field(at)
-    found = rod.arrival(at, of, *ends)
-    right = np.concatenate([whole[:, :order, order:], found.inside[:, :, None]], axis=2)
-    inner = -np.linalg.solve(whole[:, :order, :order], right)
-    transfer = whole[:, order:, :order] @ inner + np.pad(whole[:, order:, order:], ((0, 0), (0, 0), (0, 1)))
-    condensed = rod.condense(at, of, found, ends[1])
-    for got, expected in ((condensed.inner, inner), (condensed.transfer, transfer)):
-        size = np.abs(expected).max(axis=(1, 2))
-        assert (np.abs(got - expected).max(axis=(1, 2)) <= 1e-8 * size).all()
-    identity = np.zeros((4, 5))
-    identity[0, [0, 2]], identity[1, 1] = (1, -1), 1
-    assert np.array_equal(condensed.transfer[0, :, :5], identity)

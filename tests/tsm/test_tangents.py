@@ -7,7 +7,7 @@ import pytest
 
 import tsm
 from tests.tsm.friction_scenes import ks
-from tests.tsm.structures import as_mixed, cantilever, hook, leaning, pushed, raised, two_beams, two_pins
+from tests.tsm.structures import as_mixed, cantilever, hook, leaning, pushed, two_beams, two_pins
 
 # a residual and its tangent at a state that is no equilibrium are nowhere public
 from tsm.model import Model
@@ -22,7 +22,19 @@ SCENES = {
     "varying mixed": lambda: as_mixed(pushed(offset=0.03)),
     "leaning": leaning,
     "rubbed mixed, two on an element": lambda: cantilever(
-        raised(0.62, 0.05), raised(0.68, 0.05), elements=4, friction=0.3
+        *(((x, -0.03), (x, depth - 0.03)) for x, depth in ((0.55, 0.1), (0.95, 0.228))),
+        elements=2,
+        offset=0.03,
+        radius=0.01,
+        friction=0.3,
+    ),
+    "rubbed mixed at once": lambda: cantilever(
+        ((0.7, -0.03), (0.65, 0.1)), elements=2, offset=0.03, radius=0.01, friction=0.3
+    ),
+    "two on an element": lambda: cantilever(
+        *(((x, -0.03), (x, depth - 0.03)) for x, depth in ((0.55, 0.1), (0.95, 0.228))),
+        elements=2,
+        offset=0.03,
     ),
     "rubbed exact": lambda: ks(0.3, face=0.02, radius=0.03).structure("exact", 2),
     "rubbed mixed": lambda: ks(0.3, face=0.02, radius=0.03).structure("mixed", 6),
@@ -30,7 +42,7 @@ SCENES = {
 }
 
 
-@pytest.mark.slow_at("varying, rubbed", "rubbed mixed")
+@pytest.mark.slow_at("varying, rubbed", "rubbed mixed", "rubbed mixed, two on an element", "rubbed exact")
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tangent_is_the_derivative(name: str) -> None:
     """In slip, in stick, and in the load parameter.
