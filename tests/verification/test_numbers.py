@@ -65,22 +65,21 @@ def test_the_force_of_the_rod_over_friction(stated):
     assert 0 < np.argmin(exact()) < len(exact()) - 1
 
 
-OTHERS = {
-    "mixed-10": ("tsm", Options(elements=10), None),
-    "mixed-20": ("tsm", Options(elements=20), None),
-    "exact": ("tsm", Options(element="exact"), None),
-    **{
-        f"solid-{name}": ("solid", Options(mesh=(50, 2)), name)
-        for name in ("st-venant-kirchhoff", "biot-linear")
-    },
-}
+def off(*model):
+    return np.abs(friction.forces_over_friction(*model) / exact() - 1.0)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", OTHERS)
-def test_models_over_friction(name, stated):
-    found = np.abs(friction.forces_over_friction(*OTHERS[name]) / exact() - 1.0)
-    stated(f"friction-over-mu.{name}", *([found.max()] if name == "exact" else found), bound=name == "exact")
+def test_beams_over_friction(stated):
+    for elements in (10, 20):
+        stated(f"friction-over-mu.mixed-{elements}", *off("tsm", Options(elements=elements)))
+    stated("friction-over-mu.exact", off("tsm", Options(element="exact")).max(), bound=True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("material", ["st-venant-kirchhoff", "biot-linear"])
+def test_the_solid_over_friction(material, stated):
+    stated(f"friction-over-mu.solid-{material}", *off("solid", Options(mesh=(50, 2)), material))
 
 
 @pytest.mark.slow

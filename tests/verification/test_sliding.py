@@ -85,7 +85,8 @@ def test_no_critical_area(element, section, stated):
     length = SECTIONS[section][1]
     exact, count = element == "exact", 0
     every = list(places(11, length, extra=(0.25, 0.75) if exact else ()))
-    stated(f"{'exact' if exact else 'sliding'}.places-{section}", len(set().union(*every)))
+    number = len(set().union(*every))
+    stated(f"exact.places-{section}", number) if exact else stated(f"sliding.places-{section}", number)
     for around in every:
         last = None
         for x in sorted(set(around)):
