@@ -29,7 +29,7 @@ def exists(test: str) -> bool:
 
     Examples
     --------
-    >>> exists("tests/tsm/test_contract.py::test_order_of_convergence")
+    >>> exists("tests/tsm/test_contract.py::test_linear_beam_is_timoshenkos")
     True
     >>> exists("tests/tsm/test_contract.py::test_of_nothing")
     False

@@ -85,16 +85,6 @@ def test_the_stable_branch_is_the_elastica(degrees):
     assert turned.released > 0
 
 
-def test_the_primary_branch_is_labelled_unstable():
-    first, second = critical(1.0), critical(2.0)
-    result = tsm.solve(column("pinned", 5 * first), steps(9), PRIMARY)
-    assert result.index.tolist() == [0, 1, 1, 1, 1, 1, 1, 2, 2]
-    assert [point.kind.value for point in result.critical] == ["bifurcation", "bifurcation"]
-    assert [5 * first * point.load_parameter for point in result.critical] == pytest.approx(
-        [first, second], rel=1e-6
-    )
-
-
 def pressed(element, elements, *, load, x=0.8, rise=1e-300):
     """A column under a pin that rests on its side."""
     free = column("clamped-free", load, element, elements)
