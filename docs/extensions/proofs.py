@@ -29,9 +29,9 @@ def exists(test: str) -> bool:
 
     Examples
     --------
-    >>> exists("tests/tsm/test_solve.py::test_mixed_meets_the_rod")
+    >>> exists("tests/tsm/test_contract.py::test_linear_beam_is_timoshenkos")
     True
-    >>> exists("tests/tsm/test_solve.py::test_of_nothing")
+    >>> exists("tests/tsm/test_contract.py::test_of_nothing")
     False
     """
     path, _, name = test.partition("::")

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 import tsm
-from comparisons.exact import FrictionPath, rod_with_friction
-from comparisons.exact.friction_rod import Surface
+from comparisons.exact import FrictionPath, Surface, rod_with_friction
+from tests.tsm.structures import KS
 
 LAST = (0.0, 2 / np.pi)
 """Where the pin of Konyukhov and Schweizerhof ends, for a beam of length 1."""
-STRIP = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
-"""Section of the cantilever of Konyukhov and Schweizerhof."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +59,7 @@ class Cantilever:
         return path, np.searchsorted(times, wanted)
 
 
-def ks(friction: float, section: tsm.Section = STRIP, face: float = 0.0, radius: float = 0.0) -> Cantilever:
+def ks(friction: float, section: tsm.Section = KS, face: float = 0.0, radius: float = 0.0) -> Cantilever:
     """Cantilever of Konyukhov and Schweizerhof with friction."""
     path = ((1.0, -face - radius), LAST)
     return Cantilever(section=section, friction=friction, path=path, face=face, radius=radius)

@@ -9,25 +9,60 @@ import numpy as np
 import tsm
 
 SECTION = tsm.Section(EA=100.0, GA=40.0, EI=1.0)
+KS = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
+"""Section of the cantilever of Konyukhov and Schweizerhof."""
+KS_PATH = ((1.0, 0.0), (0.0, 2 / np.pi))
+STIFF = tsm.Section(EA=1e10, GA=1e10, EI=1.0)
+CLAMP = tsm.Support(beam="b", end="start")
 
 
-def cantilever(path, *, elements=10, side="right", element="mixed", offset=0.0):
-    """A beam of length 1 along x, clamped at its start, and a pin that pushes it along a path."""
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(
-                name="b",
-                start=(0.0, 0.0),
-                end=(1.0, 0.0),
-                section=SECTION,
-                elements=elements,
-                element=element,
-            ),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(tsm.Pin(name="p", path=path),),
-        contacts=(tsm.ContactPair(node="p", beam="b", side=side, offset=offset),),
+def steps(count):
+    """Equal load parameters."""
+    return np.arange(1, count + 1) / count
+
+
+TENTHS = steps(10)
+
+
+def beam(name, start, end, *, section=KS, elements=None, element="exact", **more):
+    """A beam of one exact element, or of ten others."""
+    elements = elements or (1 if element == "exact" else 10)
+    return tsm.Beam(
+        name=name, start=start, end=end, section=section, elements=elements, element=element, **more
     )
+
+
+def raised(x, depth):
+    """Path of a pin that moves straight up."""
+    return ((x, 0.0), (x, depth))
+
+
+def cantilever(
+    *paths, section=SECTION, length=1.0, elements=None, element="mixed", side="right", supports=(CLAMP,), load=None, **pair
+):  # fmt: skip
+    """A beam along x, clamped at its start, under pins that follow paths."""
+    names = [f"p{k}" for k in range(len(paths))]
+    return tsm.Structure(
+        beams=(beam("b", (0.0, 0.0), (length, 0.0), section=section, elements=elements, element=element),),
+        supports=supports,
+        pins=tuple(tsm.Pin(name=name, path=path) for name, path in zip(names, paths, strict=True)),
+        contacts=tuple(tsm.ContactPair(node=name, beam="b", side=side, **pair) for name in names),
+        loads=(load,) if load else (),
+    )
+
+
+def essentials(result):
+    """Events but those of the mesh."""
+    return [(e.kind, e.pair) for e in result.events if e.kind is not tsm.EventKind.PASS_THROUGH]
+
+
+def kinds(result):
+    return [kind for kind, _ in essentials(result)]
+
+
+def when(result, kind):
+    """Load parameters of the events of a kind."""
+    return [event.load_parameter for event in result.events if event.kind is kind]
 
 
 THICK = tsm.Section(EA=4e3, GA=1e3, EI=2.0)
@@ -36,23 +71,19 @@ THIN = tsm.Section(EA=1.6e3, GA=0.4e3, EI=0.2)
 
 def hook(elements=1, element="exact", **other):
     """A tapered strip of natural curvature under its weight and a load on a part of it."""
-    beam = tsm.Beam(
-        name="b", start=(0.0, 0.0), end=(1.0, 0.2), section=THICK, end_section=THIN, turn=0.9,
-        elements=elements, element=element,
-    )  # fmt: skip
-    beam = beam.divided(0.3, 0.8)
+    strip = beam("b", (0.0, 0.0), (1.0, 0.2), section=THICK, end_section=THIN, turn=0.9, elements=elements, element=element)  # fmt: skip
     weight = tsm.LineLoad(beam="b", force=((0.3, -1.5), (0.0, 1.0), (0.1, 0.2)))
     part = tsm.LineLoad(beam="b", force=((0.5, 2.0),), start=0.3, end=0.8)
-    given = {"supports": (tsm.Support(beam="b", end="start"),), "line_loads": (weight, part), **other}
-    return tsm.Structure(beams=(beam,), **given)
+    given = {"supports": (CLAMP,), "line_loads": (weight, part), **other}
+    return tsm.Structure(beams=(strip.divided(0.3, 0.8),), **given)
 
 
 def pushed(elements=1, **pair):
     """The same between two pins, with an offset."""
-    beam = hook().beams[0]
+    strip = hook().beams[0]
     pins, contacts = [], []
     for name, side, part, move in (("p", "right", 0.45, (0.02, 0.1)), ("r", "left", 0.75, (0.05, -0.02))):
-        (x, y), angle = beam.point(part), beam.direction(part)
+        (x, y), angle = strip.point(part), strip.direction(part)
         depth = pair.get("offset", 0.0) * (1 if side == "right" else -1)
         x, y = x + depth * np.sin(angle), y - depth * np.cos(angle)
         pins.append(tsm.Pin(name=name, path=((x, y), (x + move[0], y + move[1]))))
@@ -64,9 +95,7 @@ def leaning():
     """A straight beam's tip on a curved one, one load on each."""
     lower = replace(hook().beams[0], name="low")
     x, y = lower.point(0.6)
-    upper = tsm.Beam(
-        name="up", start=(x - 0.6, y + 0.5), end=(x, y), section=THIN, elements=1, element="exact"
-    )
+    upper = beam("up", (x - 0.6, y + 0.5), (x, y), section=THIN)
     loads = (
         tsm.LineLoad(beam="low", force=((0.0, -0.5), (0.2, 0.3))),
         tsm.LineLoad(beam="up", force=((0.3, -3.0),)),
@@ -82,20 +111,12 @@ def as_mixed(structure):
     return replace(structure, beams=beams)
 
 
-STRIP = tsm.Section.rectangle(width=0.02, height=0.02, youngs_modulus=2.1e4, shear_modulus=2.1e4 / 2.6)
-"""Section of the cantilever of Konyukhov and Schweizerhof."""
-
-
-def _strip(name, start, end, *, elements=1, element="exact"):
-    return tsm.Beam(name=name, start=start, end=end, section=STRIP, elements=elements, element=element)
-
-
 def two_beams(elements=1, lower="exact"):
     """A tip that meets a second beam, a pin on each, one of them with an offset."""
     return tsm.Structure(
         beams=(
-            _strip("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
-            _strip("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
+            beam("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
+            beam("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
         ),
         supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
         pins=(
@@ -112,15 +133,5 @@ def two_beams(elements=1, lower="exact"):
 
 def two_pins(elements=1):
     """Two pins on one beam, from both sides."""
-    return tsm.Structure(
-        beams=(_strip("b", (0.0, 0.0), (1.0, 0.0), elements=elements),),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=(
-            tsm.Pin(name="p", path=((0.5, -0.01), (0.5, 0.2))),
-            tsm.Pin(name="q", path=((0.9, 0.01), (0.9, 0.1))),
-        ),
-        contacts=(
-            tsm.ContactPair(node="p", beam="b", offset=0.01),
-            tsm.ContactPair(node="q", beam="b", side="left", offset=0.01),
-        ),
-    )
+    both = cantilever(((0.5, -0.01), (0.5, 0.2)), ((0.9, 0.01), (0.9, 0.1)), section=KS, element="exact", elements=elements, offset=0.01)  # fmt: skip
+    return replace(both, contacts=(both.contacts[0], replace(both.contacts[1], side="left")))

@@ -1,4 +1,4 @@
-"""An element that is registered in one place is right everywhere: alone, in its energy, beside another contact."""
+"""What every registered element owes, asked of `tsm.solve`: linear limits, energy, section forces, axis, convergence; and what a result states."""
 
 from __future__ import annotations
 
@@ -8,101 +8,207 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import tsm
-from tsm.elements import CLOSED_FORM, ContactLaw, Coupling
-from tsm.elements.properties import Properties
+from tests.tsm.structures import KS, KS_PATH, TENTHS, cantilever, raised, steps
+from tsm.elements import CLOSED_FORM
 
-SECTION = tsm.Section(EA=2e3, GA=100.0, EI=1.0)
-SHARP = tsm.Settings(tolerance=1e-12)
-
-
-def _soft(p: Properties) -> Properties:
-    """Constants of an element whose contacts dent it twice as much."""
-    return p._replace(EI=p.EI / 2)
-
-
-def _soft_law(law: ContactLaw) -> ContactLaw:
-    coupling = law.coupling
-    assert coupling is not None
-    return ContactLaw(
-        response=lambda p, *state: law.response(_soft(p), *state),
-        energy=lambda p, *state: law.energy(_soft(p), *state),
-        coupling=Coupling(
-            jet=lambda p, *state: coupling.jet(_soft(p), *state),
-            dent=lambda p, *state: coupling.dent(_soft(p), *state),
-            crossing=lambda p, *state: coupling.crossing(_soft(p), *state),
-        ),
-    )
-
-
-MIXED = CLOSED_FORM["mixed"]
-ADDED: dict[str, tsm.elements.ElementType] = {
-    "rigid in shear": replace(MIXED, name="rigid in shear", sheared=False),
-    "soft contact": replace(MIXED, name="soft contact", contact=_soft_law(MIXED.contact)),
-}
-WITH_UNKNOWNS = [*ADDED, "mixed", "mixed-no-bow"]
+SLACK = tsm.Section(EA=2e3, GA=100.0, EI=1.0)
+ADDED = {"rigid in shear": replace(CLOSED_FORM["mixed"], name="rigid in shear", sheared=False)}
+ENERGETIC = [*ADDED, "mixed", "mixed-no-bow", "exact"]
+CORRECT = [*ADDED, *(name for name in tsm.ELEMENTS if not name.endswith("-as-printed"))]
 
 
 @pytest.fixture(autouse=True)
-def registered(monkeypatch: pytest.MonkeyPatch) -> None:
+def registered(monkeypatch):
     for name, kind in ADDED.items():
         monkeypatch.setitem(tsm.ELEMENTS, name, kind)
 
 
-def pressed(
-    element: str, *, pins: int = 1, offset: float = 0.0, section: tsm.Section = SECTION, elements: int = 4
-) -> Any:
-    """A cantilever that one pin, or two on the same element, push up."""
-    starts = (0.6, 0.7)[:pins]
-    return tsm.Structure(
-        beams=(
-            tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=section, elements=elements, element=element),
-        ),
-        supports=(tsm.Support(beam="b", end="start"),),
-        pins=tuple(
-            tsm.Pin(name=f"p{n}", path=((x, -offset), (x - 0.02, 0.12 * x * x - offset)))
-            for n, x in enumerate(starts)
-        ),
-        contacts=tuple(
-            tsm.ContactPair(node=f"p{n}", beam="b", side="right", offset=offset) for n in range(pins)
-        ),
-    )
+def pressed(element, *, section=SLACK):
+    """A cantilever pushed up by a pin, or by two on the same exact element."""
+    pins = 2 if element == "exact" else 1
+    paths = [((x, -0.02), (x - 0.02, depth - 0.02)) for x, depth in ((0.55, 0.035), (0.95, 0.08))][:pins]
+    return cantilever(*paths, section=section, element=element, elements=2, offset=0.02)
 
 
-@pytest.mark.parametrize("element", [*WITH_UNKNOWNS, "exact", "timoshenko", "euler-bernoulli-simple"])
-@pytest.mark.parametrize("offset", [0.0, 0.02])
-def test_strain_energy_is_the_work_of_the_pin(element: str, offset: float) -> None:
+def last_force(structure, t=(1.0,)):
+    return tsm.solve(structure, t).contacts["p0->b"].force[-1]
+
+
+@pytest.mark.parametrize("element", CORRECT)
+def test_linear_beam_is_timoshenkos(element):
+    """One element under a small force and moment at its tip, and under a small pull."""
+    P, M, N = 1e-6, 2e-6, 3e-6
+    load = tsm.Load(beam="b", end="end", force=(N, P), moment=M)
+    result = tsm.solve(cantilever(section=SLACK, length=2.0, element=element, elements=1, load=load), [1.0])
+    sheared = tsm.ELEMENTS[element].sheared
+    x, y = result.tips["b"][-1]
+    # the pull stiffens the bending by its part of EI/L^2
+    assert x - 2.0 == pytest.approx(2.0 * N / SLACK.EA, rel=1e-2)
+    assert y == pytest.approx(P * 8 / 3 + M * 2 + sheared * P * 2 / SLACK.GA, rel=1e-5)
+    assert result.shape("b", -1)[-1, 2] == pytest.approx(P * 2 + M * 2, rel=1e-5)
+
+
+@pytest.mark.parametrize("element", CORRECT)
+def test_strain_energy_is_the_work_of_the_pin(element):
     """Gauss quadrature of the pin's power over the second half of its way; the paper's elements have an energy only to first order."""
     gauss, weight = np.polynomial.legendre.leggauss(12)
-    structure = pressed(element, offset=offset)
+    structure = pressed(element)
     times = np.concatenate([[0.5], 0.75 + gauss / 4, [1.0]])
-    result = tsm.solve(structure, times, SHARP)
-    power = -result.supports["b.start"].force @ np.array(structure.pins[0].velocity(0.5, 0.5))
+    result = tsm.solve(structure, times, tsm.Settings(tolerance=1e-12))
+    pins = [pin.velocity(0.5, 0.5) for pin in structure.pins]
+    forces = np.array([[e.system.forces[k] for k in range(len(pins))] for e in result.equilibria])
+    assert all((contact.force > 0).all() for contact in result.contacts.values())
+    power = np.einsum("tpi,pi->t", forces, pins)
     gained = result.strain_energy[-1] - result.strain_energy[0]
-    energetic = element in WITH_UNKNOWNS or element == "exact"
-    assert gained == pytest.approx(weight @ power[1:-1] / 4, rel=1e-9 if energetic else 5e-3)
+    assert gained == pytest.approx(weight @ power[1:-1] / 4, rel=1e-9 if element in ENERGETIC else 5e-3)
 
 
-def test_shear_does_not_matter_to_an_element_that_is_rigid_in_shear() -> None:
-    forces = [
-        tsm.solve(pressed("rigid in shear", section=replace(SECTION, GA=GA)), [1.0])
-        .contacts["p0->b"]
-        .force[0]
-        for GA in (1.0, 1e3)
-    ]
-    assert forces[0] == forces[1]
-    stiff = tsm.solve(pressed("mixed", section=replace(SECTION, GA=1e15)), [1.0]).contacts["p0->b"].force[0]
-    assert forces[0] == pytest.approx(stiff, rel=1e-10)
+@pytest.mark.parametrize(
+    "element", [name for name in CORRECT if name in ADDED or not tsm.ELEMENTS[name].sheared]
+)
+def test_shear_does_not_matter_to_an_element_that_is_rigid_in_shear(element):
+    one, other = (last_force(pressed(element, section=replace(SLACK, GA=GA))) for GA in (1.0, 1e3))
+    assert one == other
+    sheared = "mixed" if element in ADDED else "timoshenko"
+    assert one == pytest.approx(last_force(pressed(sheared, section=replace(SLACK, GA=1e15))), rel=1e-10)
+
+
+@pytest.mark.parametrize(("element", "bound"), [("mixed", 2e-5), ("exact", 1e-11)])
+def test_one_short_element_among_long_ones_changes_nothing(element, bound):
+    """In the middle of the pin's way, a millionth of the others."""
+    nodes = tuple(np.union1d(np.arange(1, 10) / 10, 0.75 + np.array([0.0, 1e-7])))
+    plain = cantilever(KS_PATH, section=KS, element="exact")
+    graded = replace(
+        plain, beams=(replace(plain.beams[0], element=element, elements=len(nodes) + 1, nodes=nodes),)
+    )
+    found, exact = (tsm.solve(structure, steps(20)).contacts["p0->b"].force for structure in (graded, plain))
+    assert found == pytest.approx(exact, abs=bound * exact.max())
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_error_estimate_is_an_upper_bound(tolerance):
+    """A long cantilever bends sharply at its clamp: what one exact element leaves is below what it says, and that below `integration_tolerance`."""
+    load = tsm.Load(beam="b", end="end", force=(0.0, 5.0))
+    structure = cantilever(
+        section=tsm.Section(EA=1e4, GA=4e3, EI=1.0), length=10.0, element="exact", load=load
+    )
+    found, exact = (
+        tsm.solve(structure, TENTHS, tsm.Settings(integration_tolerance=t)) for t in (tolerance, 1e-13)
+    )
+    error = np.abs(found.tips["b"] - exact.tips["b"]).max() / 10.0
+    assert error <= found.integration_error <= tolerance
+    assert found.integration_error <= 1e5 * error + 1e-12
+
+
+@pytest.mark.parametrize("element", CORRECT)
+def test_section_forces_balance_the_pin(element):
+    """Between clamp and contact every section carries the pin's force and its moment; beyond it nothing. Pushed up, it bends anticlockwise."""
+    result = tsm.solve(
+        cantilever(raised(0.83, 0.3), element=element, elements=4), [0.5, 1.0], tsm.Settings(tolerance=1e-13)
+    )
+    contact, nodes = result.contacts["p0->b"], result.shape("b", -1)
+    forces, clamp = result.section_forces("b", -1), result.supports["b.start"]
+    push = clamp.force[-1]
+    assert np.hypot(*push) == pytest.approx(contact.force[-1], rel=1e-9)
+    assert clamp.moment[-1] < 0 < forces[0, 0, 2]
+    carried = (np.arange(5) < 4 * contact.arc_position[-1])[np.arange(4)[:, None] + [0, 1]]
+    assert carried.any()
+    assert not carried.all()
+    chord = np.arctan2(*np.diff(nodes[:, 1::-1], axis=0).T)[:, None]
+    angle = np.stack([nodes[:-1, 2], nodes[1:, 2]], axis=1) if element == "exact" else chord
+    along, across = forces[..., 0], forces[..., 1]
+    cut = along * np.cos(angle) - across * np.sin(angle), along * np.sin(angle) + across * np.cos(angle)
+    assert np.stack(cut, axis=-1) == pytest.approx(np.where(carried[..., None], -push, 0.0), abs=1e-9)
+    lever = np.array([0.83, 0.3]) - np.stack([nodes[:-1, :2], nodes[1:, :2]], axis=1)
+    moment = lever[..., 1] * push[0] - lever[..., 0] * push[1]
+    assert forces[..., 2] == pytest.approx(np.where(carried, moment, 0.0), abs=1e-9)
+
+
+def test_stations_of_an_exact_element_have_its_forces_and_join_up():
+    """Stations are N, V, M of the section; the force they make in the plane is the pin's."""
+    result = tsm.solve(
+        cantilever(raised(0.83, 0.3), element="exact", elements=3), [1.0], tsm.Settings(tolerance=1e-14)
+    )
+    lines, contact, clamp = result.stations("b", -1), result.contacts["p0->b"], result.supports["b.start"]
+    assert (lines.arc[0, 0], lines.arc[-1, 1]) == pytest.approx((0.0, 1.0), abs=1e-15)
+    for field in ("arc", "position", "rotation"):
+        values = getattr(lines, field)
+        assert values[1:, 0] == pytest.approx(values[:-1, 1], abs=1e-14)
+    assert [*lines.position[-1, 1], lines.rotation[-1, 1]] == pytest.approx(
+        result.shape("b", -1)[-1], abs=1e-14
+    )
+    axial, shear, moment = np.moveaxis(lines.forces, -1, 0)
+    c, s = np.cos(lines.rotation), np.sin(lines.rotation)
+    carried = lines.arc.mean(axis=1) < contact.arc_position[-1]
+    inside = carried[:, None] * np.ones(2)
+    force = np.stack([axial * c - shear * s, axial * s + shear * c], axis=-1)
+    assert force == pytest.approx(-inside[..., None] * clamp.force[-1], abs=1e-10 * contact.force[-1])
+    lever = np.array([0.83, 0.3]) - lines.position
+    torque = lever[..., 1] * clamp.force[-1, 0] - lever[..., 0] * clamp.force[-1, 1]
+    assert moment == pytest.approx(inside * torque, abs=1e-9 * np.abs(moment).max())
+
+
+def apart(found, exact):
+    """Largest distance from the exact axis at nodes and anywhere, at every load parameter."""
+    lines = []
+    for k in range(len(TENTHS)):
+        arc, xy = found.axis_line("b", k)
+        lines.append(np.hypot(*(xy - CubicSpline(*exact.axis_line("b", k, 400))(arc)).T))
+        assert xy[::10] == pytest.approx(found.shape("b", k)[:, :2], abs=1e-14)
+    return np.max([line[::10] for line in lines]), np.max(lines)
+
+
+@pytest.mark.parametrize("stretch", [KS.EA, pytest.param(300 * KS.EI, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("shear", [KS.GA, pytest.param(50 * KS.EI, marks=pytest.mark.slow)])
+def test_the_axis_between_nodes_is_as_good_as_at_nodes(shear, stretch):
+    section = tsm.Section(EA=stretch, GA=shear, EI=KS.EI)
+    results = {
+        n: tsm.solve(
+            cantilever(KS_PATH, section=section, elements=n, element="exact" if n == 1 else "mixed"), TENTHS
+        )
+        for n in (1, 10, 20)
+    }
+    coarse, fine = (apart(results[n], results[1]) for n in (10, 20))
+    assert coarse[1] < 1.1 * coarse[0]
+    assert fine[1] < 1.1 * fine[0]
+    if (shear, stretch) == (KS.GA, KS.EA):
+        assert coarse[1] < 5e-6
+        assert np.log2(coarse[1] / fine[1]) == pytest.approx(4, abs=0.15)
+
+
+def test_answers_do_not_depend_on_the_last_bit_of_the_pins_start():
+    plain = tsm.solve(cantilever(KS_PATH, section=KS), steps(20)).contacts["p0->b"]
+    for x in (np.nextafter(1.0, 0.0), np.nextafter(1.0, 2.0)):
+        for y in (-5e-324, np.finfo(float).eps / 2, -np.finfo(float).eps):
+            moved = tsm.solve(cantilever(((x, y), (x - 1, y + 2 / np.pi)), section=KS), steps(20))
+            assert moved.cutbacks == 0
+            assert moved.contacts["p0->b"].force == pytest.approx(plain.force, rel=1e-9)
+            assert moved.contacts["p0->b"].arc_position == pytest.approx(plain.arc_position, rel=1e-9)
+
+
+def test_march_and_solve_agree_and_pass_throughs_are_listed():
+    structure, t = cantilever(KS_PATH, section=KS), steps(50)
+    taken = [step for step in tsm.march(structure, t) if step.requested]
+    result = tsm.solve(structure, t)
+    assert [step.equilibrium.state.load_parameter for step in taken] == result.load_parameter.tolist()
+    assert (taken[-1].equilibrium.state.q == result.equilibria[-1].state.q).all()
+    passes = [event for event in result.events if event.kind is tsm.EventKind.PASS_THROUGH]
+    assert [event.element for event in passes[:3]] == [8, 7, 6]
+    assert all(a.load_parameter <= b.load_parameter for a, b in pairwise(passes))
+    arcs = np.interp([e.load_parameter for e in passes], t, result.contacts["p0->b"].arc_position)
+    assert arcs == pytest.approx([event.arc_position for event in passes], abs=1e-3)
 
 
 @pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_a_result_can_be_pickled(element: str) -> None:
+def test_a_result_can_be_pickled(element):
     """Processes solve many structures and hand their results back."""
     result = tsm.solve(pressed(element), [0.5, 1.0])
     other = pickle.loads(pickle.dumps(result))  # noqa: S301 - its own
@@ -110,37 +216,20 @@ def test_a_result_can_be_pickled(element: str) -> None:
     assert other.shape("b", 1).tolist() == result.shape("b", 1).tolist()
 
 
-def test_a_softer_contact_carries_less() -> None:
-    """Its dent is twice as deep: the pin goes further into the element, by ``C F``."""
-    soft, hard = (
-        tsm.solve(pressed(name), [1.0]).contacts["p0->b"].force[0] for name in ("soft contact", "mixed")
-    )
-    assert 0.8 * hard < soft < 0.999 * hard
-
-
-USE = """
-import tsm
-beam = tsm.Beam(name="b", start=(0, 0), end=(1, 0), section=tsm.Section(EA=2e3, GA=100.0, EI=1.0), elements=4, element="new")
-structure = tsm.Structure(
-    beams=(beam,),
-    supports=(tsm.Support(beam="b", end="start"),),
-    pins=(tsm.Pin(name="p0", path=((0.6, 0.0), (0.58, 0.12 * 0.36))),),
-    contacts=(tsm.ContactPair(node="p0", beam="b", side="right"),),
-)
-print(float(tsm.solve(structure, [1.0]).contacts["p0->b"].force[0]))
-"""
-
-
-def test_a_new_element_is_one_file(tmp_path: Path) -> None:
+def test_a_new_element_is_one_file(tmp_path):
     package = shutil.copytree(Path(tsm.__file__).parent, tmp_path / "tsm")
     (package / "elements" / "kinds" / "unsheared.py").write_text(
         "from dataclasses import replace\n"
         "from tsm.elements.kinds.mixed import MIXED\n"
         "ELEMENTS = (replace(MIXED, name='new', sheared=False),)\n"
     )
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    # the child has the copy first on its path, and the tests behind it
+    path = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
+    code = "import tests.tsm.test_contract as case; print(case.tsm.__file__, case.last_force(case.pressed('new')))"
     run = subprocess.run(
-        [sys.executable, "-c", USE], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
-    )
-    registered = tsm.solve(pressed("rigid in shear"), [1.0]).contacts["p0->b"].force[0]
-    assert [float(force) for force in run.stdout.split()] == pytest.approx([registered], rel=1e-9)
+        [sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    file, force = run.stdout.split()
+    assert file == str(package / "__init__.py")
+    assert float(force) == pytest.approx(last_force(pressed("rigid in shear")), rel=1e-9)

@@ -1,7 +1,8 @@
-"""What a contact may do next, at its bounds: armed again, crossed past an end, broken margins, residuals that are round-off."""
+"""Decisions at their bounds: contacts armed again, crossed past an end, broken margins, residuals that are round-off, roots, sizes."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -9,12 +10,17 @@ import numpy as np
 import pytest
 
 import tsm
-from tests.tsm.structures import cantilever
+from tests.tsm.structures import SECTION, beam, cantilever
+
+# no structure brings these decisions to their bounds: the notes name mutants that survive every solution
 from tsm.contact_set import initial_state, rearm
 from tsm.crossing import crossing
 from tsm.events import EventKind, Margin, broken
 from tsm.model import Model
 from tsm.newton import Newton
+from tsm.projection import arc_position, slide
+from tsm.root import find_root
+from tsm.sizes import joined_extents, sizes_of
 
 
 def open_states(*path):
@@ -94,3 +100,58 @@ def test_no_contact_is_so_stiff_that_a_large_residual_is_round_off():
     assert not newton.converged([5e-7, 5e-7], noisy(1e-8))
     assert newton.converged([1e-9, 1e-9], noisy(0.0, 1e6))
     assert not newton.converged([1e-9, 1e-9], noisy(0.0, 1e5))
+
+
+def test_a_position_passes_from_element_to_element():
+    graded = replace(beam("b", (0.0, 0.0), (1.0, 0.0), section=SECTION), elements=4, nodes=(0.1, 0.5, 0.6))
+    target = Model(tsm.Structure(beams=(graded,))).beams["b"]
+    for element, xi in ((0, 1.5), (0, 7.0), (3, -0.5), (3, -1.2), (2, 1.0), (1, -1e-17), (3, 1.5), (0, -0.5)):
+        arc = target.arcs[element] + xi * target.lengths[element]
+        owner, at = slide(target.lengths, element, xi)
+        assert arc_position(target, owner, at) == pytest.approx(arc, abs=1e-15)
+        assert 0.0 <= at <= 1.0 or arc < 0.0 or arc > 1.0
+
+
+def test_sizes_of_a_frame_and_of_a_beam_beside_it() -> None:
+    """The frame is as large as its diagonal, 5, and the beam as its own length, though it ends where it begins."""
+    nodes = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [9.0, 9.0], [9.0, 9.5]])
+    lengths = np.array([4.0, 3.0, 2.0])
+    extents = joined_extents(np.array([[0, 1], [1, 2], [3, 4]]), np.array([0, 1, 3]), nodes, lengths)
+    assert extents.tolist() == [5.0, 5.0, 2.0]
+    assert sizes_of(lengths, extents, np.array([160.0, 45.0, 4.0])) == (4.0, 5.0, 10.0, 6.4)
+
+
+JUMP, HIGH = 0.7310585, 0.39999999979993894
+ROOTS = {  # function of t, root, how near
+    "rising": (lambda t: t**3 - 0.2, 0.2 ** (1 / 3), 1e-11),
+    "flat at one end": (lambda t: math.exp(-5 * t) - math.exp(-4.5), 0.9, 1e-11),
+    "tenfold root": (lambda t: (0.37 - t) ** 9, 0.37, 0.05),
+    "a jump down": (lambda t: 2.0 if t < JUMP else -1.0, JUMP, 1e-13),
+    "a jump up": (lambda t: -2.0 if t < JUMP else 1.0, JUMP, 1e-13),
+    # false position comes to this jump from the side of the larger value last
+    "a high jump": (lambda t: 1.0 if t < HIGH else -0.3 * (t - 1 / 3), HIGH, 1e-13),
+}
+
+
+@pytest.mark.parametrize("name", ROOTS)
+def test_a_root_is_found_well_within_the_bound_of_evaluations(name):
+    """The last sample is the answer; behind a jump it is past it, found by bisection."""
+    function, root, near = ROOTS[name]
+    asked = []
+
+    def evaluate(t):
+        asked.append(t)
+        return function(t), t
+
+    low, high = (0.25, 0.5) if "high" in name else (0.0, 1.0)
+    found = find_root(evaluate, (low, function(low)), (high, function(high)), small=1e-13, apart=1e-14)
+    assert found == pytest.approx(root, abs=near)
+    assert abs(function(found)) <= 1e-13 or 0 <= found - root < 1e-13
+    assert found == asked[-1]
+    assert len(asked) <= (100 if "jump" in name else 50)
+
+
+def test_no_value_ends_the_search_for_a_root():
+    values = iter([(0.2, 0.3), (0.1, 0.4), None])
+    assert find_root(lambda _: next(values), (0.0, 0.5), (1.0, -0.4), small=1e-15, apart=1e-15) is None
+    assert not list(values)

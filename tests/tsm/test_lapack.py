@@ -5,7 +5,8 @@ import sys
 
 import pytest
 
-ALONE = """
+CODE = {
+    "alone, and the package imported after it": """
 import sys
 import numpy as np
 from tsm.lapack import lapack
@@ -15,22 +16,20 @@ assert lapack().__name__ == "scipy.linalg._flapack" and "scipy.linalg" not in sy
 import scipy.linalg.lapack, scipy.sparse.linalg
 for routines in (scipy.linalg.lapack, lapack()):
     assert all(np.array_equal(one, other) for one, other in zip(alone, routines.dgesv(A, A[:, :2])))
-"""
-IMPORTED = """
-import scipy.linalg.lapack
-from tsm.lapack import lapack
-assert lapack() is scipy.linalg.lapack
-"""
-ELSEWHERE = """
+""",
+    "from the package that is there, or where there is no such file": """
 import sys
 from tsm import lapack
 lapack._NAME = "scipy.linalg._elsewhere"
 assert lapack.lapack() is sys.modules["scipy.linalg.lapack"]
-"""
+del sys.modules["tsm.lapack"]
+from tsm.lapack import lapack
+assert lapack() is sys.modules["scipy.linalg.lapack"]
+""",
+}
 
 
-@pytest.mark.slow_at("alone", "imported")
-@pytest.mark.parametrize("code", [ALONE, IMPORTED, ELSEWHERE], ids=["alone", "imported", "elsewhere"])
+@pytest.mark.slow_at("alone, and the package imported after it")
+@pytest.mark.parametrize("code", CODE.values(), ids=CODE)
 def test_the_routines_are_those_of_the_package(code: str) -> None:
-    """Their file alone, and the package imported after it; the package where it is there already, or where there is no such file."""
     subprocess.run([sys.executable, "-c", code], check=True, timeout=300)

@@ -19,18 +19,9 @@ Array = NDArray[np.float64]
 class Rod:
     """A rod of rectangular section, clamped at the origin, with its undeformed axis a circular arc.
 
-    Attributes
-    ----------
-    length, direction, turn : float
-        Arc length; angle of the axis at the clamp; angle by which it turns to the left up to the tip.
-    height, width : tuple of 2 float
-        At clamp and tip, linear between.
-    youngs_modulus, shear_modulus : float
-        Elastic constants; the shear factor is 5/6.
-    loads : tuple
-        Function of the arc length over the length, giving the force per length (2,); where it begins and ends, over the length.
-    tip : tuple of 3 float
-        Dead force and moment at the tip.
+    The axis has a length, an angle at the clamp, and turns to the left up to the tip. Height and width are those at clamp and tip, linear
+    between; the shear factor is 5/6. A load is the force per length (2,) over the arc length over the length, and where it begins and
+    ends, over the length. At the tip there is a dead force and moment.
     """
 
     length: float = 1.0

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import tsm
+from tests.tsm.structures import CLAMP, beam, cantilever, raised
 from tests.verification.rod_by_shooting import Rod, free, pinned
 
 E, G, WIDTH, HEIGHT = 1.2e5, 4.5e4, (0.1, 0.06), (0.1, 0.05)
@@ -23,7 +23,7 @@ KEYS = {
 }
 
 
-def rod(*, loads=(), turn=0.0, tapered=False, tip=(0.0, 0.0, 0.0)):
+def rod(*, loads=(), turn=0.0, tapered=False, tip=(0.0, 0.0, 0.0), **_):
     """The rod for shooting; its axis begins along the x axis."""
 
     def value(coefficients):
@@ -48,31 +48,28 @@ def structure(
     tip=(0.0, 0.0, 0.0),
     pin=None,
     offset=0.0,
+    more=(),
     elements=1,
     element="exact",
 ):
-    """The same rod of unit length as a structure, with a pin that moves from its undeformed axis by `pin`."""
+    """The same rod of unit length as a structure, with a pin that moves by `pin` from the surface of its undeformed axis."""
     half = turn / 2
     chord = math.sin(half) / half if half else 1.0
-    beam = tsm.Beam(
-        name="b",
-        start=(0.0, 0.0),
-        end=(chord * math.cos(half), chord * math.sin(half)),
-        section=section(0),
-        end_section=section(1) if tapered else None,
-        turn=turn,
-        elements=elements,
-        element=element,
-    ).divided(*(end for _, a, b in loads for end in (a, b)))
+    strip = beam(
+        "b", (0.0, 0.0), (chord * math.cos(half), chord * math.sin(half)), section=section(0), turn=turn,
+        end_section=section(1) if tapered else None, elements=elements, element=element,
+    ).divided(*(end for _, a, b in loads for end in (a, b)))  # fmt: skip
     pins, contacts = (), ()
     if pin:
-        (x, y), angle = beam.point(0.7), beam.direction(0.7)
-        x, y = x + offset * math.sin(angle), y - offset * math.cos(angle)
-        pins = (tsm.Pin(name="p", path=((x, y), (x + pin[0], y + pin[1]))),)
-        contacts = (tsm.ContactPair(node="p", beam="b", offset=offset),)
+        place, begin, move = pin
+        end = dict(more).get("end_offset", offset)
+        (x, y), angle, depth = strip.point(place), strip.direction(place), offset + place * (end - offset)
+        x, y = x + depth * math.sin(angle), y - depth * math.cos(angle)
+        pins = (tsm.Pin(name="p", path=((x + begin[0], y + begin[1]), (x + move[0], y + move[1]))),)
+        contacts = (tsm.ContactPair(node="p", beam="b", offset=offset, **dict(more)),)
     return tsm.Structure(
-        beams=(beam,),
-        supports=(tsm.Support(beam="b", end="start"),),
+        beams=(strip,),
+        supports=(CLAMP,),
         loads=(tsm.Load(beam="b", end="end", force=tip[:2], moment=tip[2]),),
         line_loads=tuple(tsm.LineLoad(beam="b", force=force, start=a, end=b) for force, a, b in loads),
         pins=pins,
@@ -80,77 +77,55 @@ def structure(
     )
 
 
-def apart(result, shot):
-    """Largest difference in position, angle, force and moment; all of the order 1."""
-    support = result.supports["b.start"]
+PIN = (0.7, (0.0, 0.0), (-0.1, 0.3))
+CASES = {
+    "tip load": {"tip": (0.3, 0.9, -0.2)},
+    "pin": {"pin": PIN, "offset": 0.05},
+    # the contact force leans by the slope of the surface from the normal of the axis
+    "face": {"pin": (0.6, (0.02, -0.01), (-0.1, 0.3)), "offset": 0.08, "more": (("end_offset", 0.02),)},
+}
+
+
+SLOW = [f"{case}-{key}" for case in ("pin", "face") for key in list(KEYS)[:-1]]
+
+
+@pytest.mark.slow_at(*SLOW)
+@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize("case", CASES)
+def test_exact_against_shooting(case, key):
+    """Position and angle of the tip, force and moment at the clamp, force and place of the contact, all of the order 1."""
+    given = {**KEYS[key], **CASES[case]}
+    problem = structure(**given)
+    result = tsm.solve(problem, [0.5, 1.0])
+    assert result.status is tsm.Status.COMPLETED
+    support, strip = result.supports["b.start"], problem.beams[0]
     tip = result.shape("b", -1)[-1]
-    clamp = np.array([*support.force[-1], support.moment[-1]])
-    beam = result.model.structure.beams[0]
-    turned = tip[2] + beam.direction(1.0)
-    differences = [*(tip[:2] - shot.tip[:2]), turned - shot.tip[2], *(clamp + shot.clamp)]
-    if not math.isnan(shot.arc):
-        touch = result.equilibria[-1].state.touches[0]
-        differences += [
-            *(np.array(touch.force) - shot.force),
-            result.contacts["p->b"].arc_position[-1] - shot.arc,
-        ]
-    return np.abs(differences).max()
-
-
-@pytest.mark.parametrize("key", KEYS)
-@pytest.mark.parametrize("pin", [None, (-0.1, 0.3)], ids=["tip load", "pin"])
-def test_exact_against_shooting(key, pin):
-    given = KEYS[key]
-    tip = (0.0, 0.0, 0.0) if pin else (0.3, 0.9, -0.2)
-    offset = 0.05 if pin else 0.0
-    result = tsm.solve(structure(**given, tip=tip, pin=pin, offset=offset), [0.5, 1.0])
-    assert result.status is tsm.Status.COMPLETED
-    support = result.supports["b.start"]
-    guess = -np.array([*support.force[-1], support.moment[-1]])
-    if pin:
-        touch = result.equilibria[-1].state.touches[0]
-        assert touch is not None
-        guess = np.array([*guess, *touch.force, result.contacts["p->b"].arc_position[-1]])
-        place = result.model.structure.pins[0].path[-1]
-        shot = pinned(rod(**given), place, (offset, offset), guess + 1e-3)
+    found = [*tip[:2], tip[2] + strip.direction(1.0), *-support.force[-1], -support.moment[-1]]
+    if case == "tip load":
+        shot = free(rod(**given), np.array(found[3:]) + 1e-3)
+        expected = [*shot.tip, *shot.clamp]
     else:
-        shot = free(rod(**given, tip=tip), guess + 1e-3)
-    assert apart(result, shot) <= 1e-9
+        touch, contact = result.equilibria[-1].state.touches[0], result.contacts["p->b"]
+        found += [*touch.force, contact.arc_position[-1]]
+        reach = (given["offset"], dict(given.get("more", ())).get("end_offset", given["offset"]))
+        shot = pinned(rod(**KEYS[key]), problem.pins[0].path[-1], reach, np.array(found[3:]) + 1e-3)
+        expected = [*shot.tip, *shot.clamp, *shot.force, shot.arc]
+        assert contact.force[-1] == pytest.approx(np.hypot(*shot.force), abs=1e-9)
+    assert np.array(found) == pytest.approx(np.array(expected), abs=1e-9)
 
 
+@pytest.mark.slow_at("pin-load", "pin-load on a part", "pin-natural curvature", "pin-taper")
 @pytest.mark.parametrize("key", KEYS)
-def test_face_at_a_changing_distance_against_shooting(key):
-    """The distance falls from .08 to .02; the contact force leans by its slope from the normal of the axis."""
-    given, reach = KEYS[key], (0.08, 0.02)
-    scene = structure(**given, pin=(-0.1, 0.3), offset=0.05)
-    beam = scene.beams[0]
-    (x, y), angle = beam.point(0.6), beam.direction(0.6)
-    depth = reach[0] + 0.6 * (reach[1] - reach[0])
-    x, y = x + depth * math.sin(angle), y - depth * math.cos(angle)
-    pin = tsm.Pin(name="p", path=((x + 0.02, y - 0.01), (x - 0.1, y + 0.3)))
-    pair = replace(scene.contacts[0], offset=reach[0], end_offset=reach[1])
-    result = tsm.solve(replace(scene, pins=(pin,), contacts=(pair,)), [0.5, 1.0])
-    assert result.status is tsm.Status.COMPLETED
-    support, touch = result.supports["b.start"], result.equilibria[-1].state.touches[0]
-    arc = result.contacts["p->b"].arc_position[-1]
-    guess = np.array([*-support.force[-1], -support.moment[-1], *touch.force, arc])
-    shot = pinned(rod(**given), pin.path[-1], reach, guess + 1e-3)
-    assert apart(result, shot) <= 1e-9
-    assert result.events[0].kind is tsm.EventKind.TOUCH
-
-
-@pytest.mark.parametrize("key", KEYS)
-@pytest.mark.parametrize("pin", [None, (-0.1, 0.3)], ids=["tip load", "pin"])
-def test_mixed_converges_with_fourth_order_at_least(key, pin):
+@pytest.mark.parametrize("case", ["tip load", "pin"])
+def test_mixed_converges_with_fourth_order_at_least(case, key):
     """8 and 32 elements, between the ends of loads; 8 elements are good for six digits."""
-    tip, offset = ((0.0, 0.0, 0.0), 0.05) if pin else ((0.3, 0.9, -0.2), 0.0)
-    given = {**KEYS[key], "tip": tip, "pin": pin, "offset": offset}
+    given = {**KEYS[key], **CASES[case]}
 
     def numbers(elements, element):
         result = tsm.solve(structure(**given, elements=elements, element=element), [0.5, 1.0])
         support = result.supports["b.start"]
         found = [*result.shape("b", -1)[-1], *support.force[-1], support.moment[-1]]
-        if pin:
+        if case == "pin":
             history = result.contacts["p->b"]
             found += [history.force[-1], history.arc_position[-1]]
         return np.array(found)
@@ -172,39 +147,7 @@ def test_too_coarse_a_mesh_for_a_boundary_layer_is_told():
         return tsm.solve(stiffer, [1.0], throw=False).status
 
     assert status(4, "mixed") is tsm.Status.INACCURATE
-    assert status(400, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
-
-
-def test_tapered_cantilever_with_a_flexible_root_by_quadrature():
-    """The specimen of ASME V&V 10.1: a tapered cantilever, loaded along its outer half, at a root that turns by its moment.
-
-    The tip sinks by the work of a unit force, ``int M m/EI + V v/GA ds + M_0 m_0/k``; what is left falls with the square of the load.
-    """
-    load, root = 1e-3, 5.0
-    q = -load
-
-    def sections(x):
-        height, width = ((1 - x) * a + x * b for a, b in (HEIGHT, WIDTH))
-        return E * width * height**3 / 12, 5 / 6 * G * width * height
-
-    def moment(x):
-        outer = min(1 - x, 0.5)
-        return q * outer * ((1 - x) - outer / 2)
-
-    def density(x):
-        EI, GA = sections(x)
-        return moment(x) * (1 - x) / EI + q * min(1 - x, 0.5) / GA
-
-    linear = quad(density, 0, 1, points=[0.5], epsabs=1e-15, epsrel=1e-13)[0] + moment(0.0) / root
-    left = []
-    for factor in (10.0, 1.0):
-        loads = ((((0.0, factor * q),), 0.5, 1.0),)
-        held = tsm.Support(beam="b", end="start", rotation=None)
-        spring = tsm.Spring(beam="b", end="start", rotation=root)
-        given = replace(structure(loads=loads, tapered=True), supports=(held,), springs=(spring,))
-        left.append(abs(tsm.solve(given, [1.0]).tips["b"][-1][1] / (factor * linear) - 1))
-    assert left[1] < 1e-7
-    assert math.log10(left[0] / left[1]) == pytest.approx(2.0, abs=0.02)
+    assert status(150, "mixed") is status(8, "exact") is tsm.Status.COMPLETED
 
 
 @pytest.mark.slow
@@ -217,17 +160,10 @@ def test_largest_span_of_a_heavy_strip_on_two_points():
     for beyond in (0.012, 0.008, 0.006, 0.004):
         span, weight = 1 / math.e + beyond, 1.1 * (1.167 / beyond) ** 2
         stiff = tsm.Section(EA=1e9 * weight, GA=1e9 * weight, EI=1.0)
-        beam = tsm.Beam(
-            name="b", start=(0.0, 0.0), end=(1.0, 0.0), section=stiff, elements=4, element="exact"
-        )
-        half = tsm.Structure(
-            beams=(beam,),
-            supports=(tsm.Support(beam="b", end="start", uy=None),),
-            pins=(tsm.Pin(name="p", path=((span, 0.0), (span, 1e-9))),),
-            contacts=(tsm.ContactPair(node="p", beam="b"),),
-            line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),),
-        )
-        result = tsm.solve(half, [1.0], throw=False)
+        slider = (replace(CLAMP, uy=None),)
+        half = cantilever(raised(span, 1e-9), section=stiff, elements=4, element="exact", supports=slider)
+        weighted = replace(half, line_loads=(tsm.LineLoad(beam="b", force=((0.0, -weight),)),))
+        result = tsm.solve(weighted, [1.0], throw=False)
         assert result.status is tsm.Status.LIMIT_POINT
         spans.append(span)
         limits.append(result.critical[-1].load_parameter * weight)

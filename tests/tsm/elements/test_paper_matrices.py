@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,13 +11,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from tests.tsm.test_elements import random_contact
+
+# the paper's matrices have no place in an answer
 from tsm.elements import CLOSED_FORM, as_printed, cantilever, chord_contact, mixed_contact
 from tsm.elements.properties import Properties
 
-STEP = 1e-30j
 ERRATA = Path(__file__).parents[3] / "tsm" / "elements" / "errata.md"
-PAPER = [name for name, kind in CLOSED_FORM.items() if not kind.contact_unknowns]
-PRINTED = [name for name in PAPER if name.endswith("-as-printed")]
+PRINTED = [name for name in CLOSED_FORM if name.endswith("-as-printed")]
 
 a, b, EI, Psi, x = sp.symbols("a b EI Psi x", positive=True)
 l0 = a + b
@@ -47,6 +49,7 @@ def stiffness(moments, shears, forces):
     return sp.hessian(energy, forces).inv().applyfunc(sp.cancel)
 
 
+@cache
 def derived(formulation):
     """Matrix of a formulation, nothing taken from the paper but its basic system."""
     if formulation == "(7)-(8)":
@@ -109,18 +112,6 @@ def test_corrected_matrix_is_the_inverse_of_the_flexibility(formulation):
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-@pytest.mark.parametrize("point", [(0.3, 0.9, 2.0, 0.1), (7.0, 2e-3, 0.4, 30.0), (1e-6, 1.0, 1.0, 1e-5)])
-def test_corrected_matrix_in_numbers(formulation, point):
-    f = FORMULATIONS[formulation]
-    values = dict(zip((a, b, EI, Psi), (sp.Float(v, 40) for v in point), strict=True))
-    length = point[0] + point[1]
-    p = Properties(length, 0.0, length, 1.0, point[2], 12 * point[3] / length**2)
-    K, _ = f.correct(p, point[0] / length)
-    exact = np.array(derived(formulation).subs(values)).astype(float)
-    assert np.abs(K / exact - 1).max() <= 1e-9 * max(1, length / point[1] * 1e-3)
-
-
-@pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("version", ["correct", "printed"])
 def test_derivative_in_a(formulation, version):
     f = FORMULATIONS[formulation]
@@ -150,27 +141,6 @@ def test_contact_stiffness_near_an_end():
     assert sp.simplify(near - law) == 0
     assert sp.limit(law * b, b, 0) == EI / Psi
     assert sp.limit(law * b**3, b, sp.oo) == 3 * EI
-
-
-@pytest.mark.parametrize(("formulation", "at_i", "at_j"), [("(5)-(6)", -2, -2), ("(7)-(8)", -1, -3)])
-def test_growth_of_round_off_in_the_force_equation_alone(formulation, at_i, at_j):
-    """Deformations of the element's own basic system, each off by its last bit: powers of the distance before ends i and j."""
-    K, flexibility = derived(formulation), derived(formulation).inv()
-    forces = sp.Matrix([1, sp.Rational(-7, 10), sp.Rational(3, 10)])
-    contact = 2 if formulation == "(5)-(6)" else 1
-
-    def grown(near, far):
-        values = {near: sp.Float("1e-4", 60), far: 1 - sp.Float("1e-4", 60), EI: 1}
-        sizes = []
-        for part in (1, sp.Rational(1, 10)):
-            at = {**values, near: part * values[near], far: 1 - part * values[near]}
-            v = flexibility.subs(at) * forces
-            row = K.subs(at).row(contact)
-            sizes.append(sum(abs(row[k] * v[k]) for k in range(3)))
-        return float(sp.log(sizes[1] / sizes[0], 10))
-
-    assert grown(a, b) == pytest.approx(-at_i, abs=0.05)
-    assert grown(b, a) == pytest.approx(-at_j, abs=0.05)
 
 
 def force_errors(formulation, near, end, samples=30):
@@ -206,16 +176,6 @@ def test_round_off_of_the_force_equation_in_double_precision(formulation, end, p
     assert np.polyfit(np.log10(distances), np.log10(errors), 1)[0] == pytest.approx(power, abs=0.15)
 
 
-def test_verdicts_differ():
-    right = EI / a
-    assert judged(right, EI / a) == "same"
-    assert judged(right, 2 * EI / a) == "wrong factor"
-    assert judged(right, -EI / a) == "wrong sign"
-    assert judged(right, EI * b / a) == "wrong dimension"
-    assert judged(right, -EI * b / a) == "wrong dimension, wrong sign"
-    assert judged(right, EI * (1 - 9 * a) / a) == "wrong dimension"
-
-
 def test_other_sentences_of_the_errata():
     """Factorised entry; misprint of (5) from (9); no signs mend (7)."""
     corrected, _ = in_symbols(chord_contact.timoshenko, Psi)
@@ -241,8 +201,8 @@ def negative_eigenvalues(function, length, xi):
 @pytest.mark.slow
 def test_printed_matrix_is_indefinite_at_every_position():
     """One negative eigenvalue for any a as long as l0 < 6 sqrt(2) units of length; none when corrected."""
-    for length in (0.05, 0.25, 1.0, 8.48):
-        for xi in np.linspace(0.01, 0.99, 99):
+    for length in (0.05, 1.0, 8.48):
+        for xi in np.linspace(0.01, 0.99, 33):
             assert negative_eigenvalues(as_printed.euler_bernoulli, length, xi) == 1
             assert negative_eigenvalues(chord_contact.euler_bernoulli, length, xi) == 0
     printed, _ = in_symbols(as_printed.euler_bernoulli, 0)
@@ -250,59 +210,6 @@ def test_printed_matrix_is_indefinite_at_every_position():
     factor = sp.cancel(determinant / (2 * a**2 * b**2 - 9 * l0**2))
     assert all(factor.subs({a: i, b: j}) > 0 for i in (sp.Rational(1, 50), 1, 40) for j in (1, 9))
     assert negative_eigenvalues(as_printed.euler_bernoulli, 8.49, 0.5) == 0
-
-
-def random_state(rng, distance):
-    """Contact at a stated distance, in parts of the length, from one of the ends."""
-    angle, length = rng.uniform(0, 2 * np.pi), 10 ** rng.uniform(-1, 1)
-    EA, stiff, Phi = (10 ** rng.uniform(low, high) for low, high in ((0, 3), (-2, 2), (-8, 2)))
-    p = Properties(length * np.cos(angle), length * np.sin(angle), length, EA, stiff, Phi)
-    state = rng.normal(size=6) * np.array([0.1 * length, 0.1 * length, 0.4] * 2)
-    d = np.array([p.dx0 + state[3] - state[0], p.dy0 + state[4] - state[1]])
-    xi = rng.choice([distance, 1 - distance])
-    lever = -(xi * d + 0.05 * rng.normal() * np.array([-d[1], d[0]]))
-    return p, state, lever, rng.choice([-1.0, 1.0]), rng.choice([0.0, 0.1 * length])
-
-
-@pytest.mark.parametrize("name", PAPER)
-def test_tangent_within_1e_9_of_both_ends(name):
-    """1,000 random states, half of them 1e-9 to 1e-13 from an end."""
-    rng = np.random.default_rng(7)
-    for k in range(1000):
-        distance = 10 ** rng.uniform(-13, -9) if k % 2 else rng.uniform(1e-9, 0.5)
-        p, state, lever, side, offset = random_state(rng, distance)
-        direction = rng.normal(size=8)
-        stepped, tangent = CLOSED_FORM[name].contact.response(
-            p,
-            state + STEP * direction[:6],
-            lever + STEP * (direction[:2] - direction[6:]),
-            0.0,
-            np.zeros(2),
-            side,
-            offset,
-        )
-        expected = stepped.imag / abs(STEP)
-        assert np.abs(tangent.real @ direction - expected).max() <= 1e-8 * np.abs(expected).max()
-
-
-def test_euler_bernoulli_ignores_the_sections_shear():
-    rng = np.random.default_rng(8)
-    for name in PAPER:
-        if not name.startswith("euler-bernoulli"):
-            continue
-        kind = CLOSED_FORM[name]
-        p, state, lever, side, offset = random_state(rng, 0.3)
-        first, second = (
-            kind.contact.response(p._replace(Phi=Phi), state, lever, 0.0, np.zeros(2), side, offset)
-            for Phi in (0.0, 5.0)
-        )
-        assert all(np.array_equal(*pair) for pair in zip(first, second, strict=True))
-        column = Properties(*(np.array([value]) for value in p))
-        slender, stocky = (
-            kind.coefficients(kind.constants(column._replace(Phi=np.array([Phi])))) for Phi in (0.0, 5.0)
-        )
-        assert all(np.array_equal(*pair) for pair in zip(slender, stocky, strict=True))
-        assert slender.constant[2, 0] == pytest.approx(12 * p.EI / p.l0, rel=1e-14)
 
 
 def test_cantilever_is_the_simply_supported_element():
@@ -315,55 +222,10 @@ def test_cantilever_is_the_simply_supported_element():
     rng = np.random.default_rng(9)
     names = ("euler-bernoulli-simple", "euler-bernoulli-cantilever")
     for _ in range(100):
-        p, state, lever, side, offset = random_state(rng, rng.uniform(0.05, 0.5))
-        simple, clamped = (
-            CLOSED_FORM[name].contact.response(p, state, lever, 0.0, np.zeros(2), side, offset)
-            for name in names
-        )
+        state = random_contact(rng, near=rng.uniform(0.05, 0.5))
+        simple, clamped = (CLOSED_FORM[name].contact.response(*state) for name in names)
         for one, other in zip(clamped, simple, strict=True):
             assert np.abs(one - other).max() <= 1e-11 * np.abs(other).max()
-
-
-def evaluation_error(element_force, distance, end, samples=200):
-    """Round-off of an element force equation alone, at exactly given deformations, contact force 0.01 EI/l0^2."""
-    rng = np.random.default_rng(10)
-    exact_force = chord_contact.simply_supported(chord_contact.euler_bernoulli)
-    p = Properties(1.0, 0.0, 1.0, 1.0, 1.0, 0.0)
-    errors = []
-    for _ in range(samples):
-        near = distance * rng.uniform(1, 2)
-        xi = near if end == "i" else 1 - near
-        v = np.array([*0.05 * rng.normal(size=2), 0.0])
-        S, K, _ = exact_force(p, np.longdouble(xi), v.astype(np.longdouble))
-        v[2] = (0.01 - S[2]) / K[2, 2]
-        exact, _, _ = exact_force(p, np.longdouble(xi), v.astype(np.longdouble))
-        errors.append(float(np.abs(element_force(p, xi, v)[0] - exact).max()))
-    return np.median(errors)
-
-
-@pytest.mark.skipif(
-    np.finfo(np.longdouble).eps > 1e-18,
-    reason="the platform has no floating-point type beyond double precision",
-)
-def test_cantilever_gains_a_factor_at_its_clamp_and_loses_an_order_at_its_tip():
-    forces = {
-        "simple": chord_contact.simply_supported(chord_contact.euler_bernoulli),
-        "cantilever": cantilever.clamped(cantilever.euler_bernoulli),
-    }
-    distances = 10.0 ** -np.arange(2, 11)
-    slope, gain = {}, {}
-    for end in "ij":
-        errors = {
-            name: [evaluation_error(force, near, end) for near in distances] for name, force in forces.items()
-        }
-        for name in forces:
-            slope[name, end] = np.polyfit(np.log10(distances), np.log10(errors[name]), 1)[0]
-        gain[end] = np.median(np.array(errors["simple"]) / errors["cantilever"])
-    assert slope["simple", "i"] == pytest.approx(-2, abs=0.2)
-    assert slope["simple", "j"] == pytest.approx(-2, abs=0.2)
-    assert slope["cantilever", "i"] == pytest.approx(-2, abs=0.2)
-    assert slope["cantilever", "j"] == pytest.approx(-3, abs=0.2)
-    assert 1.5 < gain["i"] < 4
 
 
 ELEMENT_FORCES = {
@@ -375,7 +237,7 @@ ELEMENT_FORCES = {
 
 
 @pytest.mark.parametrize("name", ELEMENT_FORCES)
-@pytest.mark.parametrize("xi", [1e-3, 0.1, 0.37, 0.5, 0.93])
+@pytest.mark.parametrize("xi", [1e-3, 0.37, 0.93])
 def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
     """``g + C lam = 0`` with ``g = y_c - w(xi)``, the force normal to the chord, no bow: matrix and forces."""
     element_force, Phi = ELEMENT_FORCES[name]

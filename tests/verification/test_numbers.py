@@ -1,0 +1,116 @@
+"""Numbers of the pages: the table of errors on the main scene, and the contact force at its end over the coefficient of friction."""
+
+import json
+import sys
+from functools import cache
+
+import numpy as np
+import pytest
+
+from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
+from comparisons.errors import errors
+from comparisons.models import find, solve
+from comparisons.models.options import Options
+from comparisons.scene import load_scene
+from tests.stated import MARK, ROOT
+from tests.verification.structures import friction
+
+COLUMNS = ("force", "arc", "moment", "tip")
+ROWS = {
+    "timoshenko-10": PAPER[0],
+    "timoshenko-20": PAPER[1],
+    "timoshenko-50": PAPER[2],
+    "mixed-10": RUNS[3],
+    "mixed-20": MIXED,
+    "exact-1": RUNS[5],
+    "solid": SOLID,
+    "elastica": ELASTICA,
+}
+
+
+@cache
+def rod():
+    return solve(load_scene("ks-cantilever"), ROD.model)
+
+
+@pytest.mark.slow_at("solid", "timoshenko-50")
+@pytest.mark.parametrize("name", ROWS)
+def test_the_table_of_errors(name, stated):
+    """To half a unit of the last digit stated; what the exact elements leave is round-off, and bounded only."""
+    scene, run = load_scene("ks-cantilever"), ROWS[name]
+    response = solve(scene, run.model, run.options)
+    found = errors(response, rod(), scene)["path"]
+    stated(f"unknowns.{name}", response.unknowns)
+    stated(f"errors.{name}", *(found[column] for column in COLUMNS), bound=run.options.element == "exact")
+
+
+def test_the_readme_has_rows_of_this_table():
+    """Every model at least once."""
+    marks = MARK.findall((ROOT / "README.md").read_text())
+    rows = [ROWS[name.partition(".")[2]] for name in marks if name.startswith("errors.")]
+    models = {run.options.element or run.model for run in rows}
+    assert models == {"timoshenko", "mixed", "exact", "solid", "elastica"}
+
+
+@cache
+def exact():
+    return friction.forces_over_friction("rod")
+
+
+@pytest.mark.slow
+def test_the_force_of_the_rod_over_friction(stated):
+    """It falls with the friction at first, and grows again."""
+    stated("friction-over-mu.rod", *1e3 * exact())
+    assert exact()[0] == exact().max()
+    assert 0 < np.argmin(exact()) < len(exact()) - 1
+
+
+def off(*model):
+    return np.abs(friction.forces_over_friction(*model) / exact() - 1.0)
+
+
+@pytest.mark.slow
+def test_beams_over_friction(stated):
+    for elements in (10, 20):
+        stated(f"friction-over-mu.mixed-{elements}", *off("tsm", Options(elements=elements)))
+    stated("friction-over-mu.exact", off("tsm", Options(element="exact")).max(), bound=True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("material", ["st-venant-kirchhoff", "biot-linear"])
+def test_the_solid_over_friction(material, stated):
+    stated(f"friction-over-mu.solid-{material}", *off("solid", Options(mesh=(50, 2)), material))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(find("opensees").missing() is not None, reason="OpenSees is not installed")
+def test_opensees_over_friction_and_load_steps(tmp_path, stated):
+    """With 20 elements and 1,000 load steps; with a friction of .1 it stops where the stick ends.
+
+    It loses the contact in 10, 50 and 200 load steps, and reports success.
+    """
+
+    def force(response):
+        return float(response.contacts["pin->cantilever"].force[-1])
+
+    answers = [
+        solve(friction.rubbing(mu, 20), "opensees", Options(elements=20)) for mu in friction.COEFFICIENTS
+    ]
+    assert [response.status == "COMPLETED" for response in answers] == [True, False, True, True, True, True]
+    stated(
+        "friction-over-mu.opensees",
+        *np.delete(np.abs([force(answer) for answer in answers] / exact() - 1.0), 1),
+    )
+    found = []
+    for steps in (10, 50, 200, 1000, 2000):
+        words = [sys.executable, "-m", "comparisons.models.outside.adapters.opensees", str(steps)]
+        file = tmp_path / f"opensees-{steps}.toml"
+        file.write_text(
+            f'[program]\nname = "in-{steps}-steps"\ncommand = {json.dumps(words)}\nelements = [20]\n'
+        )
+        response = solve(friction.rubbing(0.3, 10), str(file), Options(elements=20))
+        assert response.reported_success
+        found.append(force(response))
+    assert found[:3] == [0.0, 0.0, 0.0]
+    right = exact()[friction.COEFFICIENTS.index(0.3)]
+    stated("friction-over-mu.steps", *(abs(force / right - 1.0) for force in found[3:]))
