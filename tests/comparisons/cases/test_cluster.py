@@ -14,10 +14,9 @@ from typing import Any
 import distributed
 import pytest
 
-from comparisons.cases import workers
 from comparisons.cli import main
-from tests.comparisons.cases.conftest import tiny
-from tests.comparisons.cases.test_command import CASES, histories, recorded, table, wait_for
+from tests.comparisons.cases.conftest import CASES, recorded, wait_for
+from tests.comparisons.cases.test_command import check_finished
 
 
 @pytest.fixture
@@ -29,12 +28,8 @@ def cluster() -> Iterator[Any]:
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_a_worker(cluster: Any, tmp_path: Path) -> None:
-    study, here, there = (
-        tiny(tmp_path / "tiny.toml", CASES // 3),
-        tmp_path / "here.sqlite",
-        tmp_path / "there.sqlite",
-    )
+def test_a_cluster_that_loses_a_worker(cluster: Any, tiny: Path, tmp_path: Path) -> None:
+    here, there = tmp_path / "here.sqlite", tmp_path / "there.sqlite"
     victim = next(iter(cluster.workers.values())).pid
     killed = list[int]()
 
@@ -45,22 +40,20 @@ def test_a_cluster_that_loses_a_worker(cluster: Any, tmp_path: Path) -> None:
 
     killer = Thread(target=kill)
     killer.start()
-    status = main(["study", str(study), "--results", str(there), "--cluster", cluster.scheduler_address])
+    status = main(["study", str(tiny), "--results", str(there), "--cluster", cluster.scheduler_address])
     killer.join()
     assert status == 0
     assert 3 <= killed[0] < CASES
-    assert main(["study", str(study), "--results", str(here), "--workers", "1"]) == 0
-    assert table(there) == table(here)
-    assert histories(there) == histories(here)
+    assert main(["study", str(tiny), "--results", str(here), "--workers", "1"]) == 0
+    check_finished(tiny, there, here)
 
 
+@pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
 def test_no_cluster_there(
-    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    address: str, tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(workers, "CLUSTER_PATIENCE", 0.5)
-    study = tiny(tmp_path / "tiny.toml", 2)
-    status = main(["study", str(study), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
+    status = main(["study", str(tiny), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
     assert status == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
@@ -89,9 +82,9 @@ def free_port() -> int:
 
 @pytest.mark.slow
 def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    tiny: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    study, file, port = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite", free_port()
+    file, port = tmp_path / "a.sqlite", free_port()
     address = f"tcp://127.0.0.1:{port}"
     with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
 
@@ -102,7 +95,7 @@ def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
         with dask("worker", address, "--nthreads", "1", "--no-nanny"):
             killer = Thread(target=kill)
             killer.start()
-            status = main(["study", str(study), "--results", str(file), "--cluster", address])
+            status = main(["study", str(tiny), "--results", str(file), "--cluster", address])
             killer.join()
     assert status == 2
     assert 3 <= recorded(file) < CASES

@@ -1,31 +1,34 @@
-"""The results file: claims, results, and every file that cannot be used."""
+"""The results file between runs, and what a case measures: what no command can bring about alone."""
 
 import os
-import sqlite3
+import pickle
 import subprocess
 import sys
-from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
-from importlib import metadata
-from multiprocessing import get_context
 from pathlib import Path
 from time import time
 
+import numpy as np
+import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
 import pytest
 
+# not public: the races of two runs, the death of an owner and a worker's exception cannot be timed from outside
+from comparisons.cases import Case, Measurement, measure, memory
 from comparisons.cases import owner as owners
-from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement, measure, unmeasured
+from comparisons.cases import run as run_module
+from comparisons.cases.measure import unmeasured
 from comparisons.cases.owner import Owner
-from comparisons.cases.results import read_results
 from comparisons.cases.store import WORKER_LOST, Store
+from comparisons.cases.workers import Workers
 from comparisons.files import OutputError
+from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from comparisons.version import version
-from tests.comparisons.cases.faults import write_many
+from tests.comparisons.cases.conftest import asked, crossval, recorded, rows
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 CASE = Case(scene=KS, model="tsm", options=Options(elements=3))
@@ -35,23 +38,6 @@ NOBODY = 65534
 @pytest.fixture(scope="module")
 def measured() -> Measurement:
     return measure(CASE, repeats=1)
-
-
-def intact(path: Path) -> int:
-    """Check the whole file; return its number of results."""
-    with closing(sqlite3.connect(path)) as connection:
-        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        (count,) = connection.execute("SELECT count(*) FROM result").fetchone()
-    return int(count)
-
-
-def test_a_result_comes_back_as_it_was(tmp_path: Path, measured: Measurement) -> None:
-    with Store(tmp_path / "a.sqlite") as store:
-        store.record(CASE.key, CASE, measured)
-        assert store.statuses() == {CASE.key: "COMPLETED"}
-    (result,) = read_results(tmp_path / "a.sqlite")
-    assert (result.key, result.scene, result.label) == (CASE.key, "ks-cantilever", CASE.label)
-    assert result.measurement.to_json() == measured.to_json()
 
 
 def test_two_runs_never_hold_the_same_case(tmp_path: Path, measured: Measurement) -> None:
@@ -67,43 +53,29 @@ def test_two_runs_never_hold_the_same_case(tmp_path: Path, measured: Measurement
         assert other.claim("b", limit=1).claimed == ["b"]
 
 
-@pytest.mark.slow
-def test_four_writers_share_the_cases(tmp_path: Path) -> None:
-    path, keys = tmp_path / "a.sqlite", 600
-    with ProcessPoolExecutor(4, mp_context=get_context("spawn")) as pool:
-        shares = list(pool.map(write_many, [str(path)] * 4, [keys] * 4))
-    assert sorted(key for share in shares for key in share) == [f"{n:05}" for n in range(keys)]
-    assert sum(bool(share) for share in shares) > 1, "one writer was alone"
-    assert intact(path) == keys
-
-
 def dead() -> int:
     child = subprocess.Popen([sys.executable, "-c", ""])
     child.wait()
     return child.pid
 
 
-@pytest.mark.parametrize(
-    ("owner", "heard", "free"),
-    [
-        (Owner.this_process, 0, False),
-        (lambda: replace(Owner.this_process(), pid=dead()), 0, True),
-        (lambda: replace(Owner.this_process(), born=0.0), 0, True),
-        (lambda: replace(Owner.this_process(), host="elsewhere", pid=dead()), 0, False),
-        (Owner.this_process, -owners.LEASE - 1, True),
-    ],
-    ids=["alive", "dead", "number used again", "another machine", "lease over"],
-)
-def test_claims_of_the_dead_are_free(
-    owner: Callable[[], Owner], heard: float, free: bool, tmp_path: Path
-) -> None:
-    with Store(tmp_path / "a.sqlite") as one, Store(tmp_path / "a.sqlite") as other:
+OWNERS: dict[str, tuple[Callable[[], Owner], float, bool]] = {
+    "alive": (Owner.this_process, 0, False),
+    "dead": (lambda: replace(Owner.this_process(), pid=dead()), 0, True),
+    "number used again": (lambda: replace(Owner.this_process(), born=0.0), 0, True),
+    "another machine": (lambda: replace(Owner.this_process(), host="elsewhere", pid=dead()), 0, False),
+    "lease over": (Owner.this_process, -owners.LEASE - 1, True),
+}
+
+
+@pytest.mark.parametrize("case", OWNERS)
+def test_claims_of_the_dead_are_free(case: str, tmp_path: Path) -> None:
+    owner, heard, free = OWNERS[case]
+    path, who = tmp_path / "a.sqlite", owner()
+    with Store(path) as one, Store(path) as other:
         one.claim("a", limit=1)
-        who = owner()
-        one._connection.execute(
-            "UPDATE run SET host = ?, pid = ?, born = ?, heard = ? WHERE id = ?",
-            (who.host, who.pid, who.born, time() + heard, one._run),
-        )
+        change = "UPDATE run SET host = ?, pid = ?, born = ?, heard = ? WHERE id = (SELECT min(id) FROM run)"
+        asked(path, change, who.host, who.pid, who.born, time() + heard)
         found = other.claim("a", limit=1)
         assert (found.claimed, found.taken) == (["a"], []) if free else ([], ["a"])
 
@@ -113,79 +85,49 @@ def test_a_settled_result_stands_and_a_lost_one_does_not(tmp_path: Path, measure
         store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
         store.record("a", CASE, measured)
         assert store.statuses() == {"a": "COMPLETED"}
-        store.record(
-            "a", CASE, replace(measured, response=replace(measured.response, status="STEP_TOO_SMALL"))
-        )
+        store.record("a", CASE, unmeasured("STEP_TOO_SMALL", ""))
         store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
         assert store.statuses() == {"a": "COMPLETED"}
-    assert intact(tmp_path / "a.sqlite") == 1
+
+
+def test_older_results_are_those_of_the_same_case(tmp_path: Path, measured: Measurement) -> None:
+    """One with a mesh file has none: nobody knows what was in it."""
+    path = tmp_path / "a.sqlite"
+    meshed = replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),)))
+    cases = {
+        "same": CASE,
+        "scene": replace(CASE, scene=replace(KS, load_parameters=3)),
+        "model": replace(CASE, model="rod", options=Options()),
+        "options": replace(CASE, options=Options(elements=4)),
+        "file": meshed,
+    }
+    with Store(path) as store:
+        store.record(CASE.key, CASE, measured)
+        store.record("file", meshed, measured)
+        asked(path, "UPDATE result SET version = '0.1.0'")
+        assert store.statuses() == {}
+        assert store.older(cases) == {"same": ("0.1.0", "COMPLETED")}
+        assert store.claim([CASE.key], limit=1).claimed == [CASE.key]
+        store.record(CASE.key, CASE, measured)
+        assert store.statuses() == {CASE.key: "COMPLETED"}
 
 
 def test_a_full_file_is_one_line_and_stays_whole(tmp_path: Path, measured: Measurement) -> None:
     path = tmp_path / "a.sqlite"
-    store = Store(path)
+    store, count = Store(path), 0
     store._connection.execute("PRAGMA max_page_count = 20")
-    recorded = 0
 
     def fill() -> None:
-        nonlocal recorded
+        nonlocal count
         with store:
-            while recorded < 100:
-                store.record(str(recorded), CASE, measured)
-                recorded += 1
+            while count < 100:
+                store.record(str(count), CASE, measured)
+                count += 1
 
     with pytest.raises(OutputError, match=r"a\.sqlite: cannot be written: database or disk is full$"):
         fill()
-    assert 0 < recorded == intact(path) == len(read_results(path))
-
-
-def other_database(path: Path) -> None:
-    connection = sqlite3.connect(path)
-    connection.execute("CREATE TABLE result (key TEXT)")
-    connection.close()
-
-
-def of_schema(path: Path, number: int) -> None:
-    with Store(path) as store:
-        store._connection.execute(f"PRAGMA user_version = {number}")
-
-
-@pytest.mark.parametrize(
-    ("make", "reason"),
-    [
-        (lambda path: path.write_text("key,status\n" * 100), "file is not a database"),
-        (other_database, "is no results file of crossval, but another SQLite database"),
-        (
-            lambda path: of_schema(path, 99),
-            "has schema 99, this version of crossval reads 3: choose another file",
-        ),
-        (
-            lambda path: of_schema(path, 1),
-            "has schema 1, this version of crossval reads 3: choose another file",
-        ),
-        (Path.mkdir, "is not a regular file|there is no such file"),
-    ],
-    ids=["text", "another database", "newer", "older", "folder"],
-)
-def test_other_files_are_refused_and_left_alone(
-    make: Callable[[Path], object], reason: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "a.sqlite"
-    make(path)
-    before = path.read_bytes() if path.is_file() else None
-    for use in (Store, read_results):
-        with pytest.raises(OutputError, match=reason):
-            use(path)
-    assert (path.read_bytes() if path.is_file() else None) == before
-    assert [item.name for item in tmp_path.iterdir()] == ["a.sqlite"]
-
-
-def test_no_file_is_no_results(tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match="there is no such file"):
-        read_results(tmp_path / "a.sqlite")
-    with pytest.raises(OutputError, match="there is no folder"):
-        Store(tmp_path / "none" / "a.sqlite")
-    assert not list(tmp_path.iterdir())
+    assert asked(path, "PRAGMA integrity_check") == [("ok",)]
+    assert 0 < count == recorded(path) == len(rows(path))
 
 
 def as_nobody(action: Callable[[], None]) -> bool:
@@ -205,7 +147,7 @@ def as_nobody(action: Callable[[], None]) -> bool:
 
 
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
-def test_a_folder_that_is_only_read(tmp_path: Path, measured: Measurement) -> None:
+def test_a_folder_that_is_only_read(tmp_path: Path, measured: Measurement, tiny: Path) -> None:
     path = tmp_path / "a.sqlite"
     with Store(path) as store:
         store.record(CASE.key, CASE, measured)
@@ -219,52 +161,46 @@ def test_a_folder_that_is_only_read(tmp_path: Path, measured: Measurement) -> No
         for file in (path, tmp_path / "new.sqlite"):
             with pytest.raises(OutputError, match="cannot be written: Permission denied"):
                 Store(file)
-        assert len(read_results(path)) == 1
+            assert crossval("study", tiny, "--results", file) == 2
+        assert len(rows(path)) == 1
 
     try:
         assert as_nobody(use)
     finally:
         tmp_path.chmod(0o755)
     assert path.read_bytes() == before
-    assert [item.name for item in tmp_path.iterdir()] == ["a.sqlite"]
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["a.sqlite", "tiny.toml"]
 
 
-def of_version(path: Path, version: str, *, key: str | None = None) -> None:
-    """Let the results in a file be those of another version, whose keys differ."""
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("UPDATE result SET version = ?, key = coalesce(?, key)", (version, key))
+@contextmanager
+def thread() -> Iterator[Executor]:
+    with ThreadPoolExecutor(1) as executor:
+        yield executor
 
 
-@pytest.mark.parametrize("key", [None, "other"])
-def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
+def test_a_case_that_raises_is_listed_and_done_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, workers = tmp_path / "a.sqlite", Workers(width=1, start=thread)
+    cases = [CASE, replace(CASE, options=Options(elements=4))]
+    right = run_module.solve
+
+    def raising(key: str, case: Case, **how: bool) -> Measurement:
+        if case == CASE:
+            raise ZeroDivisionError("a bug\nin two lines")
+        return right(key, case, repeats=0, process=False)
+
+    monkeypatch.setattr(run_module, "solve", raising)
     with Store(path) as store:
-        store.record(CASE.key, CASE, replace(measured, response=replace(measured.response, cutbacks=12345)))
-    of_version(path, "0.1.0", key=key)
-    with Store(path) as store:
-        assert store.statuses() == {}
-        assert store.older({CASE.key: CASE}) == {CASE.key: ("0.1.0", "COMPLETED")}
-        assert store.claim([CASE.key], limit=1).claimed == [CASE.key]
-        store.record(CASE.key, CASE, measured)
-        assert store.statuses() == {CASE.key: "COMPLETED"}
-    found = {result.version: result.measurement.response.cutbacks for result in read_results(path)}
-    assert found[version()] == measured.response.cutbacks
-    assert ("0.1.0" in found) is (key is not None)
-
-
-def test_older_results_are_those_of_the_same_case(tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
-    cases = {
-        "scene": replace(CASE, scene=replace(KS, load_parameters=3)),
-        "model": replace(CASE, model="rod", options=Options()),
-        "options": replace(CASE, options=Options(elements=4)),
-        "file": replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),))),
-    }
-    with Store(path) as store:
-        store.record(CASE.key, CASE, measured)
-        store.record("file", cases["file"], measured)
-        of_version(path.resolve(), "0.1.0")
-        assert store.older({"same": CASE, **cases}) == {"same": ("0.1.0", "COMPLETED")}
+        tally = run_module.run(cases, store, workers, repeats=0)
+        assert (tally.statuses, tally.failed) == ({"COMPLETED": 1, "ERROR": 1}, 1)
+        assert [row["message"] for row in rows(path)][:1] == ["ZeroDivisionError: a bug in two lines"]
+        monkeypatch.undo()
+        reported = list[run_module.Tally]()
+        assert run_module.run(cases, store, workers, repeats=0, progress=reported.append).failed == 0
+        # on a slow machine the beat reports the same tally again
+        assert list(dict.fromkeys((one.done, one.total) for one in reported)) == [(1, 2), (2, 2)]
+        assert reported[-1].left == 0
+    with pytest.raises(RuntimeError, match="another version"):
+        run_module.solve("0" * 64, CASE, repeats=1, process=False)
 
 
 def test_the_version_tells_sources_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -277,4 +213,67 @@ def test_the_version_tells_sources_apart(tmp_path: Path, monkeypatch: pytest.Mon
         (package / "__init__.py").write_text(text)
         seen.append(version.__wrapped__())
     assert seen[0] == seen[2] != seen[1]
-    assert seen[0].startswith(f"{metadata.version('tsm-crossval')}+")
+
+
+def test_the_key_depends_on_everything_that_the_result_does(tmp_path: Path) -> None:
+    file = tmp_path / "a.msh"
+    file.write_text("one")
+    meshed = replace(
+        CASE, model="solid", scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file=str(file)),))
+    )
+    others = [
+        replace(CASE, options=Options(elements=5)),
+        replace(CASE, options=Options(elements=3, element="timoshenko")),
+        replace(CASE, model="solid", options=Options()),
+        replace(CASE, scene=replace(KS, load_parameters=6)),
+        replace(CASE, scene=replace(KS, contacts=(replace(KS.contacts[0], penalty=1e3),))),
+        meshed,
+    ]
+    keys = {CASE.key, *(other.key for other in others)}
+    file.write_text("two")
+    assert len({*keys, meshed.key}) == 2 + len(others)
+    again = pickle.loads(pickle.dumps(CASE))  # noqa: S301 made here
+    assert (again, again.key) == (CASE, CASE.key)
+
+
+SOFT = replace(KS, contacts=(replace(KS.contacts[0], penalty=1e-3),))
+ENDS = {
+    "COMPLETED": CASE,
+    "REFUSED": replace(CASE, options=Options(mesh=(2, 1))),
+    "CUTBACK_FLOOR": Case(scene=SOFT, model="solid", options=Options(mesh=(10, 1))),
+}
+
+
+@pytest.mark.slow_at("CUTBACK_FLOOR")
+@pytest.mark.parametrize("status", ENDS)
+def test_a_measurement_is_the_response_and_comes_back_as_it_was(status: str) -> None:
+    """Without a timed run it has neither axes nor a verdict."""
+    case = ENDS[status]
+    timed, found = measure(case, repeats=1), measure(case, repeats=0)
+    for one in (timed, found):
+        again = Measurement.from_json(one.to_json())
+        assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
+        assert [type(value) for value in vars(again.response).values()] == [
+            type(value) for value in vars(one.response).values()
+        ]
+    assert (found.response.status, found.response.completed) == (status, status == "COMPLETED")
+    assert found.verdict == ""
+    if status == "COMPLETED":
+        response = solve(case.scene, case.model, case.options)
+        assert (timed.verdict, timed.repeats) == ("CERTIFIED", 1)
+        assert timed.response.iterations == response.newton_iterations.sum()
+        assert np.array_equal(timed.response.tips["cantilever"], response.tips["cantilever"])
+        line = timed.response.axis_line("cantilever", 1)[1]
+        assert line.shape == (101, 2)
+        assert line[[0, -1]] == pytest.approx(np.array([[0, 0], response.tips["cantilever"][1]]), abs=1e-3)
+        assert len(found.to_json()) < len(timed.to_json()) / 5
+
+
+def test_peak_memory_without_proc_and_resource(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows: psutil tells how much memory there is."""
+    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
+    monkeypatch.setitem(sys.modules, "resource", None)
+    size = 64 * 2**20
+    kept, rise = memory.with_peak_memory(lambda: np.ones(size // 8))
+    assert 0.9 * size < rise < 1.5 * size
+    assert kept.nbytes == size
