@@ -1,4 +1,4 @@
-"""Every verdict on the paper follows from numbers: each judge says something else about other numbers."""
+"""Every verdict on the paper follows from numbers: each judge says something else about other numbers; the floor of round-off below them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,25 +8,32 @@ from typing import Any
 import numpy as np
 import pytest
 
+# not public: judges of numbers that no run gives, and the floor of an element's forces, which no solution shows
 from comparisons.claims.paper import claims_critical_area as critical
 from comparisons.claims.paper import claims_examples as examples
+from comparisons.claims.paper.approach import NEAREST, Approach, approaches
 from comparisons.claims.paper.claims import CLAIMS, COARSE, Findings, claims_text, judged
 from comparisons.claims.paper.critical_area import (
     PRINTED,
     PRINTED_SHEAR_PSI,
     PSI,
     RATIOS,
+    SCENE,
     CriticalAreas,
     Floor,
     Measured,
 )
 from comparisons.claims.paper.double_beam import Attempt, Check, Happened, History
+from comparisons.claims.paper.force_floor import force_floor
 from comparisons.claims.paper.ks_shapes import Run8
 from comparisons.claims.paper.turned_frame import NAME as TURNED
 from comparisons.claims.paper.verdict import Verdict, in_size, over_readings
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
+from comparisons.models.translate import to_structure
 from comparisons.quantities import KEPT
+from comparisons.scene import load_scene
+from tests.comparisons.claims.paper.test_reproduce import PAPER as STATED
 
 REPRODUCED, IN_DIRECTION, NOT, OPEN = (
     Verdict.REPRODUCED,
@@ -116,19 +123,6 @@ ON_CRITICAL_AREA: list[tuple[Callable[[Any], Any], CriticalAreas, Verdict]] = [
 ]
 
 
-@pytest.mark.parametrize(("judge", "study", "verdict"), ON_CRITICAL_AREA)
-def test_critical_area(judge: Any, study: CriticalAreas, verdict: Verdict) -> None:
-    assert judge(study).verdict is verdict
-
-
-def test_direction_and_order_agree() -> None:
-    """Both look at the same pairs: where the order is reproduced, the cantilever's area is the smaller one."""
-    for part in (0.3, 0.9, 0.999, 1.0, 1.001, 2.0):
-        study = areas({CANTILEVER: (part * 0.004, part * 0.04)})
-        smaller = critical.cantilever_reduces(study).verdict is not NOT
-        assert (critical.order(study).verdict is REPRODUCED) == smaller
-
-
 def shapes(
     status: str = "COMPLETED", error: tuple[float, ...] = (4e-3, 1e-3, 5e-4), force: float = 3.0
 ) -> Any:
@@ -169,17 +163,12 @@ ON_SHAPES: list[tuple[Callable[[Any], Any], Any, Verdict]] = [
 ]
 
 
-@pytest.mark.parametrize(("judge", "study", "verdict"), ON_SHAPES)
-def test_shapes(judge: Any, study: Any, verdict: Verdict) -> None:
-    assert judge(study).verdict is verdict
-
-
-def test_cost() -> None:
+def costs(seconds: float) -> Any:
+    """The same study with other seconds of the paper's element."""
     study = shapes()
-    assert examples.cheaper(study).verdict is REPRODUCED
-    slow = replace(study.run("", PAPER[1].label), seconds=2.0)
-    runs = {one.label: one for one in study.runs} | {slow.label: slow}
-    assert examples.cheaper(SimpleNamespace(run=lambda _, label: runs[label])).verdict is NOT
+    runs = {one.label: one for one in study.runs}
+    runs[PAPER[1].label] = replace(runs[PAPER[1].label], seconds=seconds)
+    return SimpleNamespace(run=lambda _, label: runs[label])
 
 
 def lifts(error: float) -> Any:
@@ -187,11 +176,6 @@ def lifts(error: float) -> Any:
         slip_off_error=lambda _: error, reached={TIMOSHENKO: 1.0}, rod_slip_off=1.0, force_error=error
     )
     return SimpleNamespace(lifts=(lift, lift))
-
-
-def test_slip_offs() -> None:
-    assert examples.followed(lifts(1e-5)).verdict is REPRODUCED
-    assert examples.followed(lifts(1e-3)).verdict is NOT
 
 
 EXACT = {"touch": 0.15, "hand-over": 0.54, "slip-off": 0.74}
@@ -274,19 +258,42 @@ ON_BEAMS: list[tuple[Callable[[Any], Any], Any, Verdict]] = [
 ]
 
 
-@pytest.mark.parametrize(("judge", "study", "verdict"), ON_BEAMS)
-def test_beams(judge: Any, study: Any, verdict: Verdict) -> None:
+JUDGED = [
+    *ON_CRITICAL_AREA,
+    *ON_SHAPES,
+    *ON_BEAMS,
+    (examples.cheaper, costs(0.1), REPRODUCED),
+    (examples.cheaper, costs(2.0), NOT),
+    (examples.followed, lifts(1e-5), REPRODUCED),
+    (examples.followed, lifts(1e-3), NOT),
+]
+
+
+@pytest.mark.parametrize(("judge", "study", "verdict"), JUDGED)
+def test_a_verdict_follows_from_the_numbers(judge: Any, study: Any, verdict: Verdict) -> None:
     assert judge(study).verdict is verdict
 
 
-def test_no_judge_always_says_the_same() -> None:
-    """Every claim's judge has given at least two verdicts above."""
+def test_every_claim_is_judged_once_and_no_judge_always_says_the_same() -> None:
+    """Two of the 25 claims are made twice in the paper."""
     given: dict[str, set[Verdict]] = {}
-    for judge, _, verdict in (*ON_CRITICAL_AREA, *ON_SHAPES, *ON_BEAMS):
+    for judge, _, verdict in JUDGED:
         given.setdefault(judge.__qualname__, set()).add(verdict)
-    tested_apart = {examples.cheaper.__qualname__, examples.followed.__qualname__}
-    assert {claim.judge.__qualname__ for claim in CLAIMS} == set(given) | tested_apart
+    assert {claim.judge.__qualname__ for claim in CLAIMS} == set(given)
     assert all(len(verdicts) > 1 for verdicts in given.values())
+    for claim, (where, words, figure, _) in zip(CLAIMS, STATED, strict=True):
+        assert (claim.source, claim.figure, len(claim.stated)) == (where, figure, len(words))
+        assert all(word in text for word, (_, text) in zip(words, claim.stated, strict=True))
+    assert (len(CLAIMS), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
+    assert "0 of 25 claims judged (27 statements)." in claims_text(Findings(quick=True))
+
+
+def test_direction_and_order_agree() -> None:
+    """Both look at the same pairs: where the order is reproduced, the cantilever's area is the smaller one."""
+    for part in (0.3, 0.9, 0.999, 1.0, 1.001, 2.0):
+        study = areas({CANTILEVER: (part * 0.004, part * 0.04)})
+        smaller = critical.cantilever_reduces(study).verdict is not NOT
+        assert (critical.order(study).verdict is REPRODUCED) == smaller
 
 
 def test_readings() -> None:
@@ -301,17 +308,6 @@ def test_readings() -> None:
     assert in_size(direction=False, size=True, number="", why="").verdict is NOT
 
 
-def test_a_claim_made_twice_counts_once() -> None:
-    assert len(CLAIMS) == 25
-    assert sum(len(claim.stated) for claim in CLAIMS) == 27
-    assert len({claim.judge for claim in CLAIMS}) == len(CLAIMS)
-    twice = {claim.judge.__name__: claim.source for claim in CLAIMS if len(claim.stated) > 1}
-    assert twice == {
-        "shear_effective": "abstract; conclusion 1",
-        "passes_every_edge": "4.3; conclusion 3",
-    }
-
-
 def test_coarse_settings_decide_nothing() -> None:
     full, quick = (Findings(quick=quick, fig7b=areas()) for quick in (False, True))
     assert "fig7b" in COARSE
@@ -322,3 +318,86 @@ def test_coarse_settings_decide_nothing() -> None:
         assert f"With coarse settings: {sure.verdict}." in open_.why
     assert "13 of 25 claims judged (27 statements): 13 provisional" in claims_text(quick)
     assert "provisional" not in claims_text(full)
+
+
+def ways(element: str, tolerance: float) -> tuple[Approach, ...]:
+    """The ways of the contact to the beam's nodes at a fixed tolerance."""
+    scene = load_scene(SCENE)
+    scene = replace(scene, pins=(replace(scene.pins[0], start=(4.2, 0.0)),))
+    return approaches(to_structure(scene, element=element), tolerance)
+
+
+@pytest.mark.slow
+def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance() -> None:
+    """``b^-3`` and ``b^-1``: a tolerance 1e4 times sharper widens it by about 20 and 1e4; `mixed` has none."""
+    for element, factor in ((SIMPLE, 1e4 ** (1 / 3)), (TIMOSHENKO, 1e4)):
+        loose, sharp = (ways(element, tolerance)[0].smallest for tolerance in (1e-7, 1e-11))
+        assert factor / 6 < sharp / loose < 6 * factor
+    for tolerance in (1e-6, 1e-12):
+        assert all(way.smallest <= NEAREST for way in ways(MIXED, tolerance))
+
+
+def test_the_way_ends_where_the_pin_slips_off() -> None:
+    """Section 4.1: the exact rod slips off a pin at 4.2 m at 1.4716026278 m."""
+    found = ways(MIXED, 1e-9)
+    assert [way.node for way in found] == [4.25, 4.5]
+    assert all(way.smallest <= NEAREST for way in found)
+    last = found[-1]
+    assert 1.8 * last.load_parameter[-1] == pytest.approx(1.4716026278, rel=2e-5)
+    assert np.all(np.diff(last.load_parameter) > 0)
+    assert np.all(np.diff(last.ratio) < 0)
+
+
+def slope(element: str, end: Any, ratios: Any = 10.0 ** -np.arange(1, 14, 2), **options: float) -> float:
+    floors = [force_floor(element, float(ratio), end=end, samples=25, **options) for ratio in ratios]
+    return float(np.polyfit(np.log10(ratios), np.log10(floors), 1)[0])
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+@pytest.mark.parametrize("element", [*SLOPES, "mixed-no-bow"])
+def test_slope(element: str, end: str) -> None:
+    expected = SLOPES.get(element, 0.0)
+    assert slope(element, end) == pytest.approx(expected, abs={-3.0: 0.3, -1.0: 0.2, 0.0: 0.1}[expected])
+
+
+def test_timoshenko_is_euler_bernoulli_until_the_distance_falls_below_the_shear_length() -> None:
+    """``sqrt(Psi)`` = 1e-3 of the element: the same cubic floor above, a linear one below."""
+    above = [force_floor(name, 1e-2, Psi=1e-6, samples=200) for name in (TIMOSHENKO, SIMPLE)]
+    assert above[0] == pytest.approx(above[1], rel=0.25)
+    assert slope(TIMOSHENKO, "start", 10.0 ** -np.arange(4, 13), Psi=1e-6) == pytest.approx(-1, abs=0.2)
+
+
+def test_mixed_has_the_floor_of_mid_element_everywhere() -> None:
+    middle = force_floor(MIXED, 0.5)
+    for end, ratio in (
+        ("start", 0.0),
+        ("end", 0.0),
+        ("start", 1e-300),
+        ("end", 1e-16),
+        ("start", 1e-8),
+        ("end", 1e-2),
+    ):
+        assert force_floor(MIXED, ratio, end=end) <= 1.5 * middle
+
+
+@pytest.mark.parametrize("elements", [10, 100, 1000])
+def test_the_size_is_the_contact_stiffness_times_the_last_bit_of_a_coordinate(elements: int) -> None:
+    """``3 EI/b^3`` times ``eps L/10`` (half a last bit, root mean square, of coordinates up to L), in EI/L^2."""
+    ratio = 1e-4
+    expected = 3 / ratio**3 * np.finfo(float).eps * elements / 10 * elements**2
+    floor = force_floor(SIMPLE, ratio, elements=elements, samples=200)
+    assert 0.5 < floor / expected < 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "field"),
+    [
+        (("spring", 0.1), {}, "element"),
+        ((MIXED, 1.5), {}, "ratio"),
+        ((MIXED, float("nan")), {}, "ratio"),
+        *(((MIXED, 0.1), {name: value}, name) for name, value in {"end": "middle", "Psi": 0.0, "elements": 0, "samples": 0}.items()),
+    ],
+)  # fmt: skip
+def test_the_input_of_a_floor_is_checked(arguments: Any, options: Any, field: str) -> None:
+    with pytest.raises(ValueError, match=field):
+        force_floor(*arguments, **options)
