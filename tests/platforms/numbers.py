@@ -73,7 +73,6 @@ def versions() -> str:
 
 
 def main() -> int:
-    """Compare, or store."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="store the numbers")
     given = parser.parse_args()

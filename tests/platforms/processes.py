@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import time
 
+# not public: the lock of a folder and the life of a process, without a scene to solve
 from comparisons.cases.owner import Owner
 from comparisons.files import alone_in
 
@@ -60,7 +61,6 @@ def check(folder: Path) -> None:
 
 
 def main() -> int:
-    """Check, and say on which versions."""
     with TemporaryDirectory() as folder:
         check(Path(folder))
     print(f"psutil {metadata.version('psutil')}: locks end with their processes")

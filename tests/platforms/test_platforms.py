@@ -1,11 +1,13 @@
-"""The numbers of this platform are those stored."""
+"""The numbers of this platform are those stored; locks and processes live as studies need."""
 
 import copy
 import json
+from pathlib import Path
 
 import pytest
 
 from tests.platforms.numbers import BOUND, STORED, computed, differences
+from tests.platforms.processes import check
 
 
 @pytest.mark.slow
@@ -25,3 +27,7 @@ def test_differences_are_seen(stated) -> None:
         apart, name = max(differences(other, stored))
         assert apart > BOUND
         assert name == "force of pin->cantilever, ks-cantilever, rod"
+
+
+def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
+    check(tmp_path)
