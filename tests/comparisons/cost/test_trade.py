@@ -13,13 +13,13 @@ from comparisons.cases import Case
 # not public: the least of known seconds and the order of known errors, which no measured time can show
 from comparisons.cases.measure import unmeasured
 from comparisons.cli import main
-from comparisons.cost.cases import family, limit_cases, load_steps, refined, sweep_cases
+from comparisons.cost.cases import limit_cases, load_steps, refined, sweep_cases
 from comparisons.cost.fits import convergence, pareto, power_law
 from comparisons.cost.limit import end_state, extrapolated
 from comparisons.cost.orders import orders
 from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
 from comparisons.cost.references import NoReferenceError, Reference, best_reference, reference_cases
-from comparisons.errors import error_histories, errors, scales
+from comparisons.errors import errors, scales
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
@@ -47,7 +47,8 @@ def test_a_front_is_what_nothing_beats() -> None:
     assert pareto([], []) == []
 
 
-def test_power_laws() -> None:
+def test_exponents_and_orders() -> None:
+    """An order is that of the finest four above the floor: not from a coarse mesh that is right by chance, nor from round-off."""
     fit = power_law(list(N), list(3.0 * N**1.5))
     assert fit is not None
     assert (fit.exponent, fit.factor) == pytest.approx((1.5, 3.0), rel=1e-12)
@@ -55,12 +56,8 @@ def test_power_laws() -> None:
     assert fit.scatter < 1e-12
     for y in ([1.0, 2.0], [1.0, 0.0, 2.0]):
         assert power_law([1.0, 2.0, 4.0][: len(y)], y) is None
-
-
-def test_an_order_is_that_of_the_finest_four_above_the_floor() -> None:
     spoilt = N**-4.0
-    spoilt[0] = 1.1e-4  # by chance
-    spoilt[4] = spoilt[3] / 1.5  # round-off
+    spoilt[0], spoilt[4] = 1.1e-4, spoilt[3] / 1.5
     cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
     for order, error, where in (*cases, (4.0, spoilt, (10.0, 40.0, 3))):
         fit = convergence(list(N), list(error), 0.0)
@@ -97,27 +94,24 @@ def test_the_limit_of_a_series_of_any_order(order: float) -> None:
     """Supports have a limit of their forces where there is no contact; a series that does not converge has its last member."""
     series, exact = [response_of(h, order) for h in (0.2, 0.1, 0.05)], response_of(0.0)
     found, held = extrapolated(series), extrapolated([replace(one, contacts={}) for one in series])
-    contact, limit = found.contacts[PAIR], exact.contacts[PAIR]
-    pairs = [
-        (contact.force, limit.force),
-        (contact.arc_position, limit.arc_position),
-        (found.supports[CLAMP].moment, exact.supports[CLAMP].moment),
-        (held.supports[CLAMP].force, exact.supports[CLAMP].force),
-        (held.supports[TIP].force, exact.supports[TIP].force),
-        (found.material_force[BEAM], exact.material_force[BEAM]),
-        (found.tips[BEAM], exact.tips[BEAM]),
-        *((found.axis_line(BEAM, k)[1], exact.axis_line(BEAM, k)[1]) for k in range(5)),
-    ]
-    for one, other in pairs:
-        assert one == pytest.approx(other, abs=1e-12, nan_ok=True)
+    for read in (
+        lambda one: one.supports[CLAMP].moment,
+        lambda one: one.material_force[BEAM],
+        lambda one: one.tips[BEAM],
+        lambda one: np.array([one.axis_line(BEAM, k)[1] for k in range(5)]),
+        lambda one: one.contacts[PAIR].force if one.contacts else one.supports[CLAMP].force,
+        lambda one: one.contacts[PAIR].arc_position if one.contacts else one.supports[TIP].force,
+    ):
+        assert read(found) == pytest.approx(read(exact), abs=1e-12, nan_ok=True)
+        assert read(held) == pytest.approx(read(replace(exact, contacts={})), abs=1e-12)
     rest = extrapolated([response_of(h) for h in (0.05, 0.06, 0.1)])
     assert np.array_equal(rest.contacts[PAIR].force, response_of(0.1).contacts[PAIR].force)
 
 
 def test_errors_are_relative_to_the_reference_and_the_length() -> None:
+    """The end state is the last with a force."""
     reference, found = response_of(0.0), response_of(0.1)
-    scale = scales(reference)
-    assert (scale.force, scale.moment) == (5.0, 10.0)
+    assert (scales(reference).force, scales(reference).moment) == (5.0, 10.0)
     table = errors(found, reference, KS, end=end_state(reference))
     expected = {"force": 0.01, "arc": 0.05, "friction": 0.01 / 1.01, "moment": 0.002, "tip": 0.05}
     shape = {"shape": 0.01 * np.sqrt(2.0), "shape_mean": 0.005 * np.sqrt(2.0)}
@@ -126,129 +120,83 @@ def test_errors_are_relative_to_the_reference_and_the_length() -> None:
     held, exact = replace(found, contacts={}), replace(reference, contacts={})
     relative = 0.01 * np.sqrt(2) / np.hypot(8, 9)
     assert errors(held, exact, load_scene("ks-tied-tip"))["path"]["force"] == pytest.approx(relative)
-    few = replace(found, load_parameter=TIMES[:2] + np.array([0.0, 0.01]))
-    shared, histories = error_histories(few, reference, KS)
-    assert shared.tolist() == [0.2]
-    assert histories["force"] == pytest.approx(0.01 / 5.0)
-    assert np.isnan([*errors(few, reference, KS)["path"].values()]).all()
-
-
-def test_the_end_state_is_the_last_with_a_force() -> None:
-    reference = response_of(0.0)
     for force, end in ((np.where(TIMES > 0.7, 0.0, TIMES), 0.6), (np.zeros(5), 1.0)):
         contact = replace(reference.contacts[PAIR], force=force)
         assert end_state(replace(reference, contacts={PAIR: contact})) == end
 
 
-@pytest.mark.parametrize("quick", [False, True])
-def test_the_cases_of_a_sweep_are_complete_and_once(quick: bool) -> None:
-    cases = sweep_cases(KS, quick=quick)
-    assert len({case.key for case in cases}) == len(cases) == len(set(cases))
-    assert len(cases) >= (40 if quick else 75)
-    assert {case.model for case in cases} == {"tsm", "solid", "elastica"} < set(MODELS)
-    solids = [case for case in cases if case.model == "solid"]
-    assert {case.scene.beams[0].solid_element for case in solids} == {"Q1", "Q2", "Q2-full"}
-    assert len({case.scene.contacts[0].penalty for case in solids}) > 2
-    assert {case.scene.load_parameters for case in cases} >= {1, 10}
-    assert set(limit_cases(KS, quick=quick)) <= set(cases)
-
-
-def test_settings_hit_a_part_of_the_load_parameters_and_are_refined_alike() -> None:
-    for count, steps in ((50, (1, 5, 10, 50)), (76, (1, 4, 19, 76)), (7, (1, 7))):
-        assert load_steps(replace(KS, load_parameters=count)) == steps
-    cases = sweep_cases(KS)
+def test_the_cases_of_a_sweep_are_complete_and_once() -> None:
+    """Load steps hit a part of the scene's load parameters; families are refined alike."""
+    for quick, least in ((True, 40), (False, 75)):
+        cases = sweep_cases(KS, quick=quick)
+        assert least <= len(cases) == len({case.key for case in cases}) == len(set(cases))
+        assert {case.model for case in cases} == {"tsm", "solid", "elastica"} < set(MODELS)
+        solids = [case for case in cases if case.model == "solid"]
+        assert {case.scene.beams[0].solid_element for case in solids} == {"Q1", "Q2", "Q2-full"}
+        assert len({case.scene.contacts[0].penalty for case in solids}) > 2
+        assert {case.scene.load_parameters for case in cases} >= {1, 10}
+        assert set(limit_cases(KS, quick=quick)) <= set(cases)
     base = Case(scene=KS, model="solid", options=Options(mesh=(25, 1)))
     assert [case.options.mesh for case in refined(base, cases)] == [(25, 1), (50, 2), (100, 4), (200, 8)]
     beams = refined(Case(scene=KS, model="tsm", options=Options(element="mixed", elements=5)), cases)
     assert [case.options.elements for case in beams] == [2, 3, 5, 10, 20, 40, 80, 160]
-    assert {family(case) for case in beams} == {"TSM mixed"}
+    for count, steps in ((50, (1, 5, 10, 50)), (76, (1, 4, 19, 76)), (7, (1, 7))):
+        assert load_steps(replace(KS, load_parameters=count)) == steps
 
 
-def point(case: Case, seconds: float, error: float, own: float) -> Point:
+def point(case: Case, seconds: float, error: float, own: float, status: str = "COMPLETED") -> Point:
     """A case with known seconds, unknowns and errors."""
-    tables = [{scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (error, own)]
-    made = unmeasured("COMPLETED", "")
-    response = replace(made.response, completed=True, unknowns=round(100 * seconds))
-    return Point(
-        case=case,
-        measured=replace(made, response=response, seconds=seconds),
-        errors=tables[0],
-        own_errors=tables[1],
-    )
+    own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
+    made = unmeasured(status, "")
+    response = replace(made.response, completed=status == "COMPLETED", unknowns=round(100 * seconds))
+    measured = replace(made, response=response, seconds=seconds)
+    return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
 
 
 def traded(points: list[Point]) -> Trade:
     """A trade-off whose reference is known to round-off, the solid's limit to 1e-4."""
-    response = response_of(0.0)
-    known = [{scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (1e-15, 1e-4)]
-    reference, limit = (
-        Reference(
-            response=response,
-            scene=KS,
-            scale=scales(response),
-            end=1.0,
-            uncertainty=one,
-            name="",
-            sentence="",
+    one = response_of(0.0)
+
+    def known(to: float) -> Reference:
+        table = {scope: dict.fromkeys(KEPT, to) for scope in SCOPES}
+        return Reference(
+            response=one, scene=KS, scale=scales(one), end=1.0, uncertainty=table, name="", sentence=""
         )
-        for one in known
-    )
-    return Trade(scene=KS, points=points, reference=reference, limit=limit)
+
+    return Trade(scene=KS, points=points, reference=known(1e-15), limit=known(1e-4))
 
 
 def test_the_cheapest_settings_their_ratio_and_the_front() -> None:
+    """A coarse solid that hits the reference by chance does not count; a front ends at the uncertainty of the limit."""
     solid, beam = Case(scene=KS, model="solid"), Case(scene=KS, model="tsm")
-    once = replace(solid, scene=replace(KS, load_parameters=1))
-    stopped = point(beam, 0.5, 0.0, 0.0)
-    stopped = replace(
-        stopped,
-        measured=replace(
-            stopped.measured, response=replace(stopped.measured.response, status="LEFT_OUT", completed=False)
-        ),
-    )
-    made = traded(
-        [
-            point(beam, 1.0, 1e-2, 1e-2),
-            point(beam, 2.0, 1e-4, 1e-4),
-            point(beam, 3.0, 1e-3, 1e-3),
-            point(solid, 10.0, 1e-3, 3e-2),
-            point(solid, 30.0, 3e-2, 1e-3),
-            point(solid, 90.0, 3e-2, 1e-5),
-            point(once, 5.0, 1e-5, 1e-5),
-            stopped,
-        ]
-    )
+    beams = [point(beam, seconds, error, error) for seconds, error in ((1.0, 1e-2), (2.0, 1e-4), (3.0, 1e-3))]
+    solids = [(10.0, 1e-3, 3e-2), (30.0, 3e-2, 1e-3), (90.0, 3e-2, 1e-5)]
+    once = point(replace(solid, scene=replace(KS, load_parameters=1)), 5.0, 1e-5, 1e-5)
+    stopped = point(beam, 0.5, 0.0, 0.0, "LEFT_OUT")
+    made = traded([*beams, *(point(solid, *one) for one in solids), once, stopped])
     path = [cheapest(made, "path", "force", target) for target in TARGETS]
     assert [one.tsm and one.tsm.measured.seconds for one in path] == [1.0, 1.0, 2.0, 2.0, None]
     assert [one.solid and one.solid.measured.seconds for one in path] == [10.0, 30.0, 30.0, 90.0, None]
     assert [one.ratio for one in path[:4]] == [10.0, 30.0, 15.0, 45.0]
     assert [one.untold for one in path] == [False, False, False, False, True]
-    # a coarse solid that hits the reference by chance does not count
     against = [one.solid_against_reference for one in path]
     assert [one and one.measured.seconds for one in against] == [10.0, None, None, None, None]
     assert cheapest(made, "end", "force", 1e-3).ratio == 2.5
     assert cheapest(replace(made, limit=None), "path", "force", 1e-2).untold
-    beams = front(made, "tsm", "path", "force", "seconds")
-    assert [(one.cost, one.error) for one in beams] == [(1.0, 1e-2), (2.0, 1e-4)]
-    # a front ends at the uncertainty of the limit
+    found = front(made, "tsm", "path", "force", "seconds")
+    assert [(one.cost, one.error) for one in found] == [(1.0, 1e-2), (2.0, 1e-4)]
     assert [one.cost for one in front(made, "solid", "path", "force", "unknowns")] == [1000, 3000, 9000]
     assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
 
 
-def test_orders_and_exponents_of_families() -> None:
+def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop() -> None:
     counts = (2, 3, 5, 10, 20, 40, 80, 160)
-    cases = [
-        Case(scene=KS, model="tsm", options=Options(element="mixed", elements=count)) for count in counts
-    ]
-    made = traded(
-        [point(case, n, 0.1 * n**-4.0, 0.1 * n**-4.0) for case, n in zip(cases, counts, strict=True)]
-    )
+    cases = [Case(scene=KS, model="tsm", options=Options(element="mixed", elements=n)) for n in counts]
+    errors_of = [0.1 * n**-4.0 for n in counts]
+    made = traded([point(case, n, e, e) for case, n, e in zip(cases, counts, errors_of, strict=True)])
     (row,) = orders(made, "force")
     assert (row["family"], row["settings"], row["order_points"]) == ("TSM mixed", 8, 4)
     assert (row["order"], row["cost_exponent"]) == pytest.approx((4.0, 1.0), rel=1e-9)
-
-
-def test_there_is_no_reference_where_the_exact_rods_stop() -> None:
     scene = load_scene("double-beam")
     with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped: gone"):
         best_reference(scene, dict.fromkeys(reference_cases(scene), unmeasured("LOST", "gone")))
