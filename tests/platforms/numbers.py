@@ -66,23 +66,19 @@ def differences(numbers: Numbers, stored: Numbers) -> Iterator[tuple[float, str]
             yield float(apart), f"{key}, {label}"
 
 
-def versions() -> str:
-    """Return what the numbers depend on."""
-    libraries = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", "scikit-fem")]
-    return ", ".join([f"python {platform.python_version()}", *libraries, platform.machine()])
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="store the numbers")
     given = parser.parse_args()
+    libraries = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", "scikit-fem")]
+    versions = ", ".join([f"python {platform.python_version()}", *libraries, platform.machine()])
     numbers = computed()
     if given.write:
-        stated = {"source": f"python -m tests.platforms.numbers --write: {versions()}", "numbers": numbers}
+        stated = {"source": f"python -m tests.platforms.numbers --write: {versions}", "numbers": numbers}
         STORED.write_text(json.dumps(stated, allow_nan=False, indent=1) + "\n")
         return 0
     apart, name = max(differences(numbers, json.loads(STORED.read_text())["numbers"]))
-    print(f"{versions()}: largest difference {apart:.1e} ({name}), bound {BOUND:g}")
+    print(f"{versions}: largest difference {apart:.1e} ({name}), bound {BOUND:g}")
     return int(not apart <= BOUND)
 
 
