@@ -106,23 +106,15 @@ def test_the_limit_of_a_series_of_any_order(order: float) -> None:
         assert read(held) == pytest.approx(read(replace(exact, contacts={})), abs=1e-12)
     rest = extrapolated([response_of(h) for h in (0.05, 0.06, 0.1)])
     assert np.array_equal(rest.contacts[PAIR].force, response_of(0.1).contacts[PAIR].force)
-
-
-def test_errors_are_relative_to_the_reference_and_the_length() -> None:
-    """The end state is the last with a force."""
-    reference, found = response_of(0.0), response_of(0.1)
-    assert (scales(reference).force, scales(reference).moment) == (5.0, 10.0)
-    table = errors(found, reference, KS, end=end_state(reference))
-    expected = {"force": 0.01, "arc": 0.05, "friction": 0.01 / 1.01, "moment": 0.002, "tip": 0.05}
-    shape = {"shape": 0.01 * np.sqrt(2.0), "shape_mean": 0.005 * np.sqrt(2.0)}
-    assert table["path"] == pytest.approx(expected | shape)
-    assert table["end"] == pytest.approx(table["path"])
-    held, exact = replace(found, contacts={}), replace(reference, contacts={})
-    relative = 0.01 * np.sqrt(2) / np.hypot(8, 9)
-    assert errors(held, exact, load_scene("ks-tied-tip"))["path"]["force"] == pytest.approx(relative)
+    # errors are measured at the last load parameter with a force, and relative to the reference and the length
     for force, end in ((np.where(TIMES > 0.7, 0.0, TIMES), 0.6), (np.zeros(5), 1.0)):
-        contact = replace(reference.contacts[PAIR], force=force)
-        assert end_state(replace(reference, contacts={PAIR: contact})) == end
+        assert end_state(replace(exact, contacts={PAIR: replace(exact.contacts[PAIR], force=force)})) == end
+    table, off = errors(response_of(0.1), exact, KS, end=end_state(exact)), 0.01
+    assert table["path"] == pytest.approx(
+        {"force": off, "arc": 5 * off, "friction": off / 1.01, "moment": off / 5, "tip": 5 * off}
+        | {"shape": off * np.sqrt(2.0), "shape_mean": off * np.sqrt(0.5)}
+    )
+    assert table["end"] == pytest.approx(table["path"])
 
 
 def test_the_cases_of_a_sweep_are_complete_and_once() -> None:

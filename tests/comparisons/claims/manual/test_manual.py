@@ -20,7 +20,6 @@ from comparisons.claims.manual.judge import answered
 from comparisons.claims.manual.pictures import STYLES
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.cli import main
-from comparisons.models import solve
 from comparisons.scene import read_scene
 
 PROBLEMS = manual_problems.PROBLEMS
@@ -234,6 +233,3 @@ def test_a_scene_that_is_moved_is_the_scene() -> None:
     assert image.pins[0].points[1] == (0.0, 0.01 - 0.6366197723675814)
     assert image.contacts[0].side == reversed_(scene).contacts[0].side == "left"
     assert reversed_(scene).beams[0].clamped == ("end",)
-    moments = [solve(one, "rod").supports["cantilever.start"].moment for one in (scene, turned, image)]
-    assert moments[1] == pytest.approx(moments[0], rel=1e-9)
-    assert moments[2] == pytest.approx(-moments[0], rel=1e-12)
