@@ -1,7 +1,5 @@
 """Speed as ratios within one run, one thread. `make bench` writes them to bench.json and compares them with the pages."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import platform
@@ -9,14 +7,14 @@ import sys
 from pathlib import Path
 
 from tests.benchmarks import commands, inside
-from tests.benchmarks.measure import Bench, Gate
+from tests.benchmarks.measure import Bench
 from tests.stated import MARK, check, pages
 
 VARIES = 0.25
 """Part of a stated ratio by which machines and runs may differ."""
 
 
-def recorded(bench: Bench) -> str:
+def recorded(bench):
     """What was measured, and where, as JSON."""
     record = {
         "machine": platform.platform(),
@@ -27,7 +25,7 @@ def recorded(bench: Bench) -> str:
     return json.dumps(record, indent=1) + "\n"
 
 
-def compared(gates: list[Gate], *, write: bool) -> list[str]:
+def compared(gates, *, write):
     """Return a line for every ratio that is not what the pages state."""
     marks = {mark for page in pages() for mark in MARK.findall(page.read_text())}
     failures = []
@@ -40,7 +38,7 @@ def compared(gates: list[Gate], *, write: bool) -> list[str]:
     return failures
 
 
-def main() -> int:
+def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("bench.json"))
     parser.add_argument("--write-results", action="store_true", help="write changed ratios into the pages")

@@ -1,7 +1,5 @@
 """Ratios of what users call: solutions of beams and solid, the command, the start of processes."""
 
-from __future__ import annotations
-
 import io
 import json
 import os
@@ -12,7 +10,6 @@ import time
 from contextlib import ExitStack, redirect_stdout
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 import numpy as np
@@ -26,16 +23,13 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.translate import to_solid, to_structure
 from comparisons.scene import load_scene
-from tests.benchmarks.measure import Bench, children
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from tests.benchmarks.measure import children
 
 KS = load_scene("ks-cantilever")
 T = np.array(KS.times)
 
 
-def beams_against_solid(bench: Bench) -> None:
+def beams_against_solid(bench):
     structure, solid = to_structure(KS, elements=10), to_solid(KS, mesh=(50, 2))
     beams, reference = bench.seconds(
         tsm_mixed_10=lambda: tsm.solve(structure, T), solid_50x2=lambda: fem_reference.solve(solid, T)
@@ -43,7 +37,7 @@ def beams_against_solid(bench: Bench) -> None:
     bench.gate("solid 50x2 over TSM mixed 10, seconds", reference / beams, 40, at_least=True)
 
 
-def equal_error(bench: Bench) -> None:
+def equal_error(bench):
     """The cheapest solid over the cheapest beams at .1 % of the force, each against what it converges to."""
     with tempfile.TemporaryDirectory() as folder:
         assert main(["trade", KS.name, "--quick", "--out", folder]) == 0
@@ -55,14 +49,14 @@ def equal_error(bench: Bench) -> None:
         bench.gate(f"solid over TSM at .1 % of F, {state}, seconds", found["ratio"], 100, at_least=True)
 
 
-def exact_elements(bench: Bench) -> None:
+def exact_elements(bench):
     """The exact element against `mixed`; the shortest of 15 repeats, which varies less than their median.
 
     End states are timed eight in a row: a short action meets fewer slow moments than the long one that it is compared with.
     """
     rod = solve(KS, "rod")
 
-    def error(**options: Any) -> float:
+    def error(**options):
         response = solve(KS, "tsm", Options(**options))
         return max(difference(response, rod, KS, quantity) for quantity in ("force", "arc"))
 
@@ -88,7 +82,7 @@ def exact_elements(bench: Bench) -> None:
     bench.gate(name, mixed_fine / path_loose, 1, at_least=True)
 
 
-def scenes(bench: Bench) -> None:
+def scenes(bench):
     """Double beam against KS."""
     both = load_scene("double-beam")
     one, two, depths = to_structure(KS, elements=20), to_structure(both, elements=10), np.array(both.times)
@@ -109,18 +103,18 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 
 
-def memory(bench: Bench) -> None:
+def memory(bench):
     """Peak memory of one load parameter on 1000x20, 164,000 unknowns."""
     done = subprocess.run([sys.executable, "-c", PEAK], check=True, capture_output=True, text=True)
     bench.gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5)
 
 
-def comparison(bench: Bench) -> None:
+def comparison(bench):
     """Seconds of `compare` over those that its models, certificates and the solutions of the budget take in it."""
-    spent: list[float] = []
+    spent = []
 
-    def timed(function: Callable[..., Any]) -> Callable[..., Any]:
-        def run(*arguments: Any) -> Any:
+    def timed(function):
+        def run(*arguments):
             began = time.perf_counter()
             try:
                 return function(*arguments)
@@ -129,7 +123,7 @@ def comparison(bench: Bench) -> None:
 
         return run
 
-    def taken() -> float:
+    def taken():
         spent.clear()
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
@@ -147,7 +141,7 @@ SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "10"]
 CROSSVAL = "from comparisons.cli import main; import sys; sys.exit(main({}))"
 
 
-def start_up(bench: Bench) -> None:
+def start_up(bench):
     """Processor time of processes from start to end, over that of ``import numpy``, bytecode compiled as an installation has it.
 
     The solution in ``crossval solve`` is the time that the command takes when it is repeated in one process. It is subtracted.
@@ -155,7 +149,7 @@ def start_up(bench: Bench) -> None:
     apart = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     with tempfile.TemporaryDirectory() as bytecode:
 
-        def started(code: str) -> Callable[[], object]:
+        def started(code):
             environment = {**apart, "PYTHONPYCACHEPREFIX": bytecode}
             return lambda: subprocess.run(
                 [sys.executable, "-c", code], check=True, capture_output=True, env=environment

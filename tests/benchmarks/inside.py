@@ -1,11 +1,7 @@
 """Ratios within a solution: an iteration of beams over the elements, assembly and factorisation of the solid."""
 
-from __future__ import annotations
-
 import time
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -19,7 +15,6 @@ from comparisons.scene import load_scene
 from fem_reference.assembly import element_entries
 from fem_reference.body import build_body
 from fem_reference.factor import factorise
-from tests.benchmarks.measure import Bench
 from tests.fem_reference import bilinear_reference as forms
 from tsm.model import Model
 from tsm.system import Assembler
@@ -28,20 +23,20 @@ KS = load_scene("ks-cantilever")
 T = np.array(KS.times)
 
 
-def iterations(elements: int, count: int = 20, **options: Any) -> Callable[[], None]:
+def iterations(elements, count=20, **options):
     """Action that does iterations of KS at the load parameter 0.1."""
     model = Model(to_structure(KS, elements=elements, **options))
     state = tsm.solve(model.structure, np.array([0.1])).equilibria[-1].state
     assembler = Assembler(model)
 
-    def iterate() -> None:
+    def iterate():
         for _ in range(count):
             assembler.solve(assembler.linearise(state))
 
     return iterate
 
 
-def beams(bench: Bench) -> None:
+def beams(bench):
     """The element without critical area against the paper's; the exponent of the cost over the elements."""
     mixed, paper = bench.seconds(
         mixed_20=iterations(20, 200), timoshenko_20=iterations(20, 200, element="timoshenko")
@@ -55,7 +50,7 @@ def beams(bench: Bench) -> None:
         bench.gate(name, np.log10(other / one), 1.1)
 
 
-def solution(bench: Bench) -> None:
+def solution(bench):
     """A Newton iteration of the solid against SuperLU's factorisation of its tangent and four solutions.
 
     The bars are the ratios of the solid before its band was assembled and factorised as such, over 1.4 and 1.7.
@@ -66,10 +61,10 @@ def solution(bench: Bench) -> None:
         K = result.model.bodies[0].tangent(result.states[len(result.states) // 2].u)
         columns = np.random.default_rng(0).standard_normal((K.shape[0], 4))
 
-        def general(K: Any = K, columns: Any = columns) -> None:
+        def general(K=K, columns=columns):
             splu(K, permc_spec="NATURAL").solve(columns)
 
-        def solved(problem: Any = problem) -> None:
+        def solved(problem=problem):
             fem_reference.solve(problem, T)
 
         (whole,) = bench.seconds(5, min, time.process_time, **{f"solid {name}": solved})
@@ -78,7 +73,7 @@ def solution(bench: Bench) -> None:
         bench.gate(f"iteration of the solid over SuperLU with four solutions, {name}", value, bar)
 
 
-def assembly(bench: Bench) -> None:
+def assembly(bench):
     """Tangent and residual of the solid against scikit-fem's forms, and against the factorisation."""
     for mesh, repeats in (((50, 2), 7), ((200, 4), 7), ((1000, 20), 1)):
         strip = replace(to_solid(KS, mesh=mesh).strips[0], element="Q2-full")
@@ -88,19 +83,19 @@ def assembly(bench: Bench) -> None:
         lame = E * nu / (1 - nu**2), E / (2 * (1 + nu))
         basis = forms.vector_basis(body.mesh.nodes, body.mesh.cells)
 
-        def band(u: Any, body: Any = body) -> Any:
+        def band(u, body=body):
             return body.stiffness.band(element_entries(body.mesh, body.law.tangent, u))
 
         K = band(0 * u)
 
-        def batched(body: Any = body, u: Any = u, band: Any = band) -> None:
+        def batched(body=body, u=u, band=band):
             body.internal_force(u)
             band(u)
 
-        def bilinear(basis: Any = basis, u: Any = u, lame: Any = lame) -> None:
+        def bilinear(basis=basis, u=u, lame=lame):
             forms.tangent_and_residual(basis, u.ravel(), *lame, 0.02)
 
-        def factorised(K: Any = K) -> None:
+        def factorised(K=K):
             factorise(lambda: K.copy(order="F"))
 
         actions = {f"batched {name}": batched, f"BilinearForm {name}": bilinear, f"factor {name}": factorised}

@@ -1,7 +1,6 @@
 """The parts of the difference of beams and solid sum to it."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ KS = load_scene("ks-cantilever")
 
 
 @pytest.mark.parametrize("name", ["ks-cantilever", pytest.param("ks-face", marks=pytest.mark.slow)])
-def test_parts_sum_to_the_difference(name: str, stated) -> None:
+def test_parts_sum_to_the_difference(name, stated):
     """The largest rest is of the arc position at t = .75; the solid of the rod's law is the rod within .1 % and .05 %."""
     budget = error_budget(load_scene(name))
     rest = max(np.abs(budget.rest(quantity)).max() for quantity in budget.total)
@@ -37,9 +36,9 @@ def test_parts_sum_to_the_difference(name: str, stated) -> None:
         assert row["rest_over_total"] == pytest.approx(rest / row["total"], abs=1e-12)
 
 
-def test_nothing_of_the_picture_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_of_the_picture_is_cut_off(monkeypatch):
     """The limits reach around bars whose last part is thin, and the legend has every part."""
-    kept: list[Any] = []
+    kept = []
     monkeypatch.setattr(budget_plot, "save", lambda fig, *_: kept.append(fig))
     parts = {name: np.full(4, 1e-12 if name == "load steps" else 1e-3) for name in PARTS}
     names = ("contact_force long-name->beam", "clamp_moment beam.end", "arc_position", "support_force")
@@ -59,7 +58,7 @@ def test_nothing_of_the_picture_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.slow
-def test_a_frame_has_one_with_supports_in_place_of_contacts() -> None:
+def test_a_frame_has_one_with_supports_in_place_of_contacts():
     scene = load_scene("portal-frame")
     found = error_budget(replace(scene, beams=tuple(replace(beam, mesh=(12, 1)) for beam in scene.beams)))
     assert {name.partition(" ")[0] for name in found.total} == {"support_force", "clamp_moment"}
@@ -70,13 +69,13 @@ def test_a_frame_has_one_with_supports_in_place_of_contacts() -> None:
 
 
 @pytest.mark.slow
-def test_a_pair_that_touches_late_has_one_from_there_on() -> None:
+def test_a_pair_that_touches_late_has_one_from_there_on():
     pin = replace(KS.pins[0], start=(0.8, -0.2), displacement=(0.0, 0.5))
     found = error_budget(replace(KS, beams=(replace(KS.beams[0], mesh=(12, 1)),), pins=(pin,)))
     assert np.isnan(found.total["contact_force"]).tolist() == [True, False, False, False]
 
 
-def test_scenes_without_a_budget_say_why() -> None:
+def test_scenes_without_a_budget_say_why():
     pin = replace(KS.pins[0], start=(0.8, -0.5), displacement=(0.0, 0.1))
     with pytest.raises(ModelError, match="have no force"):
         error_budget(replace(KS, pins=(pin,)))

@@ -23,17 +23,16 @@ with alone_in(Path(sys.argv[1])):
 """
 
 
-def holder(folder: Path, seconds: int = 0) -> "subprocess.Popen[str]":
+def holder(folder, seconds=0):
     """Start a process that locks a folder for some seconds and says so."""
     command = [sys.executable, "-c", HOLD, str(folder), str(seconds)]
     return subprocess.Popen(command, cwd=Path(__file__).parents[2], stdout=subprocess.PIPE, text=True)
 
 
-def check(folder: Path) -> None:
+def check(folder):
     """Let a process hold a folder and be killed: another one waits until then, and no longer, and no file stays."""
     with holder(folder, 600) as first:
         try:
-            assert first.stdout is not None
             assert first.stdout.readline() == "held\n"
             owner = Owner(host=Owner.this_process().host, pid=first.pid, born=time())
             assert owner.alive(time())

@@ -2,7 +2,6 @@
 
 import copy
 import json
-from pathlib import Path
 
 import pytest
 
@@ -11,12 +10,12 @@ from tests.platforms.processes import check
 
 
 @pytest.mark.slow
-def test_numbers_are_those_stored() -> None:
+def test_numbers_are_those_stored():
     stored = json.loads(STORED.read_text())["numbers"]
     assert max(differences(computed(), stored)) <= (BOUND, "")
 
 
-def test_differences_are_seen(stated) -> None:
+def test_differences_are_seen(stated):
     stated("platforms.bound", BOUND)
     stored = json.loads(STORED.read_text())["numbers"]
     assert max(differences(stored, stored))[0] == 0.0
@@ -29,5 +28,5 @@ def test_differences_are_seen(stated) -> None:
         assert name == "force of pin->cantilever, ks-cantilever, rod"
 
 
-def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
+def test_a_lock_ends_with_its_process(tmp_path):
     check(tmp_path)

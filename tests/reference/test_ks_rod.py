@@ -7,7 +7,7 @@ import pytest
 from tests.reference.ks_rod import OFFSETS, STORED, path, text
 
 
-def test_one_number_is_generated() -> None:
+def test_one_number_is_generated():
     """The first of the axis, from the tip in twenty small steps."""
     stored = tomllib.loads(STORED.read_text())["axis"]
     forces, arcs = path(0.0, last=stored["load_parameter"][0])
@@ -16,7 +16,7 @@ def test_one_number_is_generated() -> None:
 
 
 @pytest.mark.slow
-def test_stored_numbers_are_generated() -> None:
+def test_stored_numbers_are_generated():
     """To 1e-9, so that another processor's last digits do not count; the file's form as well."""
     stored, generated = STORED.read_text(), text()
     keys = [[line.split("=")[0] for line in one.splitlines()] for one in (stored, generated)]

@@ -6,9 +6,7 @@ import os
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
 from contextlib import closing, redirect_stdout
-from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
@@ -69,10 +67,9 @@ pin.displacement = [[0.0, 0.6]]
 scene.load_parameters = 2
 """
 """All ends a case can have; one case is stated twice."""
-Start = Callable[..., "subprocess.Popen[str]"]
 
 
-def crossval(*arguments: object) -> int:
+def crossval(*arguments):
     """Run the command here; return its exit status, also where the reading of its arguments ends it."""
     try:
         return main(list(map(str, arguments)))
@@ -80,7 +77,7 @@ def crossval(*arguments: object) -> int:
         return int(end.code or 0)
 
 
-def rows(file: Path, *options: str) -> list[dict[str, str]]:
+def rows(file, *options):
     """Return what ``crossval results --csv`` says of a file."""
     text = io.StringIO()
     with redirect_stdout(text):
@@ -88,13 +85,13 @@ def rows(file: Path, *options: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text.getvalue())))
 
 
-def asked(file: Path, query: str, *values: object) -> list[tuple[object, ...]]:
+def asked(file, query, *values):
     """Ask or change a results file behind the program's back."""
     with closing(sqlite3.connect(file)) as connection, connection:
         return connection.execute(query, values).fetchall()
 
 
-def recorded(file: Path) -> int:
+def recorded(file):
     """Number of results in a file that may not be there yet."""
     try:
         with closing(sqlite3.connect(f"{file.as_uri()}?mode=ro", uri=True)) as connection:
@@ -103,7 +100,7 @@ def recorded(file: Path) -> int:
         return 0
 
 
-def wait_for(condition: Callable[[], bool], seconds: float = 60) -> None:
+def wait_for(condition, seconds=60):
     deadline = monotonic() + seconds
     while not condition():
         assert monotonic() < deadline, "waited in vain"
@@ -111,13 +108,13 @@ def wait_for(condition: Callable[[], bool], seconds: float = 60) -> None:
 
 
 @pytest.fixture
-def tiny(tmp_path: Path) -> Path:
+def tiny(tmp_path):
     (tmp_path / "tiny.toml").write_text(TINY)
     return tmp_path / "tiny.toml"
 
 
 @pytest.fixture(scope="session")
-def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def many(tmp_path_factory):
     """The results of `MANY`."""
     folder = tmp_path_factory.mktemp("many")
     (folder / "many.toml").write_text(MANY)
@@ -126,17 +123,17 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def copy(many: Path, tmp_path: Path) -> Path:
+def copy(many, tmp_path):
     """A copy of these results, which a test may spoil."""
     (tmp_path / "copy.sqlite").write_bytes(many.read_bytes())
     return tmp_path / "copy.sqlite"
 
 
 @pytest.fixture
-def start() -> Start:
+def start():
     """Start the command as the leader of its own group of processes."""
 
-    def begin(*arguments: object, **options: object) -> "subprocess.Popen[str]":
+    def begin(*arguments, **options):
         return subprocess.Popen(
             [sys.executable, "-c", COMMAND, *map(str, arguments)],
             stdout=subprocess.PIPE,
@@ -144,7 +141,7 @@ def start() -> Start:
             text=True,
             start_new_session=True,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-            **options,  # type: ignore[call-overload]
+            **options,
         )
 
     return begin

@@ -5,11 +5,8 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import distributed
 import pytest
@@ -20,7 +17,7 @@ from tests.comparisons.cases.test_command import check_finished
 
 
 @pytest.fixture
-def cluster() -> Iterator[Any]:
+def cluster():
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as found:
@@ -28,12 +25,12 @@ def cluster() -> Iterator[Any]:
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_a_worker(cluster: Any, tiny: Path, tmp_path: Path) -> None:
+def test_a_cluster_that_loses_a_worker(cluster, tiny, tmp_path):
     here, there = tmp_path / "here.sqlite", tmp_path / "there.sqlite"
     victim = next(iter(cluster.workers.values())).pid
     killed = list[int]()
 
-    def kill() -> None:
+    def kill():
         wait_for(lambda: recorded(there) >= 3)
         killed.append(recorded(there))
         os.kill(victim, signal.SIGKILL)
@@ -50,9 +47,7 @@ def test_a_cluster_that_loses_a_worker(cluster: Any, tiny: Path, tmp_path: Path)
 
 @pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
-def test_no_cluster_there(
-    address: str, tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_no_cluster_there(address, tiny, tmp_path, capsys):
     status = main(["study", str(tiny), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
     assert status == 2
     (line,) = capsys.readouterr().err.splitlines()
@@ -60,7 +55,7 @@ def test_no_cluster_there(
 
 
 @contextmanager
-def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
+def dask(program, *arguments):
     """Run a program of Dask beside the test."""
     process = subprocess.Popen(
         [sys.executable, "-m", f"distributed.cli.dask_{program}", *arguments, "--dashboard-address", ":0"],
@@ -74,21 +69,19 @@ def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
         process.wait()
 
 
-def free_port() -> int:
+def free_port():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return int(free.getsockname()[1])
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
-    tiny: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path, capfd):
     file, port = tmp_path / "a.sqlite", free_port()
     address = f"tcp://127.0.0.1:{port}"
     with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
 
-        def kill() -> None:
+        def kill():
             wait_for(lambda: recorded(file) >= 3)
             scheduler.kill()
 

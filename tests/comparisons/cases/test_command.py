@@ -5,7 +5,6 @@ import os
 import random
 import resource
 import signal
-import subprocess
 import sys
 import zlib
 from pathlib import Path
@@ -14,17 +13,17 @@ from time import sleep
 import pytest
 
 from comparisons.cli import main
-from tests.comparisons.cases.conftest import CASES, TINY, Start, asked, recorded, rows, wait_for
+from tests.comparisons.cases.conftest import CASES, TINY, asked, recorded, rows, wait_for
 
 KILLS = 20
 """A third while the libraries are loaded, the others after 1 to 8 cases more; of the command alone or of its workers too."""
 
 
-def table(file: Path) -> list[dict[str, str]]:
+def table(file):
     return rows(file, "--no-timings")
 
 
-def histories(file: Path) -> dict[object, dict[str, object]]:
+def histories(file):
     """Every number of every result but seconds and memory, by key."""
     found = {}
     for key, blob in asked(file, "SELECT key, measurement FROM result"):
@@ -33,7 +32,7 @@ def histories(file: Path) -> dict[object, dict[str, object]]:
     return found
 
 
-def running(group: int) -> list[int]:
+def running(group):
     """Processes of a group that are not dead."""
     found = []
     for entry in Path("/proc").glob("[0-9]*/stat"):
@@ -47,7 +46,7 @@ def running(group: int) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory):
     """The results of the tiny study, uninterrupted."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "tiny.toml").write_text(TINY)
@@ -55,14 +54,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "tiny.sqlite"
 
 
-def check_finished(study: Path, file: Path, whole: Path) -> None:
+def check_finished(study, file, whole):
     """The same command goes on to the table of a run that was left alone."""
     assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
     assert table(file) == table(whole)
     assert histories(file) == histories(whole)
 
 
-def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) -> bool:
+def killed(process, file, chance):
     """Kill the command, or all its processes, at a random point; whether it was still at work."""
     if chance.random() < 1 / 3:
         # while interpreter and libraries are loaded
@@ -82,7 +81,7 @@ def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) 
 @pytest.mark.slow
 @pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see what is left running")
-def test_killed_at_twenty_random_points(whole: Path, tiny: Path, tmp_path: Path, start: Start) -> None:
+def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
     """20 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
     chance, hit, files = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
     while len(hit) < KILLS:
@@ -98,7 +97,7 @@ def test_killed_at_twenty_random_points(whole: Path, tiny: Path, tmp_path: Path,
 
 
 @pytest.mark.slow
-def test_four_runs_on_one_file(whole: Path, tiny: Path, tmp_path: Path, start: Start) -> None:
+def test_four_runs_on_one_file(whole, tiny, tmp_path, start):
     file = tmp_path / "a.sqlite"
     runs = [start("study", tiny, "--results", file, "--workers", "1") for _ in range(4)]
     ends = [(run.communicate(), run.returncode) for run in runs]
@@ -109,7 +108,7 @@ def test_four_runs_on_one_file(whole: Path, tiny: Path, tmp_path: Path, start: S
 
 @pytest.mark.slow
 @pytest.mark.parametrize("whom", ["command", "group"])
-def test_interrupted_and_gone_on(whom: str, whole: Path, tiny: Path, tmp_path: Path, start: Start) -> None:
+def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
     file = tmp_path / "a.sqlite"
     process = start("study", tiny, "--results", file, "--workers", "2")
     wait_for(lambda: recorded(file) >= 3)
@@ -126,11 +125,11 @@ def test_interrupted_and_gone_on(whom: str, whole: Path, tiny: Path, tmp_path: P
 
 
 @pytest.mark.slow
-def test_out_of_room(whole: Path, tiny: Path, tmp_path: Path, start: Start) -> None:
+def test_out_of_room(whole, tiny, tmp_path, start):
     """A limit on the size of files stops the command like a full disk: one line, and everything before it kept."""
     file = tmp_path / "a.sqlite"
 
-    def limit() -> None:
+    def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, resource.RLIM_INFINITY))
 
     process = start("study", tiny, "--results", file, "--workers", "2", preexec_fn=limit)
@@ -164,9 +163,7 @@ scene.load_parameters = 2
 
 @pytest.mark.slow
 @pytest.mark.parametrize("times", [1, 2])
-def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(
-    times: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(times, tmp_path, capsys):
     """A program that kills the worker that asks it: a second death is the case's, and the next study tries it again."""
     (tmp_path / "killer.py").write_text(KILLER.format(times=times))
     command = json.dumps([sys.executable, "-I", "killer.py"])

@@ -4,8 +4,7 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -36,22 +35,22 @@ MESHED = replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_
 
 
 @pytest.fixture(scope="module")
-def measured() -> Measurement:
+def measured():
     return measure(CASE, repeats=1)
 
 
 @pytest.fixture
-def path(tmp_path: Path) -> Path:
+def path(tmp_path):
     return tmp_path / "a.sqlite"
 
 
-def dead() -> int:
+def dead():
     child = subprocess.Popen([sys.executable, "-c", ""])
     child.wait()
     return child.pid
 
 
-OWNERS: dict[str, tuple[Callable[[], dict[str, object]], float, bool]] = {
+OWNERS = {
     "alive": (dict, 0, False),
     "dead": (lambda: {"pid": dead()}, 0, True),
     "number used again": (lambda: {"born": 0.0}, 0, True),
@@ -61,7 +60,7 @@ OWNERS: dict[str, tuple[Callable[[], dict[str, object]], float, bool]] = {
 
 
 @pytest.mark.parametrize("case", OWNERS)
-def test_claims_of_the_dead_are_free(case: str, path: Path, measured: Measurement) -> None:
+def test_claims_of_the_dead_are_free(case, path, measured):
     change, heard, free = OWNERS[case]
     with Store(path) as one, Store(path) as other:
         assert one.claim("abc", limit=2).claimed == ["a", "b"]
@@ -77,9 +76,7 @@ def test_claims_of_the_dead_are_free(case: str, path: Path, measured: Measuremen
         assert other.claim("a", limit=1).claimed == ["a"]
 
 
-def test_a_settled_result_stands_and_older_ones_are_those_of_the_same_case(
-    path: Path, measured: Measurement
-) -> None:
+def test_a_settled_result_stands_and_older_ones_are_those_of_the_same_case(path, measured):
     """A lost one does not stand; one with a mesh file is of no other version, as nobody knows what was in the file."""
     lost = unmeasured(WORKER_LOST, "it died")
     with Store(path) as store:
@@ -100,11 +97,11 @@ def test_a_settled_result_stands_and_older_ones_are_those_of_the_same_case(
         assert store.statuses() == {CASE.key: "COMPLETED"}
 
 
-def test_a_full_file_is_one_line_and_stays_whole(path: Path, measured: Measurement) -> None:
+def test_a_full_file_is_one_line_and_stays_whole(path, measured):
     store, count = Store(path), 0
     store._connection.execute("PRAGMA max_page_count = 20")
 
-    def fill() -> None:
+    def fill():
         nonlocal count
         with store:
             while count < 100:
@@ -117,7 +114,7 @@ def test_a_full_file_is_one_line_and_stays_whole(path: Path, measured: Measureme
     assert 0 < count == recorded(path) == len(rows(path))
 
 
-def as_nobody(action: Callable[[], None]) -> bool:
+def as_nobody(action):
     """Whether `action` passes in a process that may write nothing of this user's."""
     child = os.fork()
     if child == 0:
@@ -134,14 +131,14 @@ def as_nobody(action: Callable[[], None]) -> bool:
 
 
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
-def test_a_folder_that_is_only_read(many: Path, copy: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_that_is_only_read(many, copy, capfd):
     before, folder = copy.read_bytes(), copy.parent
     if os.getuid() == 0:
         for one in (*list(folder.parents)[:3], *many.parents[:3]):
             one.chmod(0o755)
     folder.chmod(0o555)
 
-    def use() -> None:
+    def use():
         for file in (copy, folder / "new.sqlite"):
             assert crossval("study", many.with_suffix(".toml"), "--results", file) == 2
         assert len(rows(copy)) == 12
@@ -157,16 +154,16 @@ def test_a_folder_that_is_only_read(many: Path, copy: Path, capfd: pytest.Captur
 
 
 @contextmanager
-def thread() -> Iterator[Executor]:
+def thread():
     with ThreadPoolExecutor(1) as executor:
         yield executor
 
 
-def test_a_case_that_raises_is_listed_and_done_again(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_case_that_raises_is_listed_and_done_again(path, monkeypatch):
     cases = [CASE, replace(CASE, options=Options(elements=4))]
     workers, right, reported = Workers(width=1, start=thread), run_module.solve, list[run_module.Tally]()
 
-    def raising(key: str, case: Case, **how: bool) -> Measurement:
+    def raising(key, case, **how):
         if case == CASE:
             raise ZeroDivisionError("a bug\nin two lines")
         return right(key, case, repeats=0, process=False)
@@ -185,9 +182,7 @@ def test_a_case_that_raises_is_listed_and_done_again(path: Path, monkeypatch: py
         run_module.solve("0" * 64, CASE, repeats=1, process=False)
 
 
-def test_the_key_depends_on_everything_that_the_result_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_key_depends_on_everything_that_the_result_does(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     others = [
         replace(CASE, options=Options(elements=5)),
@@ -214,7 +209,7 @@ def test_the_key_depends_on_everything_that_the_result_does(
     assert (again, again.key) == (CASE, CASE.key)
 
 
-def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured: Measurement) -> None:
+def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
     """Without a timed run it has neither axes nor a verdict."""
     found, response = measured.response, solve(KS, "tsm", CASE.options)
     assert (measured.verdict, measured.repeats) == ("CERTIFIED", 1)
@@ -233,7 +228,7 @@ def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured: Measur
         assert types[0] == types[1]
 
 
-def test_peak_memory_without_proc_and_resource(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
     """As on Windows: psutil tells how much memory there is."""
     monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
     monkeypatch.setitem(sys.modules, "resource", None)

@@ -18,10 +18,9 @@ from tests.comparisons.cases.conftest import asked, crossval, rows
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 RUN = '[[run]]\nmodel = "tsm"\n'
-Output = pytest.CaptureFixture[str]
 
 
-def test_cases_are_all_combinations_sorted_by_what_varies(many: Path) -> None:
+def test_cases_are_all_combinations_sorted_by_what_varies(many):
     found = rows(many)
     assert [
         (row["model"], row["element"], row["elements"], row["mesh"], row["status"], row["verdict"])
@@ -42,7 +41,7 @@ def test_cases_are_all_combinations_sorted_by_what_varies(many: Path) -> None:
         assert row["pin.displacement"] == "-0.5 0.3"
 
 
-def test_a_row_is_the_answer_at_the_last_load_parameter(many: Path) -> None:
+def test_a_row_is_the_answer_at_the_last_load_parameter(many):
     row = next(row for row in rows(many) if (row["element"], row["elements"]) == ("mixed", "4"))
     answer = solve(load_scene("ks-cantilever"), "tsm", Options(elements=4, element="mixed"))
     contact = answer.contacts["pin->cantilever"]
@@ -58,7 +57,7 @@ def test_a_row_is_the_answer_at_the_last_load_parameter(many: Path) -> None:
     assert float(row["seconds"]) > 0.0
 
 
-def test_the_table_of_one_scene_of_several_and_of_none(many: Path, copy: Path, capsys: Output) -> None:
+def test_the_table_of_one_scene_of_several_and_of_none(many, copy, capsys):
     assert main(["results", str(many)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split()[:4] == ["model", "element", "elements", "integration_tolerance"]
@@ -75,7 +74,7 @@ def test_the_table_of_one_scene_of_several_and_of_none(many: Path, copy: Path, c
     assert (main(["results", str(copy)]), capsys.readouterr().out, rows(copy)) == (0, "no results yet\n", [])
 
 
-def test_what_is_done_is_not_done_again(many: Path, capsys: Output) -> None:
+def test_what_is_done_is_not_done_again(many, capsys):
     before = rows(many)
     study = many.with_suffix(".toml")
     assert main(["study", str(study), "--out", str(many.parent), "--workers", "1"]) == 0
@@ -90,7 +89,7 @@ def test_what_is_done_is_not_done_again(many: Path, capsys: Output) -> None:
     assert sorted(path.name for path in many.parent.iterdir()) == ["many.sqlite", "many.toml"]
 
 
-def test_results_of_another_version(many: Path, copy: Path, capsys: Output) -> None:
+def test_results_of_another_version(many, copy, capsys):
     """Are kept where that is asked for, with one line; the table has a column of versions then."""
     own = rows(copy)[0]["version"]
     asked(copy, "UPDATE result SET version = '0.1.0', key = 'x' || key WHERE model != 'rod'")
@@ -104,7 +103,7 @@ def test_results_of_another_version(many: Path, copy: Path, capsys: Output) -> N
 
 
 @pytest.mark.slow
-def test_wrong_results_of_another_version_are_computed_anew(many: Path, copy: Path, capsys: Output) -> None:
+def test_wrong_results_of_another_version_are_computed_anew(many, copy, capsys):
     right = rows(many, "--no-timings")
     change = "UPDATE result SET version = '0.1.0', key = 'x' || key, status = 'WRONG' WHERE label LIKE ?"
     asked(copy, change, "%mixed 4")
@@ -122,7 +121,7 @@ def test_wrong_results_of_another_version_are_computed_anew(many: Path, copy: Pa
     "blob",
     [b"", b"mine", zlib.compress(b"{}"), zlib.compress(b"[1]"), zlib.compress(b"\xff"), "text", None, 7],
 )
-def test_a_damaged_result_is_one_line(blob: object, copy: Path, capsys: Output) -> None:
+def test_a_damaged_result_is_one_line(blob, copy, capsys):
     if blob is None:
         (blob,) = asked(copy, "SELECT substr(measurement, 1, 40) FROM result WHERE model = 'rod'")[0]
     asked(copy, "UPDATE result SET measurement = ? WHERE model = 'rod'", blob)
@@ -132,7 +131,7 @@ def test_a_damaged_result_is_one_line(blob: object, copy: Path, capsys: Output) 
     assert err == f"crossval: {copy}: cannot be read: the result of 'ks-cantilever, rod' is damaged\n"
 
 
-def other_database(path: Path) -> None:
+def other_database(path):
     sqlite3.connect(path).execute("CREATE TABLE result (key TEXT)").connection.commit()
 
 
@@ -151,9 +150,7 @@ OTHER_FILES = {
 
 
 @pytest.mark.parametrize("reason", OTHER_FILES)
-def test_other_files_are_refused_and_left_alone(
-    reason: str, many: Path, tmp_path: Path, capsys: Output
-) -> None:
+def test_other_files_are_refused_and_left_alone(reason, many, tmp_path, capsys):
     path = tmp_path / "a.sqlite"
     if "schema" in reason:
         path.write_bytes(many.read_bytes())
@@ -170,14 +167,12 @@ def test_other_files_are_refused_and_left_alone(
 
 
 class Terminal(io.StringIO):
-    def isatty(self) -> bool:
+    def isatty(self):
         return True
 
 
 @pytest.mark.slow
-def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(
-    many: Path, copy: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, copy, monkeypatch):
     """Half of the cases are there; the message of a file that is none of ours stands in a line of its own."""
     study = str(many.with_suffix(".toml"))
     asked(copy, "DELETE FROM result WHERE model != 'solid'")
@@ -206,7 +201,7 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(
 
 
 @pytest.mark.slow
-def test_the_scene_is_varied_through_its_records(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_scene_is_varied_through_its_records(tmp_path, monkeypatch):
     """A scene beside the study; all beams or one by name; records without a name by their place."""
     (tmp_path / "scenes").mkdir()
     (tmp_path / "scenes" / "hinged.toml").write_text(
@@ -277,7 +272,7 @@ TEXTS = (
 
 
 @pytest.mark.parametrize("reason", TEXTS)
-def test_what_is_wrong_in_a_study_is_one_line(reason: str, tmp_path: Path, capsys: Output) -> None:
+def test_what_is_wrong_in_a_study_is_one_line(reason, tmp_path, capsys):
     path = tmp_path / "study.toml"
     path.write_text(TEXTS[reason])
     assert main(["study", str(path), "--out", str(tmp_path / "out")]) == 2
@@ -318,13 +313,11 @@ ARGUMENTS = {
 
 
 @pytest.mark.parametrize("reason", ARGUMENTS)
-def test_bad_arguments_of_a_command_are_one_line_and_compute_nothing(
-    reason: str, tmp_path: Path, capsys: Output
-) -> None:
+def test_bad_arguments_of_a_command_are_one_line_and_compute_nothing(reason, tmp_path, capsys):
     path = tmp_path / "study.toml"
     path.write_text(HEAD + RUN)
 
-    def filled(text: str) -> str:
+    def filled(text):
         return text.replace("STUDY", str(path)).replace("DIR", str(tmp_path))
 
     assert crossval(*map(filled, ARGUMENTS[reason])) == 2

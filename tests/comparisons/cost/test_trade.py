@@ -3,7 +3,6 @@
 import csv
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,7 +22,7 @@ from comparisons.errors import errors, scales
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.response import ContactHistory, Response, SupportHistory
+from comparisons.response import ContactHistory, SupportHistory
 from comparisons.response.axis import STATIONS, SampledAxes
 from comparisons.scene import built_in_scenes, load_scene
 from tests.comparisons.show.pages.markup import check_alone
@@ -35,7 +34,7 @@ TIMES = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 N = np.array([5.0, 10.0, 20.0, 40.0, 80.0])
 
 
-def test_a_front_is_what_nothing_beats() -> None:
+def test_a_front_is_what_nothing_beats():
     points = np.random.default_rng(0).random((60, 2)).round(1)
     kept = pareto(*points.T)
     beaten = [any((other <= point).all() and (other < point).any() for other in points) for point in points]
@@ -47,10 +46,9 @@ def test_a_front_is_what_nothing_beats() -> None:
     assert pareto([], []) == []
 
 
-def test_exponents_and_orders() -> None:
+def test_exponents_and_orders():
     """An order is that of the finest four above the floor: not from a coarse mesh that is right by chance, nor from round-off."""
     fit = power_law(list(N), list(3.0 * N**1.5))
-    assert fit is not None
     assert (fit.exponent, fit.factor) == pytest.approx((1.5, 3.0), rel=1e-12)
     assert (fit.first, fit.last, fit.points) == (5.0, 80.0, 5)
     assert fit.scatter < 1e-12
@@ -61,7 +59,6 @@ def test_exponents_and_orders() -> None:
     cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
     for order, error, where in (*cases, (4.0, spoilt, (10.0, 40.0, 3))):
         fit = convergence(list(N), list(error), 0.0)
-        assert fit is not None
         assert -fit.exponent == pytest.approx(order, rel=1e-12)
         assert (fit.first, fit.last, fit.points) == where
     unknown = [0.1, 0.01, np.nan, np.nan, np.nan]
@@ -69,7 +66,7 @@ def test_exponents_and_orders() -> None:
         assert convergence(list(N), list(error), uncertainty) is None
 
 
-def response_of(h: float, order: float = 2.0) -> Response:
+def response_of(h, order=2.0):
     """A response that converges with the order, the contact open at first, and two supports."""
     s, off = np.arange(1.0, 6.0), h**order
     force = np.arange(10.0).reshape(5, 2) + off
@@ -90,7 +87,7 @@ def response_of(h: float, order: float = 2.0) -> Response:
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
-def test_the_limit_of_a_series_of_any_order(order: float) -> None:
+def test_the_limit_of_a_series_of_any_order(order):
     """Supports have a limit of their forces where there is no contact; a series that does not converge has its last member."""
     series, exact = [response_of(h, order) for h in (0.2, 0.1, 0.05)], response_of(0.0)
     found, held = extrapolated(series), extrapolated([replace(one, contacts={}) for one in series])
@@ -117,7 +114,7 @@ def test_the_limit_of_a_series_of_any_order(order: float) -> None:
     assert table["end"] == pytest.approx(table["path"])
 
 
-def test_the_cases_of_a_sweep_are_complete_and_once() -> None:
+def test_the_cases_of_a_sweep_are_complete_and_once():
     """Load steps hit a part of the scene's load parameters; families are refined alike."""
     for quick, least in ((True, 40), (False, 75)):
         cases = sweep_cases(KS, quick=quick)
@@ -136,7 +133,7 @@ def test_the_cases_of_a_sweep_are_complete_and_once() -> None:
         assert load_steps(replace(KS, load_parameters=count)) == steps
 
 
-def point(case: Case, seconds: float, error: float, own: float, status: str = "COMPLETED") -> Point:
+def point(case, seconds, error, own, status="COMPLETED"):
     """A case with known seconds, unknowns and errors."""
     own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
     made = unmeasured(status, "")
@@ -145,11 +142,11 @@ def point(case: Case, seconds: float, error: float, own: float, status: str = "C
     return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
 
 
-def traded(points: list[Point]) -> Trade:
+def traded(points):
     """A trade-off whose reference is known to round-off, the solid's limit to 1e-4."""
     one = response_of(0.0)
 
-    def known(to: float) -> Reference:
+    def known(to):
         table = {scope: dict.fromkeys(KEPT, to) for scope in SCOPES}
         return Reference(
             response=one, scene=KS, scale=scales(one), end=1.0, uncertainty=table, name="", sentence=""
@@ -158,7 +155,7 @@ def traded(points: list[Point]) -> Trade:
     return Trade(scene=KS, points=points, reference=known(1e-15), limit=known(1e-4))
 
 
-def test_the_cheapest_settings_their_ratio_and_the_front() -> None:
+def test_the_cheapest_settings_their_ratio_and_the_front():
     """A coarse solid that hits the reference by chance does not count; a front ends at the uncertainty of the limit."""
     solid, beam = Case(scene=KS, model="solid"), Case(scene=KS, model="tsm")
     beams = [point(beam, seconds, error, error) for seconds, error in ((1.0, 1e-2), (2.0, 1e-4), (3.0, 1e-3))]
@@ -181,7 +178,7 @@ def test_the_cheapest_settings_their_ratio_and_the_front() -> None:
     assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
 
 
-def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop() -> None:
+def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop():
     counts = (2, 3, 5, 10, 20, 40, 80, 160)
     cases = [Case(scene=KS, model="tsm", options=Options(element="mixed", elements=n)) for n in counts]
     errors_of = [0.1 * n**-4.0 for n in counts]
@@ -195,7 +192,7 @@ def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop()
 
 
 @pytest.mark.slow
-def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_quick_trade_of_ks(tmp_path, capsys):
     scene, folder = tmp_path / "ks.toml", tmp_path / "out"
     scene.write_text(
         built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 10")
@@ -204,7 +201,8 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert main(command) == 0
     with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))
-    errors_of = {row["label"]: float(row["error_path_force"]) for row in rows if row["load_steps"] == "10"}
+    whole = [row for row in rows if row["load_steps"] == "10" and row["status"] == "COMPLETED"]
+    errors_of = {row["label"]: float(row["error_path_force"]) for row in whole}
     assert errors_of["tsm exact 1"] < 1e-9
     assert 1e-4 < errors_of["elastica"] < 2e-3
     completed = [row for row in rows if row["status"] == "COMPLETED" and row["model"] in {"tsm", "solid"}]

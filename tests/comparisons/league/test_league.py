@@ -5,7 +5,6 @@ import json
 import sys
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -25,14 +24,12 @@ WRONG = 'contact["force"] = [0.0 for _ in contact["force"]]'
 """What the program says in place of its forces."""
 
 
-def rows(folder: Path) -> list[dict[str, str]]:
+def rows(folder):
     return list(csv.DictReader((folder / "league.csv").read_text().splitlines()))
 
 
 @pytest.mark.slow
-def test_programs_are_measured_and_a_false_success_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_programs_are_measured_and_a_false_success_is_named(tmp_path, capsys):
     load = LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-4))
     loaded = replace(KS, name="loaded", pins=(), contacts=(), loads=(load,))
     scenes = [tmp_path / "ks.toml", tmp_path / "loaded.toml"]
@@ -73,7 +70,7 @@ def test_programs_are_measured_and_a_false_success_is_named(
 
 
 @pytest.mark.slow
-def test_every_program_has_three_to_five_resolutions_or_one(tmp_path: Path) -> None:
+def test_every_program_has_three_to_five_resolutions_or_one(tmp_path):
     (tmp_path / "ks.toml").write_text(to_toml(replace(KS, load_parameters=1)))
     assert main(["league", str(tmp_path / "ks.toml"), "--out", str(tmp_path / "out")]) == 0
     counts = Counter(row["program"] for row in rows(tmp_path / "out"))

@@ -5,23 +5,21 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, Measurement, measure
+from comparisons.cases import Case, measure
 
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
 from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes import run as runner
 from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance
 from comparisons.claims.extremes.axes import AXES, matrix
-from comparisons.claims.extremes.cell import Cell, Judgement, judged
+from comparisons.claims.extremes.cell import Cell, judged
 from comparisons.claims.extremes.checks import Against
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod, kinds
 from comparisons.claims.extremes.scenes import cantilever, half_circle, sheared
@@ -37,33 +35,32 @@ CELL = Cell(axis="elements", row="mixed", column="10", case=CASE, checks=(agains
 ROD = exact_rod(SCENE)
 BENT = Bending(force=8.0, curvature=4.0, turn=2.5, nearest=0.6)
 NAMES = [axis.name for axis in AXES]
-Change = Callable[[Measurement], Measurement]
 
 
 @cache
-def measured(case: Case) -> Measurement:
+def measured(case):
     return measure(case, repeats=0)
 
 
-def judge(own: Measurement, cell: Cell = CELL) -> Judgement:
+def judge(own, cell=CELL):
     return judged(cell, {**{case: measured(case) for case in cell.cases[1:]}, cell.case: own})
 
 
-def off(measurement: Measurement, part: float) -> Measurement:
+def off(measurement, part):
     """Return a measurement whose contact forces are off by `part` of themselves."""
     response = measurement.response
     contacts = {pair: replace(one, force=(1 + part) * one.force) for pair, one in response.contacts.items()}
     return replace(measurement, response=replace(response, contacts=contacts))
 
 
-def stopped(measurement: Measurement, status: str = "CUTBACK_FLOOR", reached: int = 5) -> Measurement:
+def stopped(measurement, status="CUTBACK_FLOOR", reached=5):
     """Return what is left of a measurement that stopped."""
     response = measurement.response
     few = replace(response, status=status, completed=False, load_parameter=response.load_parameter[:reached])
     return replace(measurement, response=few)
 
 
-BECOMES: dict[str, tuple[Change, Verdict, bool]] = {
+BECOMES = {
     "as it is": (lambda m: m, Verdict.RIGHT, False),
     "off": (lambda m: off(m, 1e-3), Verdict.WRONG, False),
     "not a number": (lambda m: off(m, np.nan), Verdict.WRONG, False),
@@ -79,7 +76,7 @@ BECOMES: dict[str, tuple[Change, Verdict, bool]] = {
 
 
 @pytest.mark.parametrize("case", BECOMES)
-def test_a_verdict_and_whether_a_check_refused_needlessly(case: str) -> None:
+def test_a_verdict_and_whether_a_check_refused_needlessly(case):
     change, verdict, needless = BECOMES[case]
     found = judge(change(measured(CASE)))
     assert (found.verdict, found.needless) == (verdict, needless)
@@ -90,12 +87,11 @@ def test_a_verdict_and_whether_a_check_refused_needlessly(case: str) -> None:
         "it goes on where its reference stopped"
     )
     if case == "as it is":
-        assert found.decisive is not None
         assert 1e-6 < found.decisive.error < found.decisive.allowed < 1e-3
         assert found.reached == 1.0
 
 
-def test_round_off_is_allowed_where_a_stiffness_multiplies_it() -> None:
+def test_round_off_is_allowed_where_a_stiffness_multiplies_it():
     """Lengths 1 : 1e6: `mixed`, whose force is an unknown, may be off by its order alone; a force changed by 5 or 19 % is wrong."""
     lengths = np.logspace(0, 6, 20)
     nodes = tuple((1 - np.cumsum(lengths / lengths.sum())[:-1][::-1]).tolist())
@@ -110,10 +106,10 @@ def test_round_off_is_allowed_where_a_stiffness_multiplies_it() -> None:
         assert judge(off(measured(mixed), part), cell).verdict is Verdict.WRONG
 
 
-def test_allowed_errors_fall_with_the_order_of_the_element_and_have_a_cap() -> None:
+def test_allowed_errors_fall_with_the_order_of_the_element_and_have_a_cap():
     slender = half_circle(cantilever(slenderness=1e4))
 
-    def allowed(element: str, elements: int) -> float:
+    def allowed(element, elements):
         return allowance(beam_case(slender, ELEMENTS[element], elements), BENT).error
 
     assert allowed("timoshenko", 10) / allowed("timoshenko", 20) == pytest.approx(4, rel=0.01)
@@ -124,13 +120,12 @@ def test_allowed_errors_fall_with_the_order_of_the_element_and_have_a_cap() -> N
     assert "third power of the shear strain" in most.why
 
 
-def test_the_inner_moment_counts_where_the_beam_turns_by_more_than_a_right_angle() -> None:
+def test_the_inner_moment_counts_where_the_beam_turns_by_more_than_a_right_angle():
     """At the end of the half circle the clamp's moment is pi EI/L, the largest is the square root of 2 F EI."""
     last = half_circle(cantilever(slenderness=1e5), steps=1)
     check = Against(case=exact_rod(last))
     coarse = Case(scene=last, model="tsm", options=Options(element="timoshenko", elements=20))
     found = check.finding(coarse, measured(coarse).response, {check.case: measured(check.case)})
-    assert found is not None
     assert found.allowed == pytest.approx(4 * (np.sqrt(2 * 8.18212814018414) / 20) ** 2 / 24, rel=1e-3)
 
 
@@ -149,7 +144,7 @@ ENDS = {
 }
 
 
-def test_every_place_is_there_once_and_axes_reach_their_ends() -> None:
+def test_every_place_is_there_once_and_axes_reach_their_ends():
     """A pin an ulp beside a node is not on it; lengths of elements differ by the ratio; the quick cells are a part."""
     places = []
     for quick in (True, False):
@@ -175,7 +170,7 @@ def test_every_place_is_there_once_and_axes_reach_their_ends() -> None:
         assert max(lengths) / min(lengths) == pytest.approx(float(cell.column.split(",")[0]), rel=1e-6)
 
 
-def test_the_files_hold_every_cell(tmp_path: Path) -> None:
+def test_the_files_hold_every_cell(tmp_path):
     changes = ("as it is", "stopped", "off", "right and withdrawn")
     found = [
         replace(judge(BECOMES[change][0](measured(CASE))), cell=replace(CELL, column=str(k)))
@@ -204,9 +199,7 @@ def test_the_files_hold_every_cell(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_command_fails_where_a_cell_is_wrong(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_command_fails_where_a_cell_is_wrong(tmp_path, capsys, monkeypatch):
     """Five elements of the paper against the rod, of which too little is allowed."""
     scene = half_circle(cantilever(), steps=5)
     cell = replace(
@@ -236,7 +229,7 @@ STOP = {
 
 @pytest.mark.slow
 @pytest.mark.long
-def test_quick_matrix(tmp_path: Path, capsys: pytest.CaptureFixture[str], stated) -> None:
+def test_quick_matrix(tmp_path, capsys, stated):
     """Nothing is wrong, and no more stops or is withdrawn than what must."""
     assert main(["extremes", "--quick", "--out", str(tmp_path)]) == 0, capsys.readouterr().err
     cells = json.loads((tmp_path / "extremes.json").read_text())["cells"]
@@ -256,7 +249,7 @@ def test_quick_matrix(tmp_path: Path, capsys: pytest.CaptureFixture[str], stated
     stated("extremes.needless", sum(cell["needless"] for cell in cells))
     stated("extremes.not-completed", len(STOP))
 
-    def worst(axis: str, *values: str, model: str = "mixed") -> float:
+    def worst(axis, *values, model="mixed"):
         return max(at[axis, model, value]["error"] for value in values)
 
     stated("extremes.slenderness", worst("slenderness", "50", "1000", "100000", "1e+06"))
@@ -275,11 +268,10 @@ def test_quick_matrix(tmp_path: Path, capsys: pytest.CaptureFixture[str], stated
 
 
 @pytest.mark.slow
-def test_many_elements_leave_what_the_page_says(stated) -> None:
+def test_many_elements_leave_what_the_page_says(stated):
     """5,000 elements of `mixed`: 2e-10, and 19 % off would be wrong by eight powers of ten."""
     (cell,) = (one for one in matrix() if (one.axis, one.row, one.column) == ("elements", "mixed", "5000"))
     found = judged(cell, {case: measure(case, repeats=0) for case in cell.cases})
     assert found.verdict is Verdict.RIGHT
-    assert found.decisive is not None
     stated("extremes.elements-5000", found.decisive.error)
     assert found.decisive.allowed < 3e-9

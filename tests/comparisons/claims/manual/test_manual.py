@@ -12,7 +12,6 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from comparisons.claims.claim import StoppedError
-from comparisons.claims.manual import Problem
 from comparisons.claims.manual import problems as manual_problems
 
 # not public: one problem without its picture, and a problem that no model solves
@@ -64,14 +63,14 @@ ANSWERS = (
 """Models that answer a problem."""
 
 
-def cards(folder: Path, *names: str) -> tuple[list[dict[str, object]], Draft202012Validator]:
+def cards(folder, *names):
     """Return the cards that the command writes, and the check by their schema."""
     assert main(["manual", "--cards", str(folder), "--only", *names]) == 0
     schema = Draft202012Validator(json.loads((folder / "card.schema.json").read_text()))
     return [json.loads((folder / f"{name}.json").read_text()) for name in names], schema
 
 
-def toml(tables: dict[str, object]) -> str:
+def toml(tables):
     """Return the scene of a card as a scene file."""
     lines = []
     for kind, found in tables.items():
@@ -84,7 +83,7 @@ def toml(tables: dict[str, object]) -> str:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in PROBLEMS]
 )
-def test_a_problem_of_the_table_passes(name: str, tmp_path: Path) -> None:
+def test_a_problem_of_the_table_passes(name, tmp_path):
     """With every model, whose tolerance has a reason and exceeds the uncertainty of the value; its card has the same scene and values."""
     problem = PROBLEMS[name]()
     (card,), schema = cards(tmp_path, name)
@@ -106,15 +105,13 @@ def test_a_problem_of_the_table_passes(name: str, tmp_path: Path) -> None:
         assert trial.allowance.why
 
 
-def test_the_page_counts_the_problems_and_their_answers(stated) -> None:
+def test_the_page_counts_the_problems_and_their_answers(stated):
     stated("manual.problems", len(PROBLEMS))
     assert PROBLEMS.keys() == ANSWERS.keys()
     assert sum(ANSWERS.values()) == 96
 
 
-def test_a_card_states_the_digits_that_its_uncertainty_leaves(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypatch, capsys):
     """Of a value they are significant ones, of zero decimals of the scale; the schema refuses what is no card."""
     monkeypatch.chdir(tmp_path)
     (card, _), schema = cards(Path("cards"), "roll-up", "locking")
@@ -141,12 +138,12 @@ def test_a_card_states_the_digits_that_its_uncertainty_leaves(
         assert not schema.is_valid(card | change)
 
 
-def made_up(*answers: "tuple[float, ...] | StoppedError") -> Problem:
+def made_up(*answers):
     """A problem with the exact values 2 and 0, models that answer so, and a bar in a name."""
     problem = PROBLEMS["roll-up"]()
     trial, first, zero = problem.trials[0], problem.quantities[0], problem.quantities[2]
 
-    def measure(answer: "tuple[float, ...] | StoppedError") -> SimpleNamespace:
+    def measure(answer):
         if isinstance(answer, StoppedError):
             raise answer
         return SimpleNamespace(values=answer, curves=())
@@ -178,9 +175,7 @@ JUDGED = [
 ]
 
 
-def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, monkeypatch, capsys):
     """Screen, exit status, JUnit, JSON and page; what is no number fails, and a page escapes bars."""
     problems = {
         "made-up": lambda: made_up(*(answer for answer, *_ in JUDGED)),
@@ -223,7 +218,7 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(
         answered(made_up((2.0,)), "p.svg")
 
 
-def test_a_scene_that_is_moved_is_the_scene() -> None:
+def test_a_scene_that_is_moved_is_the_scene():
     """Turned by a quarter, mirrored, reversed: beams, pins and sides are where they must be."""
     scene = ks("ks-face", 4)
     turned, image = moved(scene, math.pi / 2, (1.0, 2.0)), mirrored(scene)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from types import SimpleNamespace as Study
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import pytest
 from comparisons.claims.paper import claims_critical_area as critical
 from comparisons.claims.paper import claims_examples as examples
 from comparisons.claims.paper import critical_area as study
-from comparisons.claims.paper.approach import NEAREST, Approach, approaches
+from comparisons.claims.paper.approach import NEAREST, approaches
 from comparisons.claims.paper.claims import CLAIMS, Findings, claims_text
 from comparisons.claims.paper.double_beam import Attempt
 from comparisons.claims.paper.force_floor import force_floor
@@ -33,11 +32,7 @@ SLOPES = {SIMPLE: -3.0, CANTILEVER: -3.0, TURNED: -3.0, TIMOSHENKO: -1.0, MIXED:
 TOLERANCES = (1e-6, 1e-8)
 
 
-def areas(
-    sizes: dict[str, tuple[float, float]] | None = None,
-    slopes: dict[str, tuple[float, float]] | None = None,
-    blocked: tuple[str, ...] = (),
-) -> study.CriticalAreas:
+def areas(sizes=None, slopes=None, blocked=()):
     """A study of one start, three nodes and two tolerances: critical areas per tolerance, slopes per end, who does not pass a node."""
     chosen = {SIMPLE: (0.004, 0.04), CANTILEVER: (0.003, 0.02), TIMOSHENKO: (1e-7, 1e-4), MIXED: (1e-8, 1e-8)}
     measured = []
@@ -59,17 +54,10 @@ def areas(
     return study.CriticalAreas(tolerances=TOLERANCES, measured=tuple(measured), floors=(*floors, stiff))
 
 
-def shapes(
-    status: str = "COMPLETED",
-    error: tuple[float, ...] = (4e-3, 1e-3, 5e-4),
-    force: float = 3.0,
-    seconds: float = 0.1,
-) -> Study:
+def shapes(status="COMPLETED", error=(4e-3, 1e-3, 5e-4), force=3.0, seconds=0.1):
     """A study of the paper's element with 10, 20 and 50 elements, and the solid; `force` is the error of the force over the shape's."""
 
-    def run(
-        label: str, value: float, unknowns: int = 30, seconds: float = seconds, status: str = "COMPLETED"
-    ) -> Run8:
+    def run(label, value, unknowns=30, seconds=seconds, status="COMPLETED"):
         path = dict.fromkeys(KEPT, force * value) | {"shape": value}
         return Run8(
             reading=examples.KS, label=label, status=status, unknowns=unknowns, iterations=1, seconds=seconds,
@@ -81,7 +69,7 @@ def shapes(
     return Study(runs=tuple(runs), run=lambda _, label: next(one for one in runs if one.label == label))
 
 
-def lifts(error: float = 1e-5) -> Study:
+def lifts(error=1e-5):
     lift = Study(
         slip_off_error=lambda _: error, reached={TIMOSHENKO: 1.0}, rod_slip_off=1.0, force_error=error
     )
@@ -101,7 +89,7 @@ AT_EVENT = THROUGH | {"status": "TWO_CONTACTS", "depth": 0.53, "passes": 2, "at_
 AT_NODE = THROUGH | {"place": 0.8, "status": "CUTBACK_FLOOR", "depth": 0.0, "passes": 0}
 
 
-def beams(*attempts: dict[str, Any], late: str = "", open_pair: str = "", without: str = "") -> Study:
+def beams(*attempts, late="", open_pair="", without=""):
     """A study whose events are where the exact rods have them, but for those that come `late`, and one kind that does not."""
     at = {
         ("touch", TIP): "touch",
@@ -134,7 +122,7 @@ RANGE = {element: critical._printed_range(element) for element in study.PRINTED}
 LOW, _ = study.PRINTED[TIMOSHENKO]
 TWICE = 2 * LOW
 BOTH = {CANTILEVER: (-1, -1), TURNED: (-1, -1)}
-JUDGED: list[tuple[Any, Verdict, list[tuple[Any, Verdict]]]] = [
+JUDGED = [
     (critical.exists, REPRODUCED, [(areas({SIMPLE: (1e-8, 1e-8)}), NOT)]),
     (critical.cantilever_effective, NOT, [(areas(slopes=BOTH), REPRODUCED), (areas(slopes={TURNED: (-1, -1)}), OPEN)]),
     (critical.cantilever_effective, NOT, [(areas(slopes=dict.fromkeys(BOTH, (-1, -3))), OPEN)]),
@@ -174,7 +162,7 @@ JUDGED: list[tuple[Any, Verdict, list[tuple[Any, Verdict]]]] = [
 BASE = {"fig7a": lifts(), "fig7b": areas(), "fig8": shapes(), "fig9": beams()}
 
 
-def test_every_claim_is_judged_once_and_by_its_numbers() -> None:
+def test_every_claim_is_judged_once_and_by_its_numbers():
     """Two of the 25 claims are made twice in the paper; no judge always says the same."""
     figures = {claim.judge.__qualname__: claim.figure for claim in CLAIMS}
     assert set(figures) == {judge.__qualname__ for judge, *_ in JUDGED}
@@ -193,7 +181,7 @@ def test_every_claim_is_judged_once_and_by_its_numbers() -> None:
         over_readings((), "", "")
 
 
-def test_direction_and_order_agree() -> None:
+def test_direction_and_order_agree():
     """Both look at the same pairs: where the order is reproduced, the cantilever's area is the smaller one."""
     for part in (0.3, 0.9, 0.999, 1.0, 1.001, 2.0):
         found = areas({CANTILEVER: (part * 0.004, part * 0.04)})
@@ -201,7 +189,7 @@ def test_direction_and_order_agree() -> None:
         assert (critical.order(found).verdict is REPRODUCED) == smaller
 
 
-def ways(element: str, tolerance: float) -> tuple[Approach, ...]:
+def ways(element, tolerance):
     """The ways of the contact to the beam's nodes at a fixed tolerance."""
     scene = load_scene(study.SCENE)
     scene = replace(scene, pins=(replace(scene.pins[0], start=(4.2, 0.0)),))
@@ -209,7 +197,7 @@ def ways(element: str, tolerance: float) -> tuple[Approach, ...]:
 
 
 @pytest.mark.slow
-def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance() -> None:
+def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance():
     """``b^-3`` and ``b^-1``: a tolerance 1e4 times sharper widens it by about 20 and 1e4; `mixed` has none."""
     for element, factor in ((SIMPLE, 1e4 ** (1 / 3)), (TIMOSHENKO, 1e4)):
         loose, sharp = (ways(element, tolerance)[0].smallest for tolerance in (1e-7, 1e-11))
@@ -218,7 +206,7 @@ def test_the_critical_area_grows_with_the_sharpness_of_the_tolerance() -> None:
         assert all(way.smallest <= NEAREST for way in ways(MIXED, tolerance))
 
 
-def test_the_way_ends_where_the_pin_slips_off() -> None:
+def test_the_way_ends_where_the_pin_slips_off():
     """Section 4.1: the exact rod slips off a pin at 4.2 m at 1.4716026278 m."""
     found = ways(MIXED, 1e-9)
     assert [way.node for way in found] == [4.25, 4.5]
@@ -229,34 +217,34 @@ def test_the_way_ends_where_the_pin_slips_off() -> None:
     assert np.all(np.diff(last.ratio) < 0)
 
 
-def slope(element: str, end: Any, first: int = 1, step: int = 2, **options: float) -> float:
+def slope(element, end, first=1, step=2, **options):
     ratios = 10.0 ** -np.arange(first, 14, step)
     floors = [force_floor(element, float(ratio), end=end, samples=25, **options) for ratio in ratios]
     return float(np.polyfit(np.log10(ratios), np.log10(floors), 1)[0])
 
 
 @pytest.mark.parametrize("element", [*SLOPES, "mixed-no-bow"])
-def test_slope(element: str) -> None:
+def test_slope(element):
     expected = SLOPES.get(element, 0.0)
     for end in ("start", "end"):
         assert slope(element, end) == pytest.approx(expected, abs={-3.0: 0.3, -1.0: 0.2, 0.0: 0.1}[expected])
 
 
-def test_timoshenko_is_euler_bernoulli_until_the_distance_falls_below_the_shear_length() -> None:
+def test_timoshenko_is_euler_bernoulli_until_the_distance_falls_below_the_shear_length():
     """``sqrt(Psi)`` = 1e-3 of the element: the same cubic floor above, a linear one below."""
     above = [force_floor(name, 1e-2, Psi=1e-6, samples=200) for name in (TIMOSHENKO, SIMPLE)]
     assert above[0] == pytest.approx(above[1], rel=0.25)
     assert slope(TIMOSHENKO, "start", 4, 1, Psi=1e-6) == pytest.approx(-1, abs=0.2)
 
 
-def test_mixed_has_the_floor_of_mid_element_everywhere() -> None:
+def test_mixed_has_the_floor_of_mid_element_everywhere():
     middle = force_floor(MIXED, 0.5)
     for end in ("start", "end"):
         for ratio in (0.0, 1e-300, 1e-16, 1e-8, 1e-2):
             assert force_floor(MIXED, ratio, end=end) <= 1.5 * middle
 
 
-def test_the_size_is_the_contact_stiffness_times_the_last_bit_of_a_coordinate() -> None:
+def test_the_size_is_the_contact_stiffness_times_the_last_bit_of_a_coordinate():
     """``3 EI/b^3`` times ``eps L/10`` (half a last bit, root mean square, of coordinates up to L), in EI/L^2."""
     for elements in (10, 100, 1000):
         expected = 3 / 1e-4**3 * np.finfo(float).eps * elements / 10 * elements**2

@@ -3,8 +3,6 @@
 import csv
 import json
 from collections import Counter
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +50,7 @@ PAPER = [
 """Every claim of [P]: where it stands, words of it, the figure that decides it, and the verdict of full settings."""
 
 
-def check_claims(page: Path, *figures: str, verdict: str | None = None) -> None:
+def check_claims(page, *figures, verdict=None):
     """The page has every claim of some figures once, in the order of the paper, with its verdict or that of coarse settings."""
     lines = [line for line in page.read_text().splitlines() if line.startswith("| ") and line[2].isdigit()]
     wanted = [claim for claim in PAPER if claim[2] in figures]
@@ -63,7 +61,7 @@ def check_claims(page: Path, *figures: str, verdict: str | None = None) -> None:
         assert measured.endswith(f"(`{figure}`)")
 
 
-def check_files(folder: Path, figure: str) -> None:
+def check_files(folder, figure):
     pictures, tables = FILES[figure]
     for stem in pictures:
         assert imread(folder / f"{stem}.png").std() > 0.03
@@ -75,7 +73,7 @@ def check_files(folder: Path, figure: str) -> None:
         assert all(set(row) == set(rows[0]) and None not in row for row in rows)
 
 
-def run(figure: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+def run(figure, folder, capsys):
     """Reproduce a figure with coarse settings; its page has every picture, every claim, and the shapes that move."""
     assert main(["reproduce", figure, "--quick", "--out", str(folder)]) == 0
     out, err = capsys.readouterr()
