@@ -215,7 +215,6 @@ def test_beam_theorys_own_error(height):
     ("asked", "sentence"),
     [
         ({"quantity": "weight"}, "quantity = weight: must be one of force, arc"),
-        ({"model": "rod"}, "model = rod: has no resolution to choose"),
         ({"model": "solid", "element": "mixed"}, "solid: element = mixed: not an option"),
         ({"element": "cubic"}, "element = cubic: must be one of"),
     ],
