@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparisons.cases import Case
+from comparisons.cases import Case, measure
 
 # not public: the least of known seconds and the order of known errors, which no measured time can show
 from comparisons.cases.measure import unmeasured
@@ -186,6 +186,10 @@ def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop()
     (row,) = orders(made, "force")
     assert (row["family"], row["settings"], row["order_points"]) == ("TSM mixed", 8, 4)
     assert (row["order"], row["cost_exponent"]) == pytest.approx((4.0, 1.0), rel=1e-9)
+    few = replace(KS, load_parameters=2)
+    reference = best_reference(few, {case: measure(case, repeats=1) for case in reference_cases(few)})
+    assert (reference.name, reference.end) == ("exact rod", 1.0)
+    assert reference.uncertainty["path"]["force"] < 1e-10
     scene = load_scene("double-beam")
     with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped: gone"):
         best_reference(scene, dict.fromkeys(reference_cases(scene), unmeasured("LOST", "gone")))

@@ -249,3 +249,10 @@ def test_the_size_is_the_contact_stiffness_times_the_last_bit_of_a_coordinate():
     for elements in (10, 100, 1000):
         expected = 3 / 1e-4**3 * np.finfo(float).eps * elements / 10 * elements**2
         assert 0.5 < force_floor(SIMPLE, 1e-4, elements=elements, samples=200) / expected < 2
+
+
+def test_the_input_of_a_floor_is_checked():
+    values = {"Psi": 0.0, "elements": 0, "samples": 0, "end": "middle", "element": "spring", "ratio": 1.5}
+    for name, value in (*values.items(), ("ratio", float("nan"))):
+        with pytest.raises(ValueError, match=name):
+            force_floor(**({"element": MIXED, "ratio": 0.1} | {name: value}))
