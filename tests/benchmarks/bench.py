@@ -19,7 +19,7 @@ def recorded(bench):
     record = {
         "machine": platform.platform(),
         "python": platform.python_version(),
-        "gates": [vars(gate) | {"met": gate.met} for gate in bench.gates],
+        "gates": [vars(gate) | {"value": float(gate.value), "met": gate.met} for gate in bench.gates],
         "seconds": bench.times,
     }
     return json.dumps(record, indent=1) + "\n"

@@ -23,7 +23,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.models.translate import to_solid, to_structure
 from comparisons.scene import load_scene
-from tests.benchmarks.measure import children
+from tests.benchmarks.measure import Gate, children
 
 KS = load_scene("ks-cantilever")
 T = np.array(KS.times)
@@ -34,7 +34,7 @@ def beams_against_solid(bench):
     beams, reference = bench.seconds(
         tsm_mixed_10=lambda: tsm.solve(structure, T), solid_50x2=lambda: fem_reference.solve(solid, T)
     )
-    bench.gate("solid 50x2 over TSM mixed 10, seconds", reference / beams, 40, at_least=True)
+    bench.add(Gate("solid 50x2 over TSM mixed 10, seconds", reference / beams, 40, at_least=True))
 
 
 def equal_error(bench):
@@ -46,7 +46,7 @@ def equal_error(bench):
         found = next(
             row for row in rows if (row["scope"], row["quantity"], row["target"]) == (scope, "force", 1e-3)
         )
-        bench.gate(f"solid over TSM at .1 % of F, {state}, seconds", found["ratio"], 100, at_least=True)
+        bench.add(Gate(f"solid over TSM at .1 % of F, {state}, seconds", found["ratio"], 100, at_least=True))
 
 
 def exact_elements(bench):
@@ -76,10 +76,10 @@ def exact_elements(bench):
         mixed_10_shortest=lambda: tsm.solve(ten, T),
         mixed_fine=lambda: tsm.solve(fine, T),
     )
-    bench.gate("exact 1 over mixed 10, seconds", path / mixed, 2.5)
-    bench.gate("exact 1, 50 load parameters over end state, seconds", 8 * path / end, 8, at_least=True)
-    name = f"mixed {elements} over exact 1 at error 1e-6, seconds"
-    bench.gate(name, mixed_fine / path_loose, 1, at_least=True)
+    bench.add(Gate("exact 1 over mixed 10, seconds", path / mixed, 2.5))
+    bench.add(Gate("exact 1, 50 load parameters over end state, seconds", 8 * path / end, 8, at_least=True))
+    ratio = mixed_fine / path_loose
+    bench.add(Gate(f"mixed {elements} over exact 1 at error 1e-6, seconds", ratio, 1, at_least=True))
 
 
 def scenes(bench):
@@ -89,7 +89,7 @@ def scenes(bench):
     single, double = bench.seconds(
         mixed_20_KS=lambda: tsm.solve(one, T), double_beam=lambda: tsm.solve(two, depths)
     )
-    bench.gate("double beam over KS with 20 elements, seconds", double / single, 4)
+    bench.add(Gate("double beam over KS with 20 elements, seconds", double / single, 4))
 
 
 PEAK = """
@@ -106,7 +106,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 def memory(bench):
     """Peak memory of one load parameter on 1000x20, 164,000 unknowns."""
     done = subprocess.run([sys.executable, "-c", PEAK], check=True, capture_output=True, text=True)
-    bench.gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5)
+    bench.add(Gate("peak memory of 1000x20, GB", int(done.stdout) * 1024 / 1e9, 1.5))
 
 
 def comparison(bench):
@@ -134,7 +134,7 @@ def comparison(bench):
         for module, name in ((compare, "solve"), (compare, "certified"), (budget, "solve")):
             patches.enter_context(patch.object(module, name, timed(getattr(module, name))))
         ratios = [taken() for _ in range(4)][1:]
-    bench.gate("compare ks-cantilever over its solutions", median(ratios), 2.0)
+    bench.add(Gate("compare ks-cantilever over its solutions", median(ratios), 2.0))
 
 
 SOLVE = ["solve", "ks-cantilever", "--model", "tsm", "--elements", "10"]
@@ -165,10 +165,10 @@ def start_up(bench):
         )
     with redirect_stdout(io.StringIO()):
         (solution,) = bench.seconds(clock=time.process_time, in_place=lambda: main(SOLVE))
-    bench.gate("import tsm over import numpy, processes", tsm_import / numpy, 2.5)
-    bench.gate("crossval --help over import numpy, processes", help_command / numpy, 1.5)
-    name = "crossval solve without its solution over import numpy"
-    bench.gate(name, (whole - solution) / numpy, 3)
+    bench.add(Gate("import tsm over import numpy, processes", tsm_import / numpy, 2.5))
+    bench.add(Gate("crossval --help over import numpy, processes", help_command / numpy, 1.5))
+    rest = (whole - solution) / numpy
+    bench.add(Gate("crossval solve without its solution over import numpy", rest, 3))
 
 
 PARTS = (beams_against_solid, equal_error, exact_elements, scenes, memory, comparison, start_up)

@@ -41,8 +41,8 @@ class Bench:
     gates: list[Gate] = field(default_factory=list)
     times: dict[str, float] = field(default_factory=dict)
 
-    def gate(self, name: str, value: float, bar: float, *, at_least: bool = False) -> None:
-        self.gates.append(Gate(name, float(value), bar, at_least))
+    def add(self, gate: Gate) -> None:
+        self.gates.append(gate)
 
     def seconds(self, repeats: int = 7, of: Callable[[list[float]], float] = statistics.median,
                 clock: Callable[[], float] = time.perf_counter, **actions: Callable[[], Any]) -> list[float]:  # fmt: skip

@@ -12,8 +12,8 @@ from tests.stated import MARK, NUMBER, ROOT
 
 def test_measured_ratios_are_written_and_read():
     made = Bench(times={"import tsm": 0.25})
-    made.gate("ratio", np.float64(3.5), 3.0, at_least=True)
-    made.gate("cut-backs", np.int64(1), 0)
+    made.add(Gate("ratio", np.float64(3.5), 3.0, at_least=True))
+    made.add(Gate("cut-backs", np.int64(1), 0))
     record = json.loads(bench.recorded(made))
     found = [(gate["name"], gate["value"], gate["met"]) for gate in record["gates"]]
     assert found == [("ratio", 3.5, True), ("cut-backs", 1.0, False)]
