@@ -20,7 +20,7 @@ nox.options.error_on_missing_interpreters = os.environ.get("CI") == "true"
 nox.options.default_venv_backend = "venv"
 
 
-def lowest(python: str) -> list[str]:
+def lowest(python):
     """Return the lowest versions that pyproject.toml allows and that have wheels."""
     stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
     bounds = dict(re.fullmatch(r"([\w-]+)>=([\d.]+)", line).groups() for line in stated)
@@ -29,7 +29,7 @@ def lowest(python: str) -> list[str]:
 
 @nox.session(python=PYTHONS)
 @nox.parametrize("versions", ["oldest", "newest"])
-def numbers(session: nox.Session, versions: str) -> None:
+def numbers(session, versions):
     """Compare essential numbers with those stored, and hold locks and processes to what studies need."""
     session.chdir(ROOT)
     if versions == "oldest":

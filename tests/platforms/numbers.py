@@ -8,7 +8,6 @@ import argparse
 import json
 import platform
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -34,12 +33,11 @@ RUNS = {
     "double-beam, exact": ("double-beam", "tsm", Options(element="exact")),
 }
 LOAD_PARAMETERS = 10
-Numbers = dict[str, dict[str, list[float | None]]]
 
 
-def computed() -> Numbers:
+def computed():
     """Return forces and arc positions of contacts, support moments and tips of every run."""
-    found: Numbers = {}
+    found = {}
     for label, (name, model, options) in RUNS.items():
         response = solve(replace(load_scene(name), load_parameters=LOAD_PARAMETERS), model, options)
         assert response.completed, f"{label}: {response.message}"
@@ -54,7 +52,7 @@ def computed() -> Numbers:
     return found
 
 
-def differences(numbers: Numbers, stored: Numbers) -> Iterator[tuple[float, str]]:
+def differences(numbers, stored):
     """Yield the difference of every history, relative to its largest value, and its name."""
     assert numbers.keys() == stored.keys(), "the runs are not those stored"
     for label, histories in numbers.items():
@@ -66,24 +64,19 @@ def differences(numbers: Numbers, stored: Numbers) -> Iterator[tuple[float, str]
             yield float(apart), f"{key}, {label}"
 
 
-def versions() -> str:
-    """Return what the numbers depend on."""
-    libraries = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", "scikit-fem")]
-    return ", ".join([f"python {platform.python_version()}", *libraries, platform.machine()])
-
-
-def main() -> int:
-    """Compare, or store."""
+def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="store the numbers")
     given = parser.parse_args()
+    libraries = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", "scikit-fem")]
+    versions = ", ".join([f"python {platform.python_version()}", *libraries, platform.machine()])
     numbers = computed()
     if given.write:
-        stated = {"source": f"python -m tests.platforms.numbers --write: {versions()}", "numbers": numbers}
+        stated = {"source": f"python -m tests.platforms.numbers --write: {versions}", "numbers": numbers}
         STORED.write_text(json.dumps(stated, allow_nan=False, indent=1) + "\n")
         return 0
     apart, name = max(differences(numbers, json.loads(STORED.read_text())["numbers"]))
-    print(f"{versions()}: largest difference {apart:.1e} ({name}), bound {BOUND:g}")
+    print(f"{versions}: largest difference {apart:.1e} ({name}), bound {BOUND:g}")
     return int(not apart <= BOUND)
 
 

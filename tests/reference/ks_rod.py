@@ -13,7 +13,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
@@ -23,30 +22,28 @@ EA, EI = E * H**2, E * H**4 / 12
 GA = 5 / 6 * E / 2.6 * H**2
 TIMES = (0.1, 0.25, 0.5, 0.75, 1.0)
 OFFSETS = {"axis": 0.0, "face": H / 2}
-Array = NDArray[np.float64]
 
 
-def strains(theta: float, force: Array) -> tuple[float, float]:
+def strains(theta, force):
     """Derivatives x' and y' of the centre line."""
     c, s = np.cos(theta), np.sin(theta)
     stretch, shear = 1 + (force @ [c, s]) / EA, (force @ [-s, c]) / GA
     return stretch * c - shear * s, stretch * s + shear * c
 
 
-def shot(moment: float, force: Array, arc: float) -> Array:
+def shot(moment, force, arc):
     """Return x, y, theta and M at the pin."""
 
-    def slope(_: float, y: Array) -> list[float]:
+    def slope(_, y):
         dx, dy = strains(y[2], force)
         return [dx, dy, y[3] / EI, force[0] * dy - force[1] * dx]
 
     start = [0.0, 0.0, 0.0, moment]
     scale = np.array([1.0, 1.0, 1.0, EI])
-    end: Array = solve_ivp(slope, (0.0, arc), start, method="DOP853", rtol=3e-14, atol=1e-15 * scale).y[:, -1]
-    return end
+    return solve_ivp(slope, (0.0, arc), start, method="DOP853", rtol=3e-14, atol=1e-15 * scale).y[:, -1]
 
 
-def misses(z: Array, pin: Array, offset: float) -> list[float]:
+def misses(z, pin, offset):
     """What the four conditions miss, dimensionless; z is M L/EI, F L^2/EI and s/L."""
     force = EI * z[1:3]
     x, y, theta, moment = shot(EI * z[0], force, z[3])
@@ -55,7 +52,7 @@ def misses(z: Array, pin: Array, offset: float) -> list[float]:
     return [*(np.array([x, y]) - offset * unit - pin), moment / EI, float(unit @ (before + behind))]
 
 
-def path(offset: float, last: float = TIMES[-1]) -> tuple[list[float], list[float]]:
+def path(offset, last=TIMES[-1]):
     """Return contact forces [N] and arc positions [m] at `TIMES` up to the last, each found from the one before in small steps."""
     z = np.array([3 * 0.005, 0.0, 3 * 0.005, 0.995])  # a small lift of the tip
     forces, arcs = [], []
@@ -70,7 +67,7 @@ def path(offset: float, last: float = TIMES[-1]) -> tuple[list[float], list[floa
     return forces, arcs
 
 
-def text() -> str:
+def text():
     """Return the file."""
     lines = [
         "# Konyukhov-Schweizerhof cantilever as a Reissner rod, kappa = 5/6, G = E/2.6, pin from (1, -offset) by (-1, 2/pi).",

@@ -5,23 +5,19 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import distributed
 import pytest
 
-from comparisons.cases import workers
 from comparisons.cli import main
-from tests.comparisons.cases.conftest import tiny
-from tests.comparisons.cases.test_command import CASES, histories, recorded, table, wait_for
+from tests.comparisons.cases.conftest import CASES, recorded, wait_for
+from tests.comparisons.cases.test_command import check_finished
 
 
 @pytest.fixture
-def cluster() -> Iterator[Any]:
+def cluster():
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     ) as found:
@@ -29,45 +25,37 @@ def cluster() -> Iterator[Any]:
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_a_worker(cluster: Any, tmp_path: Path) -> None:
-    study, here, there = (
-        tiny(tmp_path / "tiny.toml", CASES // 3),
-        tmp_path / "here.sqlite",
-        tmp_path / "there.sqlite",
-    )
+def test_a_cluster_that_loses_a_worker(cluster, tiny, tmp_path):
+    here, there = tmp_path / "here.sqlite", tmp_path / "there.sqlite"
     victim = next(iter(cluster.workers.values())).pid
     killed = list[int]()
 
-    def kill() -> None:
+    def kill():
         wait_for(lambda: recorded(there) >= 3)
         killed.append(recorded(there))
         os.kill(victim, signal.SIGKILL)
 
     killer = Thread(target=kill)
     killer.start()
-    status = main(["study", str(study), "--results", str(there), "--cluster", cluster.scheduler_address])
+    status = main(["study", str(tiny), "--results", str(there), "--cluster", cluster.scheduler_address])
     killer.join()
     assert status == 0
     assert 3 <= killed[0] < CASES
-    assert main(["study", str(study), "--results", str(here), "--workers", "1"]) == 0
-    assert table(there) == table(here)
-    assert histories(there) == histories(here)
+    assert main(["study", str(tiny), "--results", str(here), "--workers", "1"]) == 0
+    check_finished(tiny, there, here)
 
 
+@pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
-def test_no_cluster_there(
-    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(workers, "CLUSTER_PATIENCE", 0.5)
-    study = tiny(tmp_path / "tiny.toml", 2)
-    status = main(["study", str(study), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
+def test_no_cluster_there(address, tiny, tmp_path, capsys):
+    status = main(["study", str(tiny), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
     assert status == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
 
 
 @contextmanager
-def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
+def dask(program, *arguments):
     """Run a program of Dask beside the test."""
     process = subprocess.Popen(
         [sys.executable, "-m", f"distributed.cli.dask_{program}", *arguments, "--dashboard-address", ":0"],
@@ -81,28 +69,26 @@ def dask(program: str, *arguments: str) -> Iterator["subprocess.Popen[bytes]"]:
         process.wait()
 
 
-def free_port() -> int:
+def free_port():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         return int(free.getsockname()[1])
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    study, file, port = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite", free_port()
+def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path, capfd):
+    file, port = tmp_path / "a.sqlite", free_port()
     address = f"tcp://127.0.0.1:{port}"
     with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
 
-        def kill() -> None:
+        def kill():
             wait_for(lambda: recorded(file) >= 3)
             scheduler.kill()
 
         with dask("worker", address, "--nthreads", "1", "--no-nanny"):
             killer = Thread(target=kill)
             killer.start()
-            status = main(["study", str(study), "--results", str(file), "--cluster", address])
+            status = main(["study", str(tiny), "--results", str(file), "--cluster", address])
             killer.join()
     assert status == 2
     assert 3 <= recorded(file) < CASES

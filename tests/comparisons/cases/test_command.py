@@ -1,60 +1,38 @@
 """`crossval study FILE` in processes of its own: killed, interrupted, in company, out of room, on a cluster."""
 
+import json
 import os
 import random
 import resource
 import signal
-import sqlite3
-import subprocess
-from collections.abc import Callable
-from contextlib import closing
-from dataclasses import replace
+import sys
+import zlib
 from pathlib import Path
-from time import monotonic, sleep
+from time import sleep
 
 import pytest
 
-from comparisons.cases.results import read_results, result_rows
 from comparisons.cli import main
-from comparisons.output import csv_text
-from tests.comparisons.cases.conftest import tiny
+from tests.comparisons.cases.conftest import CASES, TINY, asked, recorded, rows, wait_for
 
-CASES = 30
-"""Of the tiny study."""
 KILLS = 20
 """A third while the libraries are loaded, the others after 1 to 8 cases more; of the command alone or of its workers too."""
-Start = Callable[..., "subprocess.Popen[str]"]
 
 
-def table(file: Path) -> str:
-    return csv_text(result_rows(read_results(file), timings=False))
+def table(file):
+    return rows(file, "--no-timings")
 
 
-def histories(file: Path) -> dict[str, str]:
+def histories(file):
     """Every number of every result but seconds and memory, by key."""
-    return {
-        result.key: replace(result.measurement, seconds=0.0, peak_memory=0).to_json()
-        for result in read_results(file)
-    }
+    found = {}
+    for key, blob in asked(file, "SELECT key, measurement FROM result"):
+        assert isinstance(blob, bytes)
+        found[key] = json.loads(zlib.decompress(blob)) | {"seconds": 0.0, "peak_memory": 0}
+    return found
 
 
-def recorded(file: Path) -> int:
-    """Number of results in a file that may not be there yet."""
-    try:
-        with closing(sqlite3.connect(f"{file.as_uri()}?mode=ro", uri=True)) as connection:
-            return int(connection.execute("SELECT count(*) FROM result").fetchone()[0])
-    except sqlite3.Error:
-        return 0
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 60) -> None:
-    deadline = monotonic() + seconds
-    while not condition():
-        assert monotonic() < deadline, "waited in vain"
-        sleep(0.01)
-
-
-def running(group: int) -> list[int]:
+def running(group):
     """Processes of a group that are not dead."""
     found = []
     for entry in Path("/proc").glob("[0-9]*/stat"):
@@ -68,52 +46,22 @@ def running(group: int) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory):
     """The results of the tiny study, uninterrupted."""
     folder = tmp_path_factory.mktemp("whole")
-    study = tiny(folder / "tiny.toml", CASES // 3)
-    assert main(["study", str(study), "--out", str(folder), "--workers", "1"]) == 0
+    (folder / "tiny.toml").write_text(TINY)
+    assert main(["study", str(folder / "tiny.toml"), "--out", str(folder), "--workers", "1"]) == 0
     return folder / "tiny.sqlite"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kept", [False, pytest.param(True, marks=pytest.mark.slow)])
-def test_results_of_another_version(kept: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Half of them, wrong ones: computed anew, or kept when that is asked for; one line says which."""
-    command = [
-        "study",
-        str(tiny(tmp_path / "tiny.toml", 2)),
-        "--out",
-        str(tmp_path),
-        "--workers",
-        "1",
-        "--quiet",
-    ]
-    file = tmp_path / "tiny.sqlite"
-    assert main(command) == 0
-    assert capsys.readouterr().err == ""
-    right = histories(file)
-    with closing(sqlite3.connect(file)) as connection, connection:
-        connection.execute(
-            "UPDATE result SET version = '0.1.0', key = 'x' || key, status = 'WRONG' WHERE label LIKE '% 5'"
-        )
-    assert main([*command, *(["--keep-old-versions"] if kept else [])]) == 0
-    out, err = capsys.readouterr()
-    what = "kept" if kept else "left aside, and the cases computed anew"
-    assert err == f"crossval: 3 results of other versions (0.1.0) were {what}\n"
-    assert ("WRONG 3" in out) is kept
-    found = histories(file)
-    assert len(found) == (6 if kept else 9)
-    assert (found.items() >= right.items()) is not kept
-    assert main(command) == 0
-    assert capsys.readouterr().err == (
-        "crossval: 3 results of other versions (0.1.0) were left aside, and the cases computed anew\n"
-        if kept
-        else ""
-    )
+def check_finished(study, file, whole):
+    """The same command goes on to the table of a run that was left alone."""
+    assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
+    assert table(file) == table(whole)
+    assert histories(file) == histories(whole)
 
 
-def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) -> bool:
+def killed(process, file, chance):
     """Kill the command, or all its processes, at a random point; whether it was still at work."""
     if chance.random() < 1 / 3:
         # while interpreter and libraries are loaded
@@ -133,70 +81,100 @@ def killed(process: "subprocess.Popen[str]", file: Path, chance: random.Random) 
 @pytest.mark.slow
 @pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see what is left running")
-def test_killed_at_twenty_random_points(whole: Path, tmp_path: Path, start: Start) -> None:
+def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
     """20 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
-    study = tiny(tmp_path / "tiny.toml", CASES // 3)
     chance, hit, files = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
     while len(hit) < KILLS:
         file = tmp_path / f"{len(files)}.sqlite"
         files.append(file)
         while recorded(file) < CASES and len(hit) < KILLS:
-            if killed(start("study", study, "--results", file, "--workers", "2"), file, chance):
+            if killed(start("study", tiny, "--results", file, "--workers", "2"), file, chance):
                 hit.append(recorded(file))
     for file in files:
-        assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
-        assert table(file) == table(whole)
-        assert histories(file) == histories(whole)
+        check_finished(tiny, file, whole)
     assert len(set(hit)) > KILLS // 4, "the points are spread over the study"
     print(f"killed with {sorted(hit)} cases done, in {len(files)} studies")
 
 
 @pytest.mark.slow
-def test_four_runs_on_one_file(whole: Path, tmp_path: Path, start: Start) -> None:
-    study, file = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite"
-    runs = [start("study", study, "--results", file, "--workers", "1") for _ in range(4)]
+def test_four_runs_on_one_file(whole, tiny, tmp_path, start):
+    file = tmp_path / "a.sqlite"
+    runs = [start("study", tiny, "--results", file, "--workers", "1") for _ in range(4)]
     ends = [(run.communicate(), run.returncode) for run in runs]
     assert all(status == 0 for _, status in ends), ends
     assert all(out.startswith("tiny: 30 cases: COMPLETED 30\n") for (out, _), _ in ends)
-    assert table(file) == table(whole)
-    assert histories(file) == histories(whole)
+    check_finished(tiny, file, whole)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("whom", ["command", "group"])
-def test_interrupted_and_gone_on(whom: str, whole: Path, tmp_path: Path, start: Start) -> None:
-    study, file = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite"
-    process = start("study", study, "--results", file, "--workers", "2")
+def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
+    file = tmp_path / "a.sqlite"
+    process = start("study", tiny, "--results", file, "--workers", "2")
     wait_for(lambda: recorded(file) >= 3)
     (os.kill if whom == "command" else os.killpg)(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 130
-    assert out == ""
+    assert (process.returncode, out) == (130, "")
     assert err.splitlines()[-1] == "crossval: interrupted"
     assert "Traceback" not in err
     assert "Warning" not in err
     kept = histories(file)
     assert 3 <= len(kept) < CASES
-    assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
+    check_finished(tiny, file, whole)
     assert kept.items() <= histories(file).items()
-    assert table(file) == table(whole)
 
 
 @pytest.mark.slow
-def test_out_of_room(tmp_path: Path, start: Start) -> None:
+def test_out_of_room(whole, tiny, tmp_path, start):
     """A limit on the size of files stops the command like a full disk: one line, and everything before it kept."""
-    study, file = tiny(tmp_path / "tiny.toml", CASES // 3), tmp_path / "a.sqlite"
+    file = tmp_path / "a.sqlite"
 
-    def limit() -> None:
+    def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, resource.RLIM_INFINITY))
 
-    process = start("study", study, "--results", file, "--workers", "2", preexec_fn=limit)
+    process = start("study", tiny, "--results", file, "--workers", "2", preexec_fn=limit)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2, err
     assert err.splitlines()[-1].startswith(f"crossval: {file}: cannot be written: ")
     assert "Traceback" not in err
-    with closing(sqlite3.connect(file)) as connection:
-        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert asked(file, "PRAGMA integrity_check") == [("ok",)]
     assert 0 < recorded(file) < CASES
-    assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
-    assert recorded(file) == CASES
+    check_finished(tiny, file, whole)
+
+
+KILLER = """
+import os, signal
+from pathlib import Path
+killed = Path("killed")
+count = len(killed.read_text()) if killed.exists() else 0
+if count < {times}:
+    killed.write_text("x" * (count + 1))
+    os.kill(os.getppid(), signal.SIGKILL)
+"""
+BESIDE = """
+[study]
+name = "beside"
+scene = "ks-cantilever"
+[[run]]
+model = ["killer.toml", "tsm", "rod"]
+scene.load_parameters = 2
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(times, tmp_path, capsys):
+    """A program that kills the worker that asks it: a second death is the case's, and the next study tries it again."""
+    (tmp_path / "killer.py").write_text(KILLER.format(times=times))
+    command = json.dumps([sys.executable, "-I", "killer.py"])
+    (tmp_path / "killer.toml").write_text(f'[program]\nname = "killer"\ncommand = {command}\n')
+    (tmp_path / "study.toml").write_text(BESIDE)
+    arguments = ["study", str(tmp_path / "study.toml"), "--out", str(tmp_path), "--workers", "2", "--quiet"]
+    for status in [3, 0][2 - times :]:
+        assert main(arguments) == status
+        lost = [row["model"] for row in rows(tmp_path / "beside.sqlite") if row["status"] == "WORKER_LOST"]
+        assert lost == ["killer"] * bool(status)
+        out, err = capsys.readouterr()
+        assert "COMPLETED 2" in out
+        assert ("1 cases have no result; the same command tries them again" in err) == bool(status)
+    assert (tmp_path / "killed").read_text() == "x" * times

@@ -1,194 +1,120 @@
-"""The results file: claims, results, and every file that cannot be used."""
+"""The results file between runs, and what a case measures: what no command can bring about alone."""
 
 import os
-import sqlite3
+import pickle
 import subprocess
 import sys
-from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import closing
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
-from importlib import metadata
-from multiprocessing import get_context
 from pathlib import Path
 from time import time
 
+import numpy as np
+import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
 import pytest
 
-from comparisons.cases import owner as owners
-from comparisons.cases.case import Case
-from comparisons.cases.measure import Measurement, measure, unmeasured
-from comparisons.cases.owner import Owner
-from comparisons.cases.results import read_results
+# not public: the death of an owner on any machine, the races of two runs and a worker's exception cannot be timed from outside
+from comparisons.cases import Case, Measurement, measure, memory
+from comparisons.cases import run as run_module
+from comparisons.cases.measure import unmeasured
+from comparisons.cases.owner import LEASE, Owner
 from comparisons.cases.store import WORKER_LOST, Store
+from comparisons.cases.workers import Workers
 from comparisons.files import OutputError
+from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from comparisons.version import version
-from tests.comparisons.cases.faults import write_many
+from tests.comparisons.cases.conftest import asked, crossval, recorded, rows
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=2)
 CASE = Case(scene=KS, model="tsm", options=Options(elements=3))
 NOBODY = 65534
+MESHED = replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),)))
 
 
 @pytest.fixture(scope="module")
-def measured() -> Measurement:
+def measured():
     return measure(CASE, repeats=1)
 
 
-def intact(path: Path) -> int:
-    """Check the whole file; return its number of results."""
-    with closing(sqlite3.connect(path)) as connection:
-        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        (count,) = connection.execute("SELECT count(*) FROM result").fetchone()
-    return int(count)
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "a.sqlite"
 
 
-def test_a_result_comes_back_as_it_was(tmp_path: Path, measured: Measurement) -> None:
-    with Store(tmp_path / "a.sqlite") as store:
-        store.record(CASE.key, CASE, measured)
-        assert store.statuses() == {CASE.key: "COMPLETED"}
-    (result,) = read_results(tmp_path / "a.sqlite")
-    assert (result.key, result.scene, result.label) == (CASE.key, "ks-cantilever", CASE.label)
-    assert result.measurement.to_json() == measured.to_json()
-
-
-def test_two_runs_never_hold_the_same_case(tmp_path: Path, measured: Measurement) -> None:
-    with Store(tmp_path / "a.sqlite") as one, Store(tmp_path / "a.sqlite") as other:
-        assert one.claim("abc", limit=2).claimed == ["a", "b"]
-        found = other.claim("abc", limit=3)
-        assert (found.claimed, found.taken, found.done) == (["c"], ["a", "b"], {})
-        one.record("a", CASE, measured)
-        found = other.claim("abc", limit=3)
-        assert (found.claimed, found.taken, found.done) == (["c"], ["b"], {"a": "COMPLETED"})
-        assert other.claim("a", limit=1, again=frozenset("a")).claimed == ["a"]
-        one.__exit__(None, None, None)
-        assert other.claim("b", limit=1).claimed == ["b"]
-
-
-@pytest.mark.slow
-def test_four_writers_share_the_cases(tmp_path: Path) -> None:
-    path, keys = tmp_path / "a.sqlite", 600
-    with ProcessPoolExecutor(4, mp_context=get_context("spawn")) as pool:
-        shares = list(pool.map(write_many, [str(path)] * 4, [keys] * 4))
-    assert sorted(key for share in shares for key in share) == [f"{n:05}" for n in range(keys)]
-    assert sum(bool(share) for share in shares) > 1, "one writer was alone"
-    assert intact(path) == keys
-
-
-def dead() -> int:
+def dead():
     child = subprocess.Popen([sys.executable, "-c", ""])
     child.wait()
     return child.pid
 
 
-@pytest.mark.parametrize(
-    ("owner", "heard", "free"),
-    [
-        (Owner.this_process, 0, False),
-        (lambda: replace(Owner.this_process(), pid=dead()), 0, True),
-        (lambda: replace(Owner.this_process(), born=0.0), 0, True),
-        (lambda: replace(Owner.this_process(), host="elsewhere", pid=dead()), 0, False),
-        (Owner.this_process, -owners.LEASE - 1, True),
-    ],
-    ids=["alive", "dead", "number used again", "another machine", "lease over"],
-)
-def test_claims_of_the_dead_are_free(
-    owner: Callable[[], Owner], heard: float, free: bool, tmp_path: Path
-) -> None:
-    with Store(tmp_path / "a.sqlite") as one, Store(tmp_path / "a.sqlite") as other:
-        one.claim("a", limit=1)
-        who = owner()
-        one._connection.execute(
-            "UPDATE run SET host = ?, pid = ?, born = ?, heard = ? WHERE id = ?",
-            (who.host, who.pid, who.born, time() + heard, one._run),
-        )
-        found = other.claim("a", limit=1)
-        assert (found.claimed, found.taken) == (["a"], []) if free else ([], ["a"])
+OWNERS = {
+    "alive": (dict, 0, False),
+    "dead": (lambda: {"pid": dead()}, 0, True),
+    "number used again": (lambda: {"born": 0.0}, 0, True),
+    "another machine": (lambda: {"host": "elsewhere", "pid": dead()}, 0, False),
+    "lease over": (dict, -LEASE - 1, True),
+}
 
 
-def test_a_settled_result_stands_and_a_lost_one_does_not(tmp_path: Path, measured: Measurement) -> None:
-    with Store(tmp_path / "a.sqlite") as store:
-        store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
-        store.record("a", CASE, measured)
-        assert store.statuses() == {"a": "COMPLETED"}
-        store.record(
-            "a", CASE, replace(measured, response=replace(measured.response, status="STEP_TOO_SMALL"))
-        )
-        store.record("a", CASE, unmeasured(WORKER_LOST, "it died"))
-        assert store.statuses() == {"a": "COMPLETED"}
-    assert intact(tmp_path / "a.sqlite") == 1
+@pytest.mark.parametrize("case", OWNERS)
+def test_claims_of_the_dead_are_free(case, path, measured):
+    change, heard, free = OWNERS[case]
+    with Store(path) as one, Store(path) as other:
+        assert one.claim("abc", limit=2).claimed == ["a", "b"]
+        one.record("b", CASE, measured)
+        who = replace(Owner.this_process(), **change())
+        query = "UPDATE run SET host = ?, pid = ?, born = ?, heard = ? WHERE id = (SELECT min(id) FROM run)"
+        asked(path, query, who.host, who.pid, who.born, time() + heard)
+        found = other.claim("abc", limit=3)
+        assert (found.claimed, found.taken) == (["a", "c"], []) if free else (["c"], ["a"])
+        assert found.done == {"b": "COMPLETED"}
+        assert other.claim("b", limit=1, again=frozenset("b")).claimed == ["b"]
+        one.__exit__(None, None, None)
+        assert other.claim("a", limit=1).claimed == ["a"]
 
 
-def test_a_full_file_is_one_line_and_stays_whole(tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
-    store = Store(path)
+def test_a_settled_result_stands_and_older_ones_are_those_of_the_same_case(path, measured):
+    """A lost one does not stand; one with a mesh file is of no other version, as nobody knows what was in the file."""
+    lost = unmeasured(WORKER_LOST, "it died")
+    with Store(path) as store:
+        for one in (lost, measured, unmeasured("STEP_TOO_SMALL", ""), lost):
+            store.record(CASE.key, CASE, one)
+        assert store.statuses() == {CASE.key: "COMPLETED"}
+        store.record("file", MESHED, measured)
+        asked(path, "UPDATE result SET version = '0.1.0'")
+        assert store.statuses() == {}
+        others = {
+            "scene": replace(CASE, scene=replace(KS, load_parameters=3)),
+            "model": replace(CASE, model="rod", options=Options()),
+            "options": replace(CASE, options=Options(elements=4)),
+        }
+        assert store.older({"same": CASE, **others, "file": MESHED}) == {"same": ("0.1.0", "COMPLETED")}
+        assert store.claim([CASE.key], limit=1).claimed == [CASE.key]
+        store.record(CASE.key, CASE, measured)
+        assert store.statuses() == {CASE.key: "COMPLETED"}
+
+
+def test_a_full_file_is_one_line_and_stays_whole(path, measured):
+    store, count = Store(path), 0
     store._connection.execute("PRAGMA max_page_count = 20")
-    recorded = 0
 
-    def fill() -> None:
-        nonlocal recorded
+    def fill():
+        nonlocal count
         with store:
-            while recorded < 100:
-                store.record(str(recorded), CASE, measured)
-                recorded += 1
+            while count < 100:
+                store.record(str(count), CASE, measured)
+                count += 1
 
     with pytest.raises(OutputError, match=r"a\.sqlite: cannot be written: database or disk is full$"):
         fill()
-    assert 0 < recorded == intact(path) == len(read_results(path))
+    assert asked(path, "PRAGMA integrity_check") == [("ok",)]
+    assert 0 < count == recorded(path) == len(rows(path))
 
 
-def other_database(path: Path) -> None:
-    connection = sqlite3.connect(path)
-    connection.execute("CREATE TABLE result (key TEXT)")
-    connection.close()
-
-
-def of_schema(path: Path, number: int) -> None:
-    with Store(path) as store:
-        store._connection.execute(f"PRAGMA user_version = {number}")
-
-
-@pytest.mark.parametrize(
-    ("make", "reason"),
-    [
-        (lambda path: path.write_text("key,status\n" * 100), "file is not a database"),
-        (other_database, "is no results file of crossval, but another SQLite database"),
-        (
-            lambda path: of_schema(path, 99),
-            "has schema 99, this version of crossval reads 3: choose another file",
-        ),
-        (
-            lambda path: of_schema(path, 1),
-            "has schema 1, this version of crossval reads 3: choose another file",
-        ),
-        (Path.mkdir, "is not a regular file|there is no such file"),
-    ],
-    ids=["text", "another database", "newer", "older", "folder"],
-)
-def test_other_files_are_refused_and_left_alone(
-    make: Callable[[Path], object], reason: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "a.sqlite"
-    make(path)
-    before = path.read_bytes() if path.is_file() else None
-    for use in (Store, read_results):
-        with pytest.raises(OutputError, match=reason):
-            use(path)
-    assert (path.read_bytes() if path.is_file() else None) == before
-    assert [item.name for item in tmp_path.iterdir()] == ["a.sqlite"]
-
-
-def test_no_file_is_no_results(tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match="there is no such file"):
-        read_results(tmp_path / "a.sqlite")
-    with pytest.raises(OutputError, match="there is no folder"):
-        Store(tmp_path / "none" / "a.sqlite")
-    assert not list(tmp_path.iterdir())
-
-
-def as_nobody(action: Callable[[], None]) -> bool:
+def as_nobody(action):
     """Whether `action` passes in a process that may write nothing of this user's."""
     child = os.fork()
     if child == 0:
@@ -205,69 +131,70 @@ def as_nobody(action: Callable[[], None]) -> bool:
 
 
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
-def test_a_folder_that_is_only_read(tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
-    with Store(path) as store:
-        store.record(CASE.key, CASE, measured)
-    before = path.read_bytes()
+def test_a_folder_that_is_only_read(many, copy, capfd):
+    before, folder = copy.read_bytes(), copy.parent
     if os.getuid() == 0:
-        for folder in (tmp_path, *list(tmp_path.parents)[:3]):
-            folder.chmod(0o755)
-    tmp_path.chmod(0o555)
+        for one in (*list(folder.parents)[:3], *many.parents[:3]):
+            one.chmod(0o755)
+    folder.chmod(0o555)
 
-    def use() -> None:
-        for file in (path, tmp_path / "new.sqlite"):
-            with pytest.raises(OutputError, match="cannot be written: Permission denied"):
-                Store(file)
-        assert len(read_results(path)) == 1
+    def use():
+        for file in (copy, folder / "new.sqlite"):
+            assert crossval("study", many.with_suffix(".toml"), "--results", file) == 2
+        assert len(rows(copy)) == 12
 
     try:
         assert as_nobody(use)
     finally:
-        tmp_path.chmod(0o755)
-    assert path.read_bytes() == before
-    assert [item.name for item in tmp_path.iterdir()] == ["a.sqlite"]
+        folder.chmod(0o755)
+    told = f"crossval: {folder}: cannot be written: Permission denied"
+    assert capfd.readouterr().err.splitlines() == [told, told]
+    assert copy.read_bytes() == before
+    assert [item.name for item in folder.iterdir()] == ["copy.sqlite"]
 
 
-def of_version(path: Path, version: str, *, key: str | None = None) -> None:
-    """Let the results in a file be those of another version, whose keys differ."""
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute("UPDATE result SET version = ?, key = coalesce(?, key)", (version, key))
+@contextmanager
+def thread():
+    with ThreadPoolExecutor(1) as executor:
+        yield executor
 
 
-@pytest.mark.parametrize("key", [None, "other"])
-def test_a_result_of_another_version_is_none(key: str | None, tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
+def test_a_case_that_raises_is_listed_and_done_again(path, monkeypatch):
+    cases = [CASE, replace(CASE, options=Options(elements=4))]
+    workers, right, reported = Workers(width=1, start=thread), run_module.solve, list[run_module.Tally]()
+
+    def raising(key, case, **how):
+        if case == CASE:
+            raise ZeroDivisionError("a bug\nin two lines")
+        return right(key, case, repeats=0, process=False)
+
+    monkeypatch.setattr(run_module, "solve", raising)
     with Store(path) as store:
-        store.record(CASE.key, CASE, replace(measured, response=replace(measured.response, cutbacks=12345)))
-    of_version(path, "0.1.0", key=key)
-    with Store(path) as store:
-        assert store.statuses() == {}
-        assert store.older({CASE.key: CASE}) == {CASE.key: ("0.1.0", "COMPLETED")}
-        assert store.claim([CASE.key], limit=1).claimed == [CASE.key]
-        store.record(CASE.key, CASE, measured)
-        assert store.statuses() == {CASE.key: "COMPLETED"}
-    found = {result.version: result.measurement.response.cutbacks for result in read_results(path)}
-    assert found[version()] == measured.response.cutbacks
-    assert ("0.1.0" in found) is (key is not None)
+        tally = run_module.run(cases, store, workers, repeats=0)
+        assert (tally.statuses, tally.failed) == ({"COMPLETED": 1, "ERROR": 1}, 1)
+        assert [row["message"] for row in rows(path)][:1] == ["ZeroDivisionError: a bug in two lines"]
+        monkeypatch.undo()
+        assert run_module.run(cases, store, workers, repeats=0, progress=reported.append).failed == 0
+    # on a slow machine the beat reports the same tally again
+    assert list(dict.fromkeys((one.done, one.total) for one in reported)) == [(1, 2), (2, 2)]
+    assert reported[-1].left == 0
+    with pytest.raises(RuntimeError, match="another version"):
+        run_module.solve("0" * 64, CASE, repeats=1, process=False)
 
 
-def test_older_results_are_those_of_the_same_case(tmp_path: Path, measured: Measurement) -> None:
-    path = tmp_path / "a.sqlite"
-    cases = {
-        "scene": replace(CASE, scene=replace(KS, load_parameters=3)),
-        "model": replace(CASE, model="rod", options=Options()),
-        "options": replace(CASE, options=Options(elements=4)),
-        "file": replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),))),
-    }
-    with Store(path) as store:
-        store.record(CASE.key, CASE, measured)
-        store.record("file", cases["file"], measured)
-        of_version(path.resolve(), "0.1.0")
-        assert store.older({"same": CASE, **cases}) == {"same": ("0.1.0", "COMPLETED")}
-
-
-def test_the_version_tells_sources_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_key_depends_on_everything_that_the_result_does(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    others = [
+        replace(CASE, options=Options(elements=5)),
+        replace(CASE, options=Options(elements=3, element="timoshenko")),
+        replace(CASE, model="solid", options=Options()),
+        replace(CASE, scene=replace(KS, load_parameters=6)),
+        replace(CASE, scene=replace(KS, contacts=(replace(KS.contacts[0], penalty=1e3),))),
+    ]
+    keys = [CASE.key, *(other.key for other in others)]
+    for text in ("one", "two"):
+        Path("a.msh").write_text(text)
+        keys.append(MESHED.key)
     package = tmp_path / "version_probe"
     package.mkdir()
     monkeypatch.syspath_prepend(tmp_path)
@@ -277,4 +204,34 @@ def test_the_version_tells_sources_apart(tmp_path: Path, monkeypatch: pytest.Mon
         (package / "__init__.py").write_text(text)
         seen.append(version.__wrapped__())
     assert seen[0] == seen[2] != seen[1]
-    assert seen[0].startswith(f"{metadata.version('tsm-crossval')}+")
+    assert len(set(keys)) == len(keys)
+    again = pickle.loads(pickle.dumps(CASE))  # noqa: S301 made here
+    assert (again, again.key) == (CASE, CASE.key)
+
+
+def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
+    """Without a timed run it has neither axes nor a verdict."""
+    found, response = measured.response, solve(KS, "tsm", CASE.options)
+    assert (measured.verdict, measured.repeats) == ("CERTIFIED", 1)
+    assert found.iterations == response.newton_iterations.sum()
+    assert np.array_equal(found.tips["cantilever"], response.tips["cantilever"])
+    line = found.axis_line("cantilever", 1)[1]
+    assert line.shape == (101, 2)
+    assert line[[0, -1]] == pytest.approx(np.array([[0, 0], response.tips["cantilever"][1]]), abs=1e-3)
+    refused, untimed = measure(replace(CASE, options=Options(mesh=(2, 1)))), measure(CASE, repeats=0)
+    assert (refused.response.status, refused.response.completed) == ("REFUSED", False)
+    assert refused.verdict == untimed.verdict == ""
+    for one in (measured, refused, untimed):
+        again = Measurement.from_json(one.to_json())
+        assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
+        types = [[type(value) for value in vars(each.response).values()] for each in (again, one)]
+        assert types[0] == types[1]
+
+
+def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
+    """As on Windows: psutil tells how much memory there is."""
+    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
+    monkeypatch.setitem(sys.modules, "resource", None)
+    size = 64 * 2**20
+    _, rise = memory.with_peak_memory(lambda: np.ones(size // 8))
+    assert 0.9 * size < rise < 1.5 * size

@@ -1,231 +1,214 @@
-"""The cases of the sweep, the cheapest settings, and a whole trade-off from scene to files."""
+"""The trade-off: fits and fronts on numbers whose answer is known, limits by extrapolation, and `crossval trade`."""
 
 import csv
 import json
-from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from comparisons.cases import Case, Measurement, measure
+from comparisons.cases import Case, measure
+
+# not public: the least of known seconds and the order of known errors, which no measured time can show
+from comparisons.cases.measure import unmeasured
 from comparisons.cli import main
-from comparisons.cost.cases import family, limit_cases, load_steps, refined, resolution, sweep_cases
+from comparisons.cost.cases import limit_cases, load_steps, refined, sweep_cases
+from comparisons.cost.fits import convergence, pareto, power_law
+from comparisons.cost.limit import end_state, extrapolated
 from comparisons.cost.orders import orders
 from comparisons.cost.points import TARGETS, Point, Trade, cheapest, front
-from comparisons.cost.references import NoReferenceError, best_reference, reference_cases
-from comparisons.cost.sweep import measure_trade, write_trade
-from comparisons.cost.tables import cheapest_text, setting_rows, stopped_text
+from comparisons.cost.references import NoReferenceError, Reference, best_reference, reference_cases
+from comparisons.errors import errors, scales
 from comparisons.models import MODELS
 from comparisons.models.options import Options
 from comparisons.quantities import KEPT, SCOPES
-from comparisons.scene import load_scene
-from comparisons.show.pages import text
+from comparisons.response import ContactHistory, SupportHistory
+from comparisons.response.axis import STATIONS, SampledAxes
+from comparisons.scene import built_in_scenes, load_scene
 from tests.comparisons.show.pages.markup import check_alone
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
+PAIR, BEAM = "pin->cantilever", "cantilever"
+CLAMP, TIP = "cantilever.start", "cantilever.end"
+TIMES = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
+N = np.array([5.0, 10.0, 20.0, 40.0, 80.0])
 
 
-@cache
-def measured(case: Case) -> Measurement:
-    return measure(case, repeats=1)
-
-
-def few(cases: Sequence[Case]) -> dict[Case, Measurement]:
-    """Measure beams and coarse solids; the others stop by name."""
-    stopped = changed(measured(cases[0]), status="LEFT_OUT", completed=False)
-    return {
-        case: stopped if case.model == "solid" and resolution(case) > 10 else measured(case) for case in cases
+def test_a_front_is_what_nothing_beats():
+    points = np.random.default_rng(0).random((60, 2)).round(1)
+    kept = pareto(*points.T)
+    beaten = [any((other <= point).all() and (other < point).any() for other in points) for point in points]
+    assert {tuple(points[k]) for k in kept} == {
+        tuple(point) for point, is_beaten in zip(points, beaten, strict=True) if not is_beaten
     }
+    assert list(points[kept, 0]) == sorted(set(points[kept, 0]))
+    assert pareto([np.nan, 1.0, 2.0], [0.0, np.nan, 0.5]) == [2]
+    assert pareto([], []) == []
 
 
-def changed(measurement: Measurement, **response: object) -> Measurement:
-    return replace(measurement, response=replace(measurement.response, **response))  # type: ignore[arg-type]
+def test_exponents_and_orders():
+    """An order is that of the finest four above the floor: not from a coarse mesh that is right by chance, nor from round-off."""
+    fit = power_law(list(N), list(3.0 * N**1.5))
+    assert (fit.exponent, fit.factor) == pytest.approx((1.5, 3.0), rel=1e-12)
+    assert (fit.first, fit.last, fit.points) == (5.0, 80.0, 5)
+    assert fit.scatter < 1e-12
+    for y in ([1.0, 2.0], [1.0, 0.0, 2.0]):
+        assert power_law([1.0, 2.0, 4.0][: len(y)], y) is None
+    spoilt = N**-4.0
+    spoilt[0], spoilt[4] = 1.1e-4, spoilt[3] / 1.5
+    cases = [(order, 7.0 * N**-order, (10.0, 80.0, 4)) for order in (1.0, 2.0, 4.0)]
+    for order, error, where in (*cases, (4.0, spoilt, (10.0, 40.0, 3))):
+        fit = convergence(list(N), list(error), 0.0)
+        assert -fit.exponent == pytest.approx(order, rel=1e-12)
+        assert (fit.first, fit.last, fit.points) == where
+    unknown = [0.1, 0.01, np.nan, np.nan, np.nan]
+    for error, uncertainty in ((N**-4.0, 1e-4), (N**1.0, 0.0), (unknown, 0.0)):
+        assert convergence(list(N), list(error), uncertainty) is None
 
 
-@pytest.fixture(scope="module")
-def trade() -> Trade:
-    return measure_trade(KS, few, quick=True)
+def response_of(h, order=2.0):
+    """A response that converges with the order, the contact open at first, and two supports."""
+    s, off = np.arange(1.0, 6.0), h**order
+    force = np.arange(10.0).reshape(5, 2) + off
+    axis = np.ones((5, 101, 2)) * (1.0 + off * STATIONS)[:, None]
+    arc = np.where(s < 2.0, np.nan, 0.5 + off * s)
+    return replace(
+        unmeasured("COMPLETED", "").response,
+        load_parameter=TIMES,
+        contacts={PAIR: ContactHistory(force=s * (1.0 + off), arc_position=arc, gap=0.0 * s)},
+        supports={
+            CLAMP: SupportHistory(force=force, moment=-2.0 * (s + off)),
+            TIP: SupportHistory(force=-force, moment=np.zeros(5)),
+        },
+        material_force={BEAM: off * s},
+        tips={BEAM: np.stack([s, 1.0 - off * s], axis=-1)},
+        axis_line=SampledAxes(arc_length={BEAM: STATIONS}, position={BEAM: axis}),
+    )
 
 
-@pytest.mark.parametrize("quick", [False, True])
-def test_cases_are_complete_and_once(quick: bool) -> None:
-    cases = sweep_cases(KS, quick=quick)
-    assert len({case.key for case in cases}) == len(cases) == len(set(cases))
-    assert len(cases) >= (40 if quick else 75)
-    assert {case.model for case in cases} == {"tsm", "solid", "elastica"} < set(MODELS)
-    solids = [case for case in cases if case.model == "solid"]
-    assert {case.scene.beams[0].solid_element for case in solids} == {"Q1", "Q2", "Q2-full"}
-    assert len({case.scene.contacts[0].penalty for case in solids}) > 2
-    assert {case.scene.load_parameters for case in cases} >= {1, 10}
-    assert set(limit_cases(KS, quick=quick)) <= set(cases)
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
+def test_the_limit_of_a_series_of_any_order(order):
+    """Supports have a limit of their forces where there is no contact; a series that does not converge has its last member."""
+    series, exact = [response_of(h, order) for h in (0.2, 0.1, 0.05)], response_of(0.0)
+    found, held = extrapolated(series), extrapolated([replace(one, contacts={}) for one in series])
+    for read in (
+        lambda one: one.supports[CLAMP].moment,
+        lambda one: one.material_force[BEAM],
+        lambda one: one.tips[BEAM],
+        lambda one: np.array([one.axis_line(BEAM, k)[1] for k in range(5)]),
+        lambda one: one.contacts[PAIR].force if one.contacts else one.supports[CLAMP].force,
+        lambda one: one.contacts[PAIR].arc_position if one.contacts else one.supports[TIP].force,
+    ):
+        assert read(found) == pytest.approx(read(exact), abs=1e-12, nan_ok=True)
+        assert read(held) == pytest.approx(read(replace(exact, contacts={})), abs=1e-12)
+    rest = extrapolated([response_of(h) for h in (0.05, 0.06, 0.1)])
+    assert np.array_equal(rest.contacts[PAIR].force, response_of(0.1).contacts[PAIR].force)
+    # errors are measured at the last load parameter with a force, and relative to the reference and the length
+    for force, end in ((np.where(TIMES > 0.7, 0.0, TIMES), 0.6), (np.zeros(5), 1.0)):
+        assert end_state(replace(exact, contacts={PAIR: replace(exact.contacts[PAIR], force=force)})) == end
+    table, off = errors(response_of(0.1), exact, KS, end=end_state(exact)), 0.01
+    assert table["path"] == pytest.approx(
+        {"force": off, "arc": 5 * off, "friction": off / 1.01, "moment": off / 5, "tip": 5 * off}
+        | {"shape": off * np.sqrt(2.0), "shape_mean": off * np.sqrt(0.5)}
+    )
+    assert table["end"] == pytest.approx(table["path"])
 
 
-def test_load_steps_hit_a_part_of_the_load_parameters() -> None:
-    for count, steps in ((50, (1, 5, 10, 50)), (76, (1, 4, 19, 76)), (7, (1, 7))):
-        assert load_steps(replace(KS, load_parameters=count)) == steps
-
-
-def test_families_are_refined_alike() -> None:
-    cases = sweep_cases(KS)
+def test_the_cases_of_a_sweep_are_complete_and_once():
+    """Load steps hit a part of the scene's load parameters; families are refined alike."""
+    for quick, least in ((True, 40), (False, 75)):
+        cases = sweep_cases(KS, quick=quick)
+        assert least <= len(cases) == len({case.key for case in cases}) == len(set(cases))
+        assert {case.model for case in cases} == {"tsm", "solid", "elastica"} < set(MODELS)
+        solids = [case for case in cases if case.model == "solid"]
+        assert {case.scene.beams[0].solid_element for case in solids} == {"Q1", "Q2", "Q2-full"}
+        assert len({case.scene.contacts[0].penalty for case in solids}) > 2
+        assert {case.scene.load_parameters for case in cases} >= {1, 10}
+        assert set(limit_cases(KS, quick=quick)) <= set(cases)
     base = Case(scene=KS, model="solid", options=Options(mesh=(25, 1)))
     assert [case.options.mesh for case in refined(base, cases)] == [(25, 1), (50, 2), (100, 4), (200, 8)]
     beams = refined(Case(scene=KS, model="tsm", options=Options(element="mixed", elements=5)), cases)
     assert [case.options.elements for case in beams] == [2, 3, 5, 10, 20, 40, 80, 160]
-    assert {family(case) for case in beams} == {"TSM mixed"}
+    for count, steps in ((50, (1, 5, 10, 50)), (76, (1, 4, 19, 76)), (7, (1, 7))):
+        assert load_steps(replace(KS, load_parameters=count)) == steps
 
 
-@pytest.mark.slow
-def test_the_rod_is_the_reference_and_exact_elements_agree(trade: Trade) -> None:
-    assert trade.reference.name == "exact rod"
-    assert trade.reference.uncertainty["path"]["force"] < 1e-10
-    exact = next(point for point in trade.points if point.case.label == "tsm exact 1")
-    assert exact.errors["path"]["force"] < 1e-9
-    elastica = next(point for point in trade.points if point.case.model == "elastica")
-    assert 1e-4 < elastica.errors["path"]["force"] < 2e-3
+def point(case, seconds, error, own, status="COMPLETED"):
+    """A case with known seconds, unknowns and errors."""
+    own_errors, tables = ({scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (own, error))
+    made = unmeasured(status, "")
+    response = replace(made.response, completed=status == "COMPLETED", unknowns=round(100 * seconds))
+    measured = replace(made, response=response, seconds=seconds)
+    return Point(case=case, measured=measured, errors=tables, own_errors=own_errors)
 
 
-@pytest.mark.slow
-def test_two_beams_have_the_exact_rods_as_reference_and_none_if_these_stop() -> None:
-    scene = replace(load_scene("double-beam"), load_parameters=4)
-    mixed = Case(scene=scene, model="tsm", options=Options(element="mixed", elements=10))
-    found = {case: measured(case) for case in (*reference_cases(scene), mixed)}
-    reference = best_reference(scene, found)
-    assert reference.name == "exact rod"
-    assert reference.uncertainty["path"]["force"] < 1e-10
-    assert 1e-9 < reference.errors(found[mixed])["path"]["force"] < 1e-6
-    with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped"):
-        best_reference(scene, {case: changed(one, completed=False) for case, one in found.items()})
+def traded(points):
+    """A trade-off whose reference is known to round-off, the solid's limit to 1e-4."""
+    one = response_of(0.0)
 
-
-@pytest.mark.slow
-def test_what_stopped_is_listed_and_not_ranked(trade: Trade) -> None:
-    assert "LEFT_OUT" in {point.measured.response.status for point in trade.stopped}
-    assert len(setting_rows(trade)) == len(trade.points)
-    assert stopped_text(trade).count("\n") == len(trade.stopped)
-    assert not set(trade.stopped) & {point for model in MODELS for point in trade.of_model(model, "end")}
-    assert trade.limit is None
-    assert "not told" in cheapest_text(trade, "force")
-
-
-def synthetic(trade: Trade) -> Trade:
-    """Points with known seconds and errors, the solid's limit known to 1e-4."""
-    rod, solid = trade.points[0], Case(scene=KS, model="solid")
-    beam = Case(scene=KS, model="tsm")
-
-    def point(case: Case, seconds: float, error: float, own: float) -> Point:
-        tables = [{scope: dict.fromkeys(KEPT, value) for scope in SCOPES} for value in (error, own)]
-        return Point(
-            case=case,
-            measured=replace(changed(rod.measured, unknowns=round(100 * seconds)), seconds=seconds),
-            errors=tables[0],
-            own_errors=tables[1],
+    def known(to):
+        table = {scope: dict.fromkeys(KEPT, to) for scope in SCOPES}
+        return Reference(
+            response=one, scene=KS, scale=scales(one), end=1.0, uncertainty=table, name="", sentence=""
         )
 
-    points = [
-        point(beam, 1.0, 1e-2, 1e-2),
-        point(beam, 2.0, 1e-4, 1e-4),
-        point(beam, 3.0, 1e-3, 1e-3),
-        point(solid, 10.0, 1e-3, 3e-2),
-        point(solid, 30.0, 3e-2, 1e-3),
-        point(solid, 90.0, 3e-2, 1e-5),
-        point(replace(solid, scene=replace(KS, load_parameters=1)), 5.0, 1e-5, 1e-5),
-    ]
-    known = {scope: dict.fromkeys(KEPT, 1e-4) for scope in SCOPES}
-    return replace(trade, points=points, limit=replace(trade.reference, uncertainty=known))
+    return Trade(scene=KS, points=points, reference=known(1e-15), limit=known(1e-4))
 
 
-@pytest.mark.slow
-def test_cheapest_settings_and_their_ratio(trade: Trade) -> None:
-    made = synthetic(trade)
+def test_the_cheapest_settings_their_ratio_and_the_front():
+    """A coarse solid that hits the reference by chance does not count; a front ends at the uncertainty of the limit."""
+    solid, beam = Case(scene=KS, model="solid"), Case(scene=KS, model="tsm")
+    beams = [point(beam, seconds, error, error) for seconds, error in ((1.0, 1e-2), (2.0, 1e-4), (3.0, 1e-3))]
+    solids = [(10.0, 1e-3, 3e-2), (30.0, 3e-2, 1e-3), (90.0, 3e-2, 1e-5)]
+    once = point(replace(solid, scene=replace(KS, load_parameters=1)), 5.0, 1e-5, 1e-5)
+    stopped = point(beam, 0.5, 0.0, 0.0, "LEFT_OUT")
+    made = traded([*beams, *(point(solid, *one) for one in solids), once, stopped])
     path = [cheapest(made, "path", "force", target) for target in TARGETS]
-
-    def seconds(name: str) -> list[float | None]:
-        chosen = [getattr(one, name) for one in path]
-        return [point and point.measured.seconds for point in chosen]
-
-    assert seconds("tsm") == [1.0, 1.0, 2.0, 2.0, None]
-    assert seconds("solid") == [10.0, 30.0, 30.0, 90.0, None]
+    assert [one.tsm and one.tsm.measured.seconds for one in path] == [1.0, 1.0, 2.0, 2.0, None]
+    assert [one.solid and one.solid.measured.seconds for one in path] == [10.0, 30.0, 30.0, 90.0, None]
     assert [one.ratio for one in path[:4]] == [10.0, 30.0, 15.0, 45.0]
     assert [one.untold for one in path] == [False, False, False, False, True]
-    # a coarse solid that hits the reference by chance does not count
-    assert seconds("solid_against_reference") == [10.0, None, None, None, None]
+    against = [one.solid_against_reference for one in path]
+    assert [one and one.measured.seconds for one in against] == [10.0, None, None, None, None]
     assert cheapest(made, "end", "force", 1e-3).ratio == 2.5
-
-
-@pytest.mark.slow
-def test_front_ends_at_the_uncertainty(trade: Trade) -> None:
-    made = synthetic(trade)
-    beams = front(made, "tsm", "path", "force", "seconds")
-    assert [(one.cost, one.error) for one in beams] == [(1.0, 1e-2), (2.0, 1e-4)]
+    assert cheapest(replace(made, limit=None), "path", "force", 1e-2).untold
+    found = front(made, "tsm", "path", "force", "seconds")
+    assert [(one.cost, one.error) for one in found] == [(1.0, 1e-2), (2.0, 1e-4)]
     assert [one.cost for one in front(made, "solid", "path", "force", "unknowns")] == [1000, 3000, 9000]
     assert front(made, "solid", "path", "force", "seconds")[-1].error == 1e-4
 
 
-def test_order_of_mixed_elements(trade: Trade) -> None:
-    rows = {row["family"]: row for row in orders(trade, "force")}
-    assert rows["TSM mixed"]["order"] == pytest.approx(4.0, abs=0.2)
-    assert rows["TSM mixed"]["order_points"] >= 3
+def test_orders_and_exponents_of_families_and_no_reference_where_the_rods_stop():
+    counts = (2, 3, 5, 10, 20, 40, 80, 160)
+    cases = [Case(scene=KS, model="tsm", options=Options(element="mixed", elements=n)) for n in counts]
+    errors_of = [0.1 * n**-4.0 for n in counts]
+    made = traded([point(case, n, e, e) for case, n, e in zip(cases, counts, errors_of, strict=True)])
+    (row,) = orders(made, "force")
+    assert (row["family"], row["settings"], row["order_points"]) == ("TSM mixed", 8, 4)
+    assert (row["order"], row["cost_exponent"]) == pytest.approx((4.0, 1.0), rel=1e-9)
+    few = replace(KS, load_parameters=2)
+    reference = best_reference(few, {case: measure(case, repeats=1) for case in reference_cases(few)})
+    assert (reference.name, reference.end) == ("exact rod", 1.0)
+    assert reference.uncertainty["path"]["force"] < 1e-10
+    scene = load_scene("double-beam")
+    with pytest.raises(NoReferenceError, match="double-beam: the exact rods stopped: gone"):
+        best_reference(scene, dict.fromkeys(reference_cases(scene), unmeasured("LOST", "gone")))
 
 
 @pytest.mark.slow
-def test_files_hold_every_setting(trade: Trade, tmp_path: Path) -> None:
-    files = write_trade(trade, tmp_path)
-    assert all(file.stat().st_size for file in files)
-    assert {file.suffix for file in files} == {".csv", ".html", ".json", ".png", ".svg"}
-    with (tmp_path / "trade.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == len(trade.points)
-    assert {row["status"] for row in rows} >= {"COMPLETED", "LEFT_OUT"}
-    html = (tmp_path / "report.html").read_text()
-    check_alone(html, tmp_path)
-    assert html.count("data:image/svg+xml") == len(list(tmp_path.glob("*.svg")))
-    assert all(
-        text(f"{one.measured.response.status}: {one.measured.response.message}") in html
-        for one in trade.stopped
+def test_the_quick_trade_of_ks(tmp_path, capsys):
+    scene, folder = tmp_path / "ks.toml", tmp_path / "out"
+    scene.write_text(
+        built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 10")
     )
-    numbers = json.loads((tmp_path / "trade.json").read_text())
-    assert len(numbers["cheapest"]) == len(SCOPES) * len(KEPT) * len(TARGETS)
-    assert {row["model"] for row in numbers["pareto"]} == {"tsm"}
-
-
-def run(*arguments: str) -> int:
-    try:
-        return main(list(arguments))
-    except SystemExit as exit_:
-        return int(exit_.code or 0)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (["no-such-scene"], "no-such-scene"),
-        (["ks-cantilever", "--workers", "0"], "--workers"),
-        (["ks-cantilever", "--workers", "1", "--cluster", "tcp://127.0.0.1:1"], "--cluster"),
-    ],
-)
-def test_bad_input_is_one_line_and_computes_nothing(
-    arguments: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run("trade", *arguments, "--out", str(tmp_path / "out")) == 2
-    assert told in capsys.readouterr().err.splitlines()[-1]
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_file_in_place_of_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "file").write_text("mine")
-    assert run("trade", "ks-cantilever", "--out", str(tmp_path / "file")) == 2
-    assert "cannot be written" in capsys.readouterr().err
-    assert (tmp_path / "file").read_text() == "mine"
-
-
-@pytest.mark.slow
-def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("trade", "ks-cantilever", "--quick", "--out", str(tmp_path)) == 0
-    with (tmp_path / "trade.csv").open() as file:
+    command = ["trade", str(scene), "--quick", "--out", str(folder)]
+    assert main(command) == 0
+    with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))
+    whole = [row for row in rows if row["load_steps"] == "10" and row["status"] == "COMPLETED"]
+    errors_of = {row["label"]: float(row["error_path_force"]) for row in whole}
+    assert errors_of["tsm exact 1"] < 1e-9
+    assert 1e-4 < errors_of["elastica"] < 2e-3
     completed = [row for row in rows if row["status"] == "COMPLETED" and row["model"] in {"tsm", "solid"}]
     assert len(completed) >= 25
     known = [float(row["own_error_end_force"]) for row in completed]
@@ -233,9 +216,18 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
     out = capsys.readouterr().out
     stopped = [row for row in rows if row["status"] != "COMPLETED"]
     assert stopped
-    assert all(f"{row['label']} [{row['load_steps']}]: {row['status']}: " in out for row in stopped)
-    numbers = json.loads((tmp_path / "trade.json").read_text())
-    whole = max(int(row["load_steps"]) for row in rows)
+    html = (folder / "report.html").read_text()
+    check_alone(html, folder)
+    for row in stopped:
+        assert f"{row['label']} [{row['load_steps']}]: {row['status']}: " in out
+        assert f"{row['status']}: " in html
+    assert html.count("data:image/svg+xml") == len(list(folder.glob("*.svg"))) > 0
+    numbers = json.loads((folder / "trade.json").read_text())
+    assert numbers["references"]["error"]["uncertainty"]["path"]["force"] < 1e-10
+    assert len(numbers["cheapest"]) == len(SCOPES) * len(KEPT) * len(TARGETS)
+    assert {row["model"] for row in numbers["pareto"]} == {"tsm", "solid"}
+    (mixed,) = (row for row in numbers["orders"]["force"] if row["family"] == "TSM mixed")
+    assert mixed["order"] == pytest.approx(4.0, abs=0.2)
     told = 0
     for chosen in numbers["cheapest"]:
         for model, error in (("tsm", "error"), ("solid", "own_error")):
@@ -246,7 +238,7 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
                 if row["model"] == model
                 and row[column]
                 and float(row[column]) <= chosen["target"]
-                and (chosen["scope"] == "end" or int(row["load_steps"]) == whole)
+                and (chosen["scope"] == "end" or row["load_steps"] == "10")
             ]
             if chosen[model] is not None:
                 told += 1
@@ -255,7 +247,7 @@ def test_the_quick_trade_of_ks(tmp_path: Path, capsys: pytest.CaptureFixture[str
             assert chosen["ratio"] == pytest.approx(chosen["solid_seconds"] / chosen["tsm_seconds"])
     assert told > 20
     # what is there is not run again, and says the same
-    before = (tmp_path / "trade.csv").read_text()
-    assert run("trade", "ks-cantilever", "--quick", "--out", str(tmp_path)) == 0
-    assert (tmp_path / "trade.csv").read_text() == before
+    before = (folder / "trade.csv").read_text()
+    assert main(command) == 0
+    assert (folder / "trade.csv").read_text() == before
     assert capsys.readouterr().out == out

@@ -1,62 +1,50 @@
-"""The league: what is run, how it ends, what is stored, and its files."""
+"""`crossval league`: what is run, how it ends, and its files."""
 
 import csv
 import json
 import sys
+from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
 
-from comparisons.cases.workers import local
 from comparisons.cli import main
-from comparisons.league import entries as league_entries
-from comparisons.league.entries import MOST, measure_league
-from comparisons.scene import load_scene, to_toml
-from comparisons.scene.conditions import LoadSpec
-from tests.comparisons.models.outside.conftest import KS, PROGRAM, stored
+from comparisons.scene import BeamSpec, LoadSpec, load_scene, to_toml
+from tests.comparisons.models.outside.conftest import PROGRAM, stored
 from tests.comparisons.show.pages.markup import check_alone
 
+SCENE = load_scene("ks-cantilever")
+BEAM = BeamSpec(
+    name="cantilever", start=(0.0, 0.0), end=(1.0, 0.0), clamped=("start",), area=SCENE.beams[0].EA,
+    second_moment=SCENE.beams[0].EI, youngs_modulus=1.0, shear_modulus=SCENE.beams[0].GA / SCENE.beams[0].EA,
+)  # fmt: skip
+KS = replace(SCENE, beams=(BEAM,), load_parameters=5)
+"""Without a height, so that the solid, whose meshes take most of the time, is left out."""
 WRONG = 'contact["force"] = [0.0 for _ in contact["force"]]'
 """What the program says in place of its forces."""
 
 
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only beams: the solid's meshes take most of the time."""
-    models = {name: model for name, model in league_entries.MODELS.items() if name != "solid"}
-    monkeypatch.setattr(league_entries, "MODELS", models)
+def rows(folder):
+    return list(csv.DictReader((folder / "league.csv").read_text().splitlines()))
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("few")
-def test_programs_are_measured_and_a_false_success_is_named(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    loaded = replace(
-        KS,
-        name="loaded",
-        pins=(),
-        contacts=(),
-        loads=(LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-4)),),
-    )
+def test_programs_are_measured_and_a_false_success_is_named(tmp_path, capsys):
+    load = LoadSpec(beam="cantilever", end="end", force=(0.0, 1e-4))
+    loaded = replace(KS, name="loaded", pins=(), contacts=(), loads=(load,))
     scenes = [tmp_path / "ks.toml", tmp_path / "loaded.toml"]
     for path, scene in zip(scenes, (KS, loaded), strict=True):
         path.write_text(to_toml(scene))
     (tmp_path / "truth.json").write_text(stored(KS))
     (tmp_path / "liar.py").write_text(PROGRAM.format(lines=WRONG))
-    liar_file = tmp_path / "liar.toml"
-    liar_file.write_text(
-        f'[program]\nname = "liar"\ncommand = {json.dumps([sys.executable, "-I", "liar.py"])}\n'
-    )
+    liar_file, run = tmp_path / "liar.toml", json.dumps([sys.executable, "-I", "liar.py"])
+    liar_file.write_text(f'[program]\nname = "liar"\ncommand = {run}\n')
     out = tmp_path / "out"
     command = ["league", *map(str, scenes), "--with", str(liar_file), "--quick", "--out", str(out)]
     assert main(command) == 0
     printed = capsys.readouterr().out
-    rows = list(csv.DictReader((out / "league.csv").read_text().splitlines()))
-    by = {(row["scene"], row["setting"]): row for row in rows}
+    found = rows(out)
+    by = {(row["scene"], row["setting"]): row for row in found}
     ours = {key: row["outcome"] for key, row in by.items() if row["program"].startswith("TSM")}
     assert ours.pop(("ks-cantilever", "tsm timoshenko 5")) == "wrong", "a reaction off by more than 5 %"
     assert list(ours.values()) == ["certified"] * 11
@@ -71,37 +59,20 @@ def test_programs_are_measured_and_a_false_success_is_named(
     [line] = (line for line in printed.splitlines() if line.startswith("liar"))
     assert line.split()[-1] == "2", "it gives the same answer to the other scene"
     numbers = json.loads((out / "league.json").read_text())
-    assert ["loaded", "elastica"] in [item[:2] for item in numbers["left_out"]]
-    check_alone((out / "report.html").read_text(), out)
-    assert "said success and was wrong" in (out / "report.html").read_text()
+    left_out = [item[:2] for item in numbers["left_out"]]
+    assert left_out == [["ks-cantilever", "solid"], ["loaded", "solid"], ["loaded", "elastica"]]
+    html = (out / "report.html").read_text()
+    check_alone(html, out)
+    assert "said success and was wrong" in html
+    # what is there is not run again, and says the same
+    assert main(command) == 0
+    assert rows(out) == found
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("few")
-def test_a_second_run_measures_nothing_again(tmp_path: Path) -> None:
-    scene = replace(load_scene("ks-cantilever"), load_parameters=2)
-    begun: list[list[int]] = [[], []]
-    first, second = (
-        measure_league(
-            [scene],
-            [],
-            tmp_path / "results.sqlite",
-            local(1),
-            quick=True,
-            progress=lambda tally, done=done: done.append(tally.done),  # type: ignore[misc]
-        )
-        for done in begun
-    )
-    assert str([entry.row() for entry in first.entries]) == str([entry.row() for entry in second.entries])
-    assert begun[0][0] == 0
-    assert begun[1] in ([], [begun[0][-1]])
-
-
-def test_every_program_has_three_to_five_resolutions_or_one() -> None:
-    scene = replace(load_scene("ks-cantilever"), load_parameters=2)
-    for name, model in league_entries.MODELS.items():
-        counts: dict[str, int] = {}
-        for case, family in league_entries._cases(scene, name, model, quick=False):
-            counts[family] = counts.get(family, 0) + 1
-            assert np.isnan(model.resolution(case.options)) or model.resolution(case.options) > 0
-        assert all(count == 1 or 3 <= count <= MOST for count in counts.values()), counts
+def test_every_program_has_three_to_five_resolutions_or_one(tmp_path):
+    (tmp_path / "ks.toml").write_text(to_toml(replace(KS, load_parameters=1)))
+    assert main(["league", str(tmp_path / "ks.toml"), "--out", str(tmp_path / "out")]) == 0
+    counts = Counter(row["program"] for row in rows(tmp_path / "out"))
+    assert set(counts.values()) <= {1, 3, 4, 5}, counts
+    assert max(counts.values()) > 1

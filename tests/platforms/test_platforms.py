@@ -1,4 +1,4 @@
-"""The numbers of this platform are those stored."""
+"""The numbers of this platform are those stored; locks and processes live as studies need."""
 
 import copy
 import json
@@ -6,15 +6,16 @@ import json
 import pytest
 
 from tests.platforms.numbers import BOUND, STORED, computed, differences
+from tests.platforms.processes import check
 
 
 @pytest.mark.slow
-def test_numbers_are_those_stored() -> None:
+def test_numbers_are_those_stored():
     stored = json.loads(STORED.read_text())["numbers"]
     assert max(differences(computed(), stored)) <= (BOUND, "")
 
 
-def test_differences_are_seen(stated) -> None:
+def test_differences_are_seen(stated):
     stated("platforms.bound", BOUND)
     stored = json.loads(STORED.read_text())["numbers"]
     assert max(differences(stored, stored))[0] == 0.0
@@ -25,3 +26,7 @@ def test_differences_are_seen(stated) -> None:
         apart, name = max(differences(other, stored))
         assert apart > BOUND
         assert name == "force of pin->cantilever, ks-cantilever, rod"
+
+
+def test_a_lock_ends_with_its_process(tmp_path):
+    check(tmp_path)
