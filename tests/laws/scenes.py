@@ -28,9 +28,9 @@ FAST = {
     "special-58": "hinge, springs",
 }
 MORE = {
-    "world": (0, 2, 6, 10, 12, 13, 16, 18),
-    "friction": (0, 1, 12, 16, 20),
-    "special": (0, 10, 12, 16, 17, 24, 30, 32, 37, 44, 57, 59),
+    "world": (0, 2, 6, 10, 13, 16),
+    "friction": (0, 1, 16, 20),
+    "special": (0, 10, 12, 17, 24, 30, 32, 37, 44, 57, 59),
     "held": (0, 1, 3, 6, 8),
 }
 """Seeds by family that the slow tier draws for the elements `DRAWN`."""
