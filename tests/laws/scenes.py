@@ -30,7 +30,7 @@ FAST = {
 MORE = {
     "world": (0, 2, 6, 10, 13, 16),
     "friction": (0, 1, 16, 20),
-    "special": (0, 10, 12, 17, 24, 30, 32, 37, 44, 57, 59),
+    "special": (0, 10, 12, 24, 32, 37, 44, 57, 59),
     "held": (0, 1, 3, 6, 8),
 }
 """Seeds by family that the slow tier draws for the elements `DRAWN`."""

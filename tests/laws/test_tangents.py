@@ -14,7 +14,6 @@ SCENES = {
     "world-2": 1,
     "world-13": 1,
     "world-20": 1,
-    "special-58": 1,
     "held-8": 1,
     "friction-10": 2,
 }

@@ -10,8 +10,8 @@ from comparisons.referee import certify
 from comparisons.scene import ContactSpec, PinSpec, Scene
 from tests.laws.scenes import ELEMENTS, answer, cases, scene
 
-ALLOWED = {"exact": 1e-8, "rod": 1e-8}
-MESHED = 2e-3
+ALLOWED = {"exact": 1e-6, "rod": 1e-8, "mixed": 2e-3, "mixed-no-bow": 5e-3}
+"""Largest difference over the energy, at least 1e-4 EI/L; where a path bends sharply the integral of the work is that accurate."""
 
 
 def with_work(found: Scene) -> Scene:
@@ -41,6 +41,7 @@ def test_work_is_energy_and_dissipation(model: str, name: str) -> None:
     fallen = sum(event.released for event in given.events or () if np.isfinite(event.released))
     (judged,) = certify(given, found, at=[-1], allowance=np.inf).judged
     assert judged.exact is not None, judged.reason
-    size = max(np.abs(given.work).max(), judged.exact.strain_energy)
+    bent = max(beam.EI / beam.length for beam in found.beams)
+    size = max(np.abs(given.work).max(), judged.exact.strain_energy, 1e-4 * bent)
     off = given.work[-1] - lost - fallen - judged.exact.strain_energy
-    assert abs(off) <= ALLOWED.get(model, MESHED) * size
+    assert abs(off) <= ALLOWED[model] * size
