@@ -88,7 +88,7 @@ def test_a_finding_is_right_or_ends_by_name(
         assert read(found) == value
 
 
-@pytest.mark.slow_at("tied")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["tied", "tied2"])
 def test_moved_tips_are_those_of_the_rod(name: str) -> None:
     """The reactions were up to 2.8e7 times too large, or those of the mirrored side."""
@@ -141,7 +141,7 @@ def slips(found: Response) -> list[float]:
     return [event.load_parameter for event in found.events or () if event.kind == "slip"]
 
 
-@pytest.mark.slow_at("thick-roll-axis-5", "thick-roll-5", "thick-roll-50", "thick-roll-axis-50")
+@pytest.mark.slow_at("thick-roll-axis-5", "thick-roll-5", "thick-roll-50", "thick-roll-axis-20", "thick-roll-axis-50")
 @pytest.mark.parametrize("count", [5, 20, 50])
 @pytest.mark.parametrize("name", ROLLS)
 def test_a_thick_beam_rolls_without_slip(name: str, count: int) -> None:
