@@ -67,15 +67,14 @@ class Change:
 
     def _beam(self, beam: BeamSpec) -> BeamSpec:
         L, F = self.length, self.force
-        powers = {
-            "width": L,
-            "height": L,
-            "area": L**2,
-            "second_moment": L**4,
-            "shear_area": L**2,
-            "density": F / L**3,
-        }
-        powers |= {"youngs_modulus": F / L**2, "shear_modulus": F / L**2}
+        powers = dict(
+            zip(
+                ("width", "height", "area", "second_moment", "shear_area"),
+                (L, L, L**2, L**4, L**2),
+                strict=True,
+            )
+        )
+        powers |= {"density": F / L**3, "youngs_modulus": F / L**2, "shear_modulus": F / L**2}
         scaled = {key: pair(getattr(beam, key), power.__mul__) for key, power in powers.items()}
         ends = {"start": self.point(beam.start), "end": self.point(beam.end)}
         return replace(beam, **scaled, **ends, turn=self.sign * beam.turn)  # type: ignore[arg-type]
@@ -88,15 +87,15 @@ class Change:
         moment = self.sign * self.force * self.length * load.moment
         return replace(load, force=self.turned(load.force, self.force), moment=moment)
 
-    def _moved(self, item):  # type: ignore[no-untyped-def] - a support or a move of one
+    def _moved(self, item, **changes):  # type: ignore[no-untyped-def] - a support or a move of one
         moved = item.displacement and self.vector(item.displacement)
-        return replace(item, displacement=moved, rotation=item.rotation and self.sign * item.rotation)
+        return replace(
+            item, displacement=moved, rotation=item.rotation and self.sign * item.rotation, **changes
+        )
 
     def _support(self, item):  # type: ignore[no-untyped-def]
         fixed = item.fixed and tuple(map(self._direction, item.fixed))
-        moved = item.displacement and self.vector(item.displacement)
-        turned, free = item.rotation and self.sign * item.rotation, item.free and self._direction(item.free)
-        return replace(item, free=free, fixed=fixed, displacement=moved, rotation=turned)
+        return self._moved(item, free=item.free and self._direction(item.free), fixed=fixed)
 
     def _way(self, pin):  # type: ignore[no-untyped-def] - a pin or a move of one
         points = pin.path and tuple(map(self.point, pin.path))
@@ -107,9 +106,7 @@ class Change:
         L, F = self.length, self.force
 
         def stiffness(values: tuple[float, float]) -> tuple[float, float]:
-            x, y = (
-                abs(self.matrix).round(12) @ values if self.fits(scene) and values[0] != values[1] else values
-            )
+            x, y = values if values[0] == values[1] else abs(self.matrix).round(12) @ values
             return float(x * F / L), float(y * F / L)
 
         return replace(
