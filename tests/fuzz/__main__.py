@@ -6,67 +6,44 @@ Kinds are ``world``, ``friction``, ``special``, ``held``, ``cantilevers`` by sho
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 
-from comparisons.scene import Scene, to_toml
+from comparisons.scene import to_toml
 from tests.fuzz.cantilevers import verdict
-from tests.fuzz.files import tally
 from tests.fuzz.held import drawn_held, judged_held
+from tests.fuzz.judge import tally
 from tests.fuzz.special import drawn_special
 from tests.fuzz.world import drawn, drawn_with_friction
-from tests.fuzz.world_judge import BEAMS, Judged, judged
+from tests.fuzz.world_judge import BEAMS, judged
 
 NUMBERS = (1, 2, 5, 8, 12, 40)
 """Numbers of load parameters that scenes are solved with besides their own."""
-Found = tuple[Counter[str], list[str]]
-"""How solutions ended, and reports of what is wrong."""
-
-
-def _of(found: Judged) -> Found:
-    return Counter(f"{row.model} {row.ended}" for row in found.rows), [
-        found.report()
-    ] if found.findings else []
-
-
-def _scene(draw: Callable[[int], Scene], seed: int, models: Iterable[str], numbers: Sequence[int]) -> Found:
-    return _of(judged(draw(seed), tuple(models), numbers))
-
-
-def _cantilever(seed: int) -> Found:
-    found = verdict(seed, "mixed" if seed % 4 == 0 else "exact")
-    return Counter([found.ended]), [f"{seed} {found.ended}: {found.wrong}"] if found.wrong else []
-
-
-def _files(seed: int) -> Found:
-    found = tally(250, seed)
-    wrong = [f"{model}: {why}\n{data!r}" for model, why, data in found.wrong]
-    return Counter({f"{model} {kind}": number for (model, kind), number in found.kinds.items()}), wrong
-
-
 DRAWN = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "held": drawn_held}
-JUDGED: dict[str, Callable[[int], Found]] = {
-    "world": lambda seed: _scene(drawn, seed, (*BEAMS, "solid"), NUMBERS),
-    "friction": lambda seed: _scene(drawn_with_friction, seed, BEAMS, NUMBERS),
-    "special": lambda seed: _scene(drawn_special, seed, BEAMS, (3,)),
-    "held": lambda seed: _of(judged_held(seed)),
-    "cantilevers": _cantilever,
-    "files": _files,
-}
 
 
-def one(kind: str, seed: int) -> Found:
-    """Judge what a seed makes."""
-    return JUDGED[kind](seed)
+def one(kind: str, seed: int) -> tuple[Counter[str], list[str]]:
+    """How the solutions of what a seed makes ended, and reports of what is wrong."""
+    if kind == "files":
+        files = tally(250, seed)
+        wrong = [f"{model}: {why}\n{data!r}" for model, why, data in files.wrong]
+        return Counter({f"{model} {end}": number for (model, end), number in files.kinds.items()}), wrong
+    if kind == "cantilevers":
+        path = verdict(seed, "mixed" if seed % 4 == 0 else "exact")
+        return Counter([path.ended]), [f"{seed} {path.ended}: {path.wrong}"] if path.wrong else []
+    if kind == "held":
+        found = judged_held(seed)
+    else:
+        models = (*BEAMS, "solid") if kind == "world" else BEAMS
+        found = judged(DRAWN[kind](seed), models, (3,) if kind == "special" else NUMBERS)
+    ends = Counter(f"{row.model} {row.ended}" for row in found.rows)
+    return ends, [found.report()] if found.findings else []
 
 
 def main(kind: str, first: int, number: int) -> int:
     """Print what is wrong, and how all ended."""
-    ends, wrong = Counter[str](), 0
+    ends, wrong, seeds = Counter[str](), 0, range(first, first + number)
     with ProcessPoolExecutor(os.cpu_count(), max_tasks_per_child=200) as pool:
-        for count, (own, reports) in enumerate(
-            pool.map(one, [kind] * number, range(first, first + number)), 1
-        ):
+        for count, (own, reports) in enumerate(pool.map(one, [kind] * number, seeds), 1):
             ends += own
             wrong += len(reports)
             print(f"\r{count} of {number}, {wrong} wrong", end="", file=sys.stderr)

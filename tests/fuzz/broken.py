@@ -38,99 +38,72 @@ def small(seed: int) -> Tables:
     return scene
 
 
+def one_of(*items: object) -> st.SearchStrategy[object]:
+    return st.sampled_from(items)
+
+
 valid_scenes = st.integers(0, 10**6).map(small)
 numbers = st.one_of(
-    st.sampled_from([0.0, -0.0, -1.0, 1e-320, 5e-324, 1e-160, 1e160, 1.7e308, -1.7e308, 1.0, 0.5, 1e-9, 1e9]),
-    st.sampled_from([1e155, -1e308, 1e308, 1e50, 1.1e50, -1e49, 1e-50, 0.9e-50, 1e-100, 1e100, 1e25, 1e-25]),
-    st.sampled_from([math.nan, math.inf, -math.inf]),
+    one_of(0.0, -0.0, -1.0, 1e-320, 5e-324, 1e-160, 1e160, 1.7e308, -1.7e308, 1.0, 0.5, 1e-9, 1e9),
+    one_of(1e155, -1e308, 1e308, 1e50, 1.1e50, -1e49, 1e-50, 0.9e-50, 1e-100, 1e100, 1e25, 1e-25),
+    one_of(math.nan, math.inf, -math.inf),
     st.floats(allow_nan=True, allow_infinity=True),
-    st.sampled_from([0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)]),
+    one_of(0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)),
 )
-texts = st.one_of(
-    st.sampled_from(
-        [
-            "",
-            " ",
-            "start",
-            "end",
-            "pin",
-            "beam",
-            "a.end",
-            "x",
-            "N, m",
-            "..",
-            "a\nb",
-            "\0",
-            "\U0001d6fc",
-            "\u202e",
-            "%s{}",
-        ]
-    ),
-    st.text(max_size=12),
-)
-scalars = st.one_of(numbers, texts, st.booleans())
+WORDS = ["start", "end", "pin", "beam", "a.end", "x", "..", "\U0001d6fc", "\u202e", "%s{}"]
+texts = st.one_of(one_of(*WORDS, "", " ", "N, m", "a\nb", "\0"), st.text(max_size=12))
 values = st.recursive(
-    scalars,
+    st.one_of(numbers, texts, st.booleans()),
     lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(texts, inner, max_size=3)),
     max_leaves=6,
 )
-KEYS = [
-    "name",
-    "clamped",
+NUMERIC = [
+    "start",
+    "end",
+    "path",
+    "displacement",
+    "force",
+    "moment",
+    "rotation",
+    "radius",
+    "youngs_modulus",
+    "shear_modulus",
     "width",
     "height",
     "area",
     "second_moment",
     "shear_area",
-    "nodes",
-    "mesh",
-    "solid_clamp",
-    "solid_element",
-    "solid_mesh_file",
-    "material",
-    "kind",
-    "free",
-    "fixed",
-    "displacement",
-    "rotation",
-    "force",
-    "moment",
-    "path",
-    "radius",
-    "start",
-    "end",
-    "surface",
-    "penalty",
-    "penetration",
-    "keep",
-    "friction",
-    "units",
-    "youngs_modulus",
     "turn",
     "density",
     "gravity",
-    "at",
     "force_per_length",
-    "part",
     "stiffness",
-    "load_parameters",
-    "pin",
-    "support",
-    "load",
 ]
-EXTREME_KEYS = {
-    *("start", "end", "path", "displacement", "force", "moment", "rotation", "radius"),
-    *("youngs_modulus", "shear_modulus", "width", "height", "area", "second_moment", "shear_area"),
-    *("turn", "density", "gravity", "force_per_length", "stiffness"),
-}
 """Keys of numbers whose size is tried out."""
+KEYS = (
+    *NUMERIC,
+    *[
+        "name",
+        "clamped",
+        "nodes",
+        "mesh",
+        "solid_clamp",
+        "solid_element",
+        "solid_mesh_file",
+        "material",
+        "kind",
+        "free",
+        "fixed",
+        "surface",
+        "penalty",
+    ],
+    *["penetration", "keep", "friction", "units", "at", "part", "load_parameters", "pin", "support", "load"],
+)
 
 
 def _tables(scene: Tables) -> list[Tables]:
-    found = [scene]
-    for value in scene.values():
-        found += [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, dict)]
-    return [table for table in found if table]
+    inner = [item for value in scene.values() for item in (value if isinstance(value, list) else [value])]
+    return [table for table in (scene, *inner) if isinstance(table, dict) and table]
 
 
 @st.composite
@@ -138,10 +111,8 @@ def mutated(draw: st.DrawFn) -> str:
     """A valid scene after one to three mutations of its keys and values."""
     scene = copy.deepcopy(draw(valid_scenes))
     for _ in range(draw(st.integers(1, 3))):
-        candidates = _tables(scene)
-        if not candidates:
-            break
-        _mutate(draw, draw(st.sampled_from(candidates)))
+        if candidates := _tables(scene):
+            _mutate(draw, draw(st.sampled_from(candidates)))
     return toml_text(scene)
 
 
@@ -149,29 +120,28 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
     """Change one key of a table."""
     key = draw(st.sampled_from(list(table)))
     value = table[key]
-    how = draw(
-        st.sampled_from(["value", "number", "delete", "misspell", "add", "length", "scale", "repeat", "wrap"])
-    )
-    if how == "number" and isinstance(value, list) and value and not isinstance(value[0], dict):
+    several = isinstance(value, list) and bool(value)
+    tables = several and isinstance(value[0], dict)
+    how = draw(one_of("value", "number", "delete", "misspell", "add", "length", "scale", "repeat", "wrap"))
+    if how == "number" and several and not tables:
         value[draw(st.integers(0, len(value) - 1))] = draw(numbers)
     elif how == "number" and not isinstance(value, dict | list):
         table[key] = draw(numbers)
     elif how == "scale" and isinstance(value, float):
         table[key] = value * 10.0 ** draw(st.integers(-300, 300))
     elif how == "length" and isinstance(value, list):
-        table[key] = draw(st.sampled_from([value[:-1], value + value[:1], [], [value]]))
-    elif how == "repeat" and isinstance(value, list) and value and isinstance(value[0], dict):
+        table[key] = draw(one_of(value[:-1], value + value[:1], [], [value]))
+    elif how == "repeat" and tables:
         table[key] = value + copy.deepcopy(value[-1:])
     elif how == "wrap":
-        table[key] = draw(st.sampled_from([[value], {key: value}, str(value)]))
+        table[key] = draw(one_of([value], {key: value}, str(value)))
     elif how == "add":
-        table[draw(st.one_of(st.sampled_from(KEYS), texts))] = draw(values)
-    elif how == "delete":
+        table[draw(st.one_of(one_of(*KEYS), texts))] = draw(values)
+    elif how in ("delete", "misspell"):
         del table[key]
-    elif how == "misspell":
-        del table[key]
-        at = draw(st.integers(0, max(len(key) - 1, 0)))
-        table[key[:at] + draw(st.sampled_from(["", "x", "_", "é", "."])) + key[at + 1 :] or "x"] = value
+        if how == "misspell":
+            at = draw(st.integers(0, max(len(key) - 1, 0)))
+            table[key[:at] + draw(one_of("", "x", "_", "é", ".")) + key[at + 1 :] or "x"] = value
     else:
         table[key] = draw(values)
 
@@ -181,10 +151,10 @@ def displaced(draw: st.DrawFn) -> str:
     """A valid scene with a coordinate, a modulus or a force moved to where floating-point numbers end."""
     scene = copy.deepcopy(draw(valid_scenes))
     table = draw(st.sampled_from(_tables(scene)))
-    numeric = [key for key in table if key in EXTREME_KEYS and isinstance(table[key], list | float | int)]
+    numeric = [key for key in table if key in NUMERIC and isinstance(table[key], list | float | int)]
     if numeric:
         key = draw(st.sampled_from(numeric))
-        size = draw(st.sampled_from([-1, 1])) * 10.0 ** draw(st.integers(-323, 308))
+        size = draw(one_of(-1, 1)) * 10.0 ** draw(st.integers(-323, 308))
         if isinstance(table[key], list):
             point = table[key][0] if isinstance(table[key][0], list) else table[key]
             point[draw(st.integers(0, len(point) - 1))] = size
@@ -196,21 +166,11 @@ def displaced(draw: st.DrawFn) -> str:
 @st.composite
 def deepened(draw: st.DrawFn) -> str:
     """A valid scene with a key, a header or a list far deeper than any parser recurses."""
-    text = toml_text(draw(valid_scenes))
-    depth = draw(st.sampled_from([40, 60, 500, 20_000]))
-    part = draw(st.sampled_from(["a.", '"".', "'b' . ", "a-b ."]))
-    deep = draw(
-        st.sampled_from(
-            [
-                f"{part * depth}a = 1",
-                f"[{part * depth}a]",
-                f"x = {'[' * depth}{']' * depth}",
-                f"x = {'{a = ' * depth}1{'}' * depth}",
-            ]
-        )
-    )
-    lines = text.splitlines()
-    lines.insert(draw(st.integers(0, len(lines))), deep)
+    lines = toml_text(draw(valid_scenes)).splitlines()
+    depth = draw(one_of(40, 60, 500, 20_000))
+    keys = draw(one_of("a.", '"".', "'b' . ", "a-b .")) * depth
+    nested = "x = " + "[" * depth + "]" * depth, "x = " + "{a = " * depth + "1" + "}" * depth
+    lines.insert(draw(st.integers(0, len(lines))), draw(one_of(f"{keys}a = 1", f"[{keys}a]", *nested)))
     return "\n".join(lines) + "\n"
 
 
@@ -220,20 +180,15 @@ def garbled(draw: st.DrawFn) -> bytes:
     data = toml_text(draw(valid_scenes)).encode()
     for _ in range(draw(st.integers(1, 4))):
         at = draw(st.integers(0, len(data)))
-        size = draw(st.sampled_from([0, 1, 2, 10, 100]))
+        size = draw(one_of(0, 1, 2, 10, 100))
         piece = draw(st.one_of(st.binary(max_size=6), st.just(data[at : at + size]), st.just(b"[" * 500)))
-        data = data[:at] + piece + data[at + draw(st.sampled_from([0, size])) :]
+        data = data[:at] + piece + data[at + draw(one_of(0, size)) :]
     return data
 
 
-broken_files = st.one_of(
-    mutated().map(str.encode),
-    mutated().map(str.encode),
-    mutated().map(str.encode),
-    displaced().map(str.encode),
-    deepened().map(str.encode),
-    garbled(),
-    st.binary(max_size=200),
+wrong = st.one_of(mutated(), mutated(), mutated(), displaced(), deepened()).map(str.encode)
+files = st.one_of(
+    valid_scenes.map(lambda scene: toml_text(scene).encode()), wrong, garbled(), st.binary(max_size=200)
 )
 
 
@@ -243,9 +198,6 @@ def is_small(data: bytes) -> bool:
         tables = tomllib.loads(data.decode())
     except (ValueError, RecursionError):
         return True
-    return not any(
-        isinstance(number, int) and MOST < number <= LARGEST
-        for table in _tables(tables)
-        for key in ("load_parameters", "elements", "mesh")
-        for number in (table.get(key) if isinstance(table.get(key), list) else [table.get(key)])
-    )
+    counts = [table.get(key) for table in _tables(tables) for key in ("load_parameters", "elements", "mesh")]
+    every = [number for count in counts for number in (count if isinstance(count, list) else [count])]
+    return not any(isinstance(number, int) and MOST < number <= LARGEST for number in every)

@@ -10,7 +10,7 @@ from comparisons.exact import FrictionEvent, FrictionPath, FrictionState
 from comparisons.models.verify import CHECK_FAILED, STRAIN
 from tests.fuzz.judge import LIMIT, Hang, time_limit
 from tests.tsm.friction_scenes import Cantilever, drawn
-from tsm.events import EventKind
+from tsm import EventKind
 
 STEPS = 6
 """Number of load parameters."""

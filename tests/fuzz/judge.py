@@ -1,4 +1,4 @@
-"""Runs one scene file through the command and says whether it ended as the documentation promises."""
+"""Run scene files through the command, and say whether each ended as the documentation promises."""
 
 import faulthandler
 import io
@@ -8,12 +8,13 @@ import signal
 import tempfile
 import traceback
 import warnings
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from time import process_time
 
+import tsm
 from comparisons.cli import main
 
 LIMIT = 60.0
@@ -25,57 +26,11 @@ NAMED = re.compile(r"crossval: ([A-Z_]+): .+\n")
 """The one line of a solution that stopped."""
 REFUSED = re.compile(r"(crossval: .+\n)+")
 """The lines of an input that is refused, one for every mistake."""
+MODELS = ("rod", "elastica", "solid", "solid", *(f"tsm --element {name}" for name in tsm.ELEMENTS))
 
 
 class Hang(BaseException):
     """A run took longer than allowed; nothing catches it on the way."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Outcome:
-    """How a run ended, ``done``, ``refused``, ``stopped NAME`` or otherwise, what is wrong with that, and processor seconds."""
-
-    kind: str
-    wrong: str | None
-    seconds: float
-
-
-def judged(arguments: list[str], limit: float = LIMIT) -> Outcome:
-    """Run ``crossval`` with `arguments` in this process; warnings are errors."""
-    out, err = io.StringIO(), io.StringIO()
-    began = process_time()
-    status: int | None = None
-    raised = ""
-    with tempfile.TemporaryFile() as direct:
-        try:
-            with (
-                time_limit(limit),
-                redirect_stdout(out),
-                redirect_stderr(err),
-                _descriptor(2, direct.fileno()),
-                warnings.catch_warnings(),
-            ):
-                warnings.simplefilter("error")
-                status = main(arguments)
-        except Hang:
-            raised = f"hangs for {limit:g} s"
-        except BaseException:  # noqa: BLE001 - whatever it is, a user would see it as a traceback
-            raised = traceback.format_exc()
-        direct.seek(0)
-        printed = err.getvalue() + direct.read().decode(errors="replace")
-    kind, wrong = ("raised", raised) if raised else _verdict(status, out.getvalue(), printed)
-    return Outcome(kind=kind, wrong=wrong, seconds=process_time() - began)
-
-
-def _verdict(status: int | None, out: str, err: str) -> tuple[str, str | None]:
-    named = NAMED.fullmatch(err)
-    if status == 0 and not err:
-        return "done", None
-    if status == 2 and not out and REFUSED.fullmatch(err):
-        return "refused", None
-    if status == 3 and named:
-        return f"stopped {named[1]}", None
-    return f"status {status}", f"status {status}, stdout {out!r}, stderr {err!r}"
 
 
 @contextmanager
@@ -108,8 +63,62 @@ def _descriptor(number: int, other: int) -> Iterator[None]:
         os.close(kept)
 
 
-def solved(file: Path, model: str, *options: str, limit: float = LIMIT) -> tuple[Outcome, Path]:
-    """Solve the scene `file` and return the outcome and the JSON file, which is there unless the scene was refused."""
-    result = file.with_suffix(".json")
-    result.unlink(missing_ok=True)
-    return judged(["solve", str(file), "--model", model, *options, "--json", str(result)], limit), result
+def judged(arguments: list[str]) -> tuple[str, str | None]:
+    """How ``crossval`` with `arguments` ends, ``done``, ``refused``, ``stopped NAME`` or otherwise, and what is wrong with that; warnings are errors."""
+    out, err, status = io.StringIO(), io.StringIO(), None
+    with tempfile.TemporaryFile() as direct:
+        try:
+            with time_limit(LIMIT), redirect_stdout(out), redirect_stderr(err), _descriptor(2, direct.fileno()), warnings.catch_warnings():  # fmt: skip
+                warnings.simplefilter("error")
+                status = main(arguments)
+        except Hang:
+            return "raised", f"hangs for {LIMIT:g} s"
+        except BaseException:  # noqa: BLE001 - whatever it is, a user would see it as a traceback
+            return "raised", traceback.format_exc()
+        direct.seek(0)
+        printed = err.getvalue() + direct.read().decode(errors="replace")
+    if status == 0 and not printed:
+        return "done", None
+    if status == 2 and not out.getvalue() and REFUSED.fullmatch(printed):
+        return "refused", None
+    if status == 3 and (named := NAMED.fullmatch(printed)):
+        return f"stopped {named[1]}", None
+    return f"status {status}", f"status {status}, stdout {out.getvalue()!r}, stderr {printed!r}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tally:
+    """How some files ended: number by model and outcome, and what is wrong with which file."""
+
+    kinds: Counter[tuple[str, str]] = field(default_factory=Counter)
+    wrong: list[tuple[str, str, bytes]] = field(default_factory=list)
+
+
+def tally(number: int, first: int) -> Tally:
+    """Solve `number` different fuzzed files, each with one model, drawn from the seed `first`."""
+    from hypothesis import HealthCheck, Phase, assume, given, seed, settings
+    from hypothesis import strategies as st
+
+    from tests.fuzz.broken import files, is_small
+
+    found, seen = Tally(), set[tuple[str, bytes]]()
+
+    @settings(max_examples=number, database=None, deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))  # fmt: skip
+    @seed(first)
+    @given(files, st.sampled_from(MODELS))
+    def run(data: bytes, model: str) -> None:
+        assume(is_small(data) and (model, data) not in seen)
+        seen.add((model, data))
+        file.write_bytes(data)
+        kind, wrong = judged(
+            ["solve", str(file), "--model", *model.split(), "--json", str(file.with_suffix(".json"))]
+        )
+        file.with_suffix(".json").unlink(missing_ok=True)
+        found.kinds[model.partition(" ")[0], kind] += 1
+        if wrong is not None:
+            found.wrong.append((model, wrong, data))
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scene.toml"
+        run()
+    return found

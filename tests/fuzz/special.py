@@ -15,8 +15,7 @@ from comparisons.scene import (
     StageSpec,
     SupportMove,
 )
-from comparisons.scene.rules import Point
-from tests.fuzz.world import ENDS, drawn, drawn_with_friction
+from tests.fuzz.world import ENDS, Corner, drawn, drawn_with_friction
 
 ATTEMPTS = 40
 """Changes that are tried for a drawn scene before the next one is drawn."""
@@ -48,7 +47,7 @@ def stiffness(random: Random, scene: Scene, beam: str) -> tuple[float, float, fl
     return tuple(size * spec.EI / spec.length**power for power in (1, 2, 3))  # type: ignore[return-value]
 
 
-def vector(random: Random, size: float) -> Point:
+def vector(random: Random, size: float) -> Corner:
     """A vector of a size in any direction, or in an axis."""
     angle = random.choice((0.0, math.pi / 2, math.pi, -math.pi / 2, random.uniform(-math.pi, math.pi)))
     return round(size * math.cos(angle), 12), round(size * math.sin(angle), 12)
@@ -77,7 +76,7 @@ def stage(random: Random, scene: Scene) -> Scene:
     """Add a stage: pins go on or back, supports and loads too."""
     length = max(beam.length for beam in scene.beams)
     pins = tuple(
-        PinMove(name=pin.name, path=_onward(random, scene, pin.points, length))
+        PinMove(name=pin.name, path=_onward(random, pin.points, length))
         for pin in scene.pins
         if random.random() < 0.7
     )
@@ -97,9 +96,8 @@ def stage(random: Random, scene: Scene) -> Scene:
     return replace(scene, stages=(*scene.stages, more))
 
 
-def _onward(random: Random, scene: Scene, points: tuple[Point, ...], length: float) -> tuple[Point, ...]:
+def _onward(random: Random, points: tuple[Corner, ...], length: float) -> tuple[Corner, ...]:
     """Points of a pin in a stage: back to where it was before, or on."""
-    del scene
     (x, y) = points[-1]
     if random.random() < 0.5:
         return (points[-2],)

@@ -7,7 +7,7 @@ import pytest
 
 from comparisons.models import MODELS
 from comparisons.scene import Scene
-from tests.fuzz.files import tally
+from tests.fuzz.judge import tally
 from tests.fuzz.world import drawn, drawn_with_friction
 from tests.fuzz.world_judge import apart, run
 
@@ -15,21 +15,16 @@ EXACT = 1e-6
 """Largest difference of exact elements and the rod, of the largest force."""
 
 
-def check_files(number: int, seed: int) -> None:
+@pytest.mark.slow_at("many")
+@pytest.mark.parametrize(
+    ("number", "seed", "ends"),
+    [(20, 1, {"done", "refused"}), (200, 2, {"done", "refused", "stopped"})],
+    ids=["few", "many"],
+)
+def test_files_end_as_documented(number: int, seed: int, ends: set[str]) -> None:
     found = tally(number, seed)
     assert not found.wrong, "\n\n".join(f"{model}\n{why}\n{data!r}" for model, why, data in found.wrong)
-    ends = {kind.split()[0] for _, kind in found.kinds}
-    assert ends == {"done", "refused", "stopped"}
-
-
-def test_files_end_as_documented() -> None:
-    check_files(40, 1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("number", "seed"), [(200, 2)])
-def test_many_files_end_as_documented(number: int, seed: int) -> None:
-    check_files(number, seed)
+    assert {kind.split()[0] for _, kind in found.kinds} == ends
 
 
 STOPS = {87: "JAMMED", 245: "LOST"}

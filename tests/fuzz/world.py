@@ -13,6 +13,8 @@ from random import Random
 from typing import Any, TypeVar
 
 from comparisons.scene import Scene, SceneError, read_scene
+
+# how a scene file writes a value, however broken: no reader of TOML writes
 from comparisons.scene.values import toml_value
 
 Tables = dict[str, Any]

@@ -15,7 +15,6 @@ from comparisons.models import solve
 from comparisons.models.options import ModelError, Options
 from comparisons.models.verify import penetration
 from comparisons.referee import Judgement, Verdict, certify
-from comparisons.referee.distance import ROUGH
 from comparisons.response import Response
 from comparisons.scene import Scene, to_toml
 from tests.fuzz.judge import LIMIT, Hang, time_limit
@@ -39,14 +38,14 @@ BETWEEN = 2e-2
 """Largest difference between `exact` and `mixed` at the last load parameter: twice what each may be off."""
 INSIDE = {"exact": 1e-9, "mixed": 1e-4, "solid": math.inf, "rod": 1e-9}
 """Largest depth of a completed axis inside a round pin, over the beam's length. The axis of `mixed` is drawn through element ends."""
-NO_NEXT_STEP = (
+NO_NEXT_STEP = {
     "CUTBACK_FLOOR",
     "STEP_LIMIT",
     "SINGULAR_TANGENT",
     "ITERATION_LIMIT",
     "NOT_FINITE",
     "INACCURATE",
-)
+}
 """Statuses of a step that was not found: which of them depends on the step's length."""
 GAVE_UP = "no next step"
 SAME = 1e-6
@@ -165,17 +164,13 @@ def _off(scene: Scene, item: Judgement) -> float:
     """
     if item.distance is None or item.exact is None:
         return 0.0
-    size = max(
-        (
-            float(np.hypot(*force[:2]))
-            for force in (*item.exact.reactions.values(), *(c.force for c in item.exact.contacts.values()))
-        ),
-        default=0.0,
-    )
+    pushes = [*item.exact.reactions.values(), *(contact.force for contact in item.exact.contacts.values())]
+    size = max((float(np.hypot(*force[:2])) for force in pushes), default=0.0)
     # what is interpolated between stated points has an error of its own
-    left_out = {"place", "displacement", *ROUGH}
-    left_out |= set() if size > NOTHING * least_force(scene) else {"force", "reaction"}
-    return max(value for name, value in item.distance.sizes().items() if name not in left_out)
+    names = {"arc_position", "tip", "shape"} | (
+        {"force", "reaction"} if size > NOTHING * least_force(scene) else set()
+    )
+    return max(value for name, value in item.distance.sizes().items() if name in names)
 
 
 def least_force(scene: Scene) -> float:
@@ -192,13 +187,11 @@ def findings(scene: Scene, rows: Sequence[Row]) -> Iterator[Finding]:
         elif row.completed and not row.certified:
             yield Finding(kind=f"{row.certificate.partition(':')[0]} {row.model}", text=row.line())
         if row.completed and row.response is not None:
-            depth = max(
-                (
-                    penetration(row.response, scene, spec).max() / scene.beam(spec.beam).length
-                    for spec in scene.contacts
-                ),
-                default=0.0,
-            )
+            depths = [
+                penetration(row.response, scene, item).max() / scene.beam(item.beam).length
+                for item in scene.contacts
+            ]
+            depth = max(depths, default=0.0)
             if not depth <= INSIDE[row.model]:
                 yield Finding(kind=f"INSIDE {row.model}", text=f"{depth:.2g} L: {row.line()}")
     for model in dict.fromkeys(row.model for row in rows):
@@ -254,21 +247,12 @@ def kind(ended: str) -> str:
 def apart(scene: Scene, one: Row, other: Row, at: int = -1) -> float:
     """Return the largest difference of two answers at one load parameter, the last one: tips over the length, forces over the largest."""
     a, b = one.response, other.response
-    assert a is not None, "it is completed"
-    assert b is not None, "it is completed"
-    found = [
-        float(np.hypot(*(a.tips[beam.name][at] - b.tips[beam.name][at]))) / beam.length
-        for beam in scene.beams
-    ]
-    forces = [np.hypot(*item.force[at]) for answer in (a, b) for item in answer.supports.values()]
-    forces += [item.force[at] for answer in (a, b) for item in answer.contacts.values()]
+    assert a is not None and b is not None, "they are completed"  # noqa: PT018 - for a type checker
+    tips = [(a.tips[beam.name][at] - b.tips[beam.name][at]) / beam.length for beam in scene.beams]
+    sides = [[found.supports[node].force[at] for node in a.supports] for found in (a, b)]
+    pushes = [[(found.contacts[pair].force[at], 0.0) for pair in a.contacts] for found in (a, b)]
+    forces = np.array([side + push for side, push in zip(sides, pushes, strict=True)]).reshape(2, -1, 2)
     left = 2.0 * NEWTON * max(beam.EI / beam.length**2 for beam in scene.beams)
-    size = max(NOTHING * least_force(scene), left / SAME, *map(float, forces))
-    found += [
-        abs(float(a.contacts[pair].force[at] - b.contacts[pair].force[at])) / size for pair in a.contacts
-    ]
-    found += [
-        float(np.hypot(*(a.supports[node].force[at] - b.supports[node].force[at]))) / size
-        for node in a.supports
-    ]
-    return max(found, key=lambda value: math.inf if math.isnan(value) else value)
+    size = max(NOTHING * least_force(scene), left / SAME, np.hypot(*forces.T).max(initial=0.0))
+    # nan, of whatever cannot be compared, is kept
+    return float(np.hypot(*np.array([*tips, *(forces[0] - forces[1]) / size]).T).max())

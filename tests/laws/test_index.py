@@ -1,0 +1,61 @@
+"""The index of a column is the number of its critical loads that have been passed, by closed forms of the rod that stretches and shears."""
+
+import math
+
+import pytest
+
+import tsm
+from comparisons.models import solve
+from comparisons.models.options import Options
+from comparisons.referee import certify
+from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
+
+EA, GA = 4e3, 5e2
+ENDS = {"free": ((), ()), "pinned": (("x", "y"), ("y",)), "clamped": ((), ("y", "rotation"))}
+WITHIN = {"exact": 1e-8, "mixed": 5e-4}
+MESHED = 2e-2
+"""Largest error of a critical load; the order is two without the bow."""
+
+
+def column(ends: str, load: float, number: int) -> Scene:
+    """EI = L = 1."""
+    first, last = ENDS[ends]
+    fixed = ((("start", first),) if first else ()) + ((("end", last),) if last else ())
+    beam = BeamSpec(
+        name="b", start=(0.0, 0.0), end=(1.0, 0.0), youngs_modulus=1.0, shear_modulus=1.0, area=EA, second_moment=1.0, shear_area=GA,
+        clamped=() if first else ("start",), elements=20,
+    )  # fmt: skip
+    supports = tuple(SupportSpec(beam="b", end=end, fixed=held) for end, held in fixed)
+    push = LoadSpec(beam="b", end="end", force=(-load, 0.0))
+    return Scene(name="column", load_parameters=number, beams=(beam,), supports=supports, loads=(push,))
+
+
+def critical(ends: str, mode: int, GA: float = GA) -> float:
+    """Load of a mode: ``P (1 + P (1/GA - 1/EA)) = k^2``."""
+    k = math.pi * {"free": mode - 0.5, "pinned": float(mode), "clamped": 2.0 * mode}[ends]
+    a = 1.0 / GA - 1.0 / EA
+    return (math.sqrt(1.0 + 4.0 * a * k**2) - 1.0) / (2.0 * a)
+
+
+@pytest.mark.parametrize("ends", ENDS)
+@pytest.mark.parametrize("element", [name for name, kind in tsm.ELEMENTS.items() if not kind.variant])
+def test_the_index_is_the_number_of_critical_loads_passed(element: str, ends: str) -> None:
+    """On the straight path, whose end is named unstable; the referee counts the same of a rod that shears."""
+    kind, modes = tsm.ELEMENTS[element], 1 if ends == "clamped" else 2
+    stiffness = GA if kind.sheared else math.inf
+    load = 1.15 * critical(ends, modes, stiffness)
+    asked = column(ends, load, 12)
+    found = solve(asked, "tsm", Options(element=element, branch="primary"))
+    assert found.status == "UNSTABLE", found.message
+    loads = [critical(ends, mode, stiffness) / load for mode in range(1, modes + 1)]
+    assert [point.load_parameter for point in found.critical] == pytest.approx(
+        loads, rel=WITHIN.get(element, MESHED)
+    )
+    assert {point.kind for point in found.critical} == {"bifurcation"}
+    assert found.index is not None
+    passed = [sum(t > one for one in loads) for t in asked.times]
+    assert list(found.index) == passed
+    if kind.sheared:
+        assert [
+            item.index for item in certify(found, asked, at=range(12), allowance=math.inf).judged
+        ] == passed
