@@ -31,6 +31,7 @@ COMPUTED = {
     "friction-over-mu.mixed-{}": "10 20",
     "friction-over-mu.solid-{}": "st-venant-kirchhoff biot-linear",
     "friction.paper-{}": "10 20 50",
+    "friction.{}": "rod elastica exact",
     "friction.solid-{}x{}": "25x1 50x2 100x4",
     "ks.mixed-{}": "5 10 20 40 200",
     "mixed.roll-up-order-{}": "1 2",

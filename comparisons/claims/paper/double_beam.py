@@ -200,8 +200,8 @@ def double_beam(*, quick: bool, report: Report) -> DoubleBeam:
         seconds=own.wall_seconds,
         attempts=attempts,
         stopped=tuple(
-            f"{name}: {one.status}: {one.message}"
-            for name, one in (("mixed", own), ("mixed", response), ("exact rods", exact))
+            f"{one.setting or one.model}: {one.status}: {one.message}"
+            for one in (own, response, exact)
             if not one.completed
         ),
         scene=finer,
