@@ -36,7 +36,7 @@ SOURCES = {
     "hysteresis-stages": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
     "ks-cantilever": "tests/reference/ks_rod.py, collocation",
     "ks-friction": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
-    "sleeve": "tests/comparisons/scene/test_built_in.py, closed form",
+    "sleeve": "tests/problems.toml, the referee and exact elements",
     "straightened-arc": "tests/comparisons/scene/test_built_in.py, closed form",
     "tapered-spring": "tests/verification/rod_by_shooting.py, shooting",
     "tip-load": "tests/oracles/elastica.py, the elastica by elliptic integrals",
