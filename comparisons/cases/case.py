@@ -53,6 +53,17 @@ class Case:
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     @property
+    def description(self) -> dict[str, object]:
+        """What the case is, for the file of its result."""
+        options = {name: value for name, value in asdict(self.options).items() if value is not None}
+        return {
+            "scene": to_toml(self.scene),
+            "model": self.model_name,
+            "options": options,
+            "version": version(),
+        }
+
+    @property
     def model_name(self) -> str:
         """Name of the model, also where `model` is a program file."""
         return find(self.model).name

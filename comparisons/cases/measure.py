@@ -70,18 +70,20 @@ class Measurement:
         response = self.response
         return response.false_success or (response.reported_success and self.verdict in REFUSALS)
 
-    def to_json(self) -> str:
-        """Return the measurement as JSON text; a number that is not finite is null."""
+    def to_json(self, **case: object) -> str:
+        """Return the measurement as JSON text, after what `case` tells; a number that is not finite is null."""
         numbers = {item.name: getattr(self, item.name) for item in fields(self) if item.name != "response"}
-        return json.dumps(plain({**numbers, "response": as_dict(self.response)}), allow_nan=False)
+        return json.dumps(plain({**case, **numbers, "response": as_dict(self.response)}), allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> "Measurement":
         """Return the measurement that `to_json` wrote, every number the same."""
         data: dict[str, Any] = json.loads(text)
-        response = restated(data.pop("response"))
-        numbers: dict[str, Any] = {name: np.nan if value is None else value for name, value in data.items()}
-        return cls(response=response, **numbers)
+        numbers: dict[str, Any] = {
+            item.name: data[item.name] for item in fields(cls) if item.name != "response"
+        }
+        numbers = {name: np.nan if value is None else value for name, value in numbers.items()}
+        return cls(response=restated(data["response"]), **numbers)
 
 
 def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measurement:

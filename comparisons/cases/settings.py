@@ -1,12 +1,13 @@
 """The settings of a case by the names of a study file: ``elements``, ``scene.load_parameters``, ``beam.upper.height``."""
 
-import json
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
-from comparisons.scene import LoadSpec, Scene
+from comparisons.cases.case import Case
+from comparisons.output import plain
+from comparisons.scene import LoadSpec, Scene, to_toml
 from comparisons.scene.read import LISTS
 from comparisons.scene.rules import FieldError, RecordError
 
@@ -83,18 +84,10 @@ def _changed_record(
         return record
 
 
-def settings(definition: str, options: str) -> dict[str, object]:
-    """Return the settings of a recorded case by key; the key omits the record's name if the scene has only one of its kind.
-
-    Parameters
-    ----------
-    definition : str
-        The scene as TOML.
-    options : str
-        The options given, as JSON.
-    """
-    tables = tomllib.loads(definition)
-    found: dict[str, object] = dict(json.loads(options))
+def settings(case: Case) -> dict[str, object]:
+    """Return the settings of a case by key; the key omits the record's name if the scene has only one of its kind."""
+    tables = tomllib.loads(to_toml(case.scene))
+    found = {name: plain(value) for name, value in vars(case.options).items() if value is not None}
     found |= {f"scene.{key}": value for key, value in tables["scene"].items() if key != "name"}
     for kind in LISTS:
         records = tables.get(kind, [])

@@ -2,9 +2,11 @@
 
 import logging
 import os
+import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -55,6 +57,11 @@ def local(count: int | None = None) -> Workers:
 
 @contextmanager
 def _processes(count: int) -> Iterator[Executor]:
+    main = str(getattr(sys.modules["__main__"], "__file__", ""))
+    if main.startswith("<"):
+        raise WorkersError(
+            "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
+        )
     context = get_context("spawn")
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
@@ -62,11 +69,21 @@ def _processes(count: int) -> Iterator[Executor]:
         executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
         try:
             yield executor
+        except BrokenExecutor:
+            started = list(executor._processes.values())  # noqa: SLF001 - nothing else knows how a worker ended
             executor.shutdown()
+            raise BrokenExecutor(_cause([process.exitcode for process in started])) from None
         finally:
             held.close()
             executor.shutdown(cancel_futures=True)
             watched.close()
+
+
+def _cause(codes: list[int | None]) -> str:
+    """Say how a worker ended; when one dies, the executor ends the others by SIGTERM."""
+    code = next((code for code in codes if code not in (None, 0, -signal.SIGTERM)), -signal.SIGTERM)
+    how = f"with exit status {code}" if code >= 0 else f"by {signal.Signals(-code).name}"
+    return f"the worker process ended {how}"
 
 
 def _end_with(parent: Connection) -> None:

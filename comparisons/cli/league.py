@@ -62,7 +62,7 @@ def run(given: "argparse.Namespace") -> int:
         league = measure_league(
             scenes,
             given.others,
-            folder / "results.sqlite",
+            folder / "results",
             workers(given),
             quick=given.quick,
             progress=shown(),

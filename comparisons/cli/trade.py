@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, report
-from comparisons.cli.study import report_older, workers
+from comparisons.cli.study import workers
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -55,8 +55,6 @@ def run(given: "argparse.Namespace") -> int:
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
-    for tally in found.tallies:
-        report_older(tally)
     print(_text(found.trade))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     return DONE
