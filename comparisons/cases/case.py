@@ -15,22 +15,7 @@ from comparisons.version import version
 class Case:
     """A scene with a model and its options: all that a result depends on.
 
-    Element order, penalty and load steps are entries of the scene (`BeamSpec.solid_element`, `ContactSpec.penalty`,
-    `Scene.load_parameters`), elements and meshes are options.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    model : str
-        Name of a model, see `comparisons.models.find`.
-    options : Options
-        The model's options.
-
-    Raises
-    ------
-    ModelError
-        If there is no such model.
+    Element order, penalty and load steps are entries of the scene, elements and meshes are options. An unknown model is a `ModelError`.
     """
 
     scene: Scene

@@ -33,15 +33,7 @@ Results = dict[Case, Measurement]
 
 @dataclass(frozen=True, kw_only=True)
 class Tally:
-    """How far a sweep has come.
-
-    Attributes
-    ----------
-    total, done, failed : int
-        Numbers of all cases, of those with a result, and of results without a completed and checked solution.
-    seconds, left : float
-        Time since the run began, and estimated time to its end, nan before the first case is done [s].
-    """
+    """How far a sweep has come; `failed` results have no completed and checked solution, and `left` is nan before the first [s]."""
 
     total: int
     done: int

@@ -95,16 +95,3 @@ def settings(case: Case) -> dict[str, object]:
             place = kind if len(records) == 1 else f"{kind}.{name}"
             found |= {f"{place}.{key}": value for key, value in record.items()}
     return found
-
-
-def in_order(values: Iterable[object]) -> tuple[Any, ...]:
-    """Return a sort key for values of any kind: missing values first, numbers by size, lists by their items."""
-    return tuple(_rank(value) for value in values)
-
-
-def _rank(value: object) -> tuple[Any, ...]:
-    if value is None:
-        return (0,)
-    if isinstance(value, int | float):
-        return (1, value)
-    return (3, in_order(value)) if isinstance(value, list) else (2, str(value))

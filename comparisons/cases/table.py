@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons.cases.measure import Measurement
 from comparisons.cases.run import COMPLETED, Results
-from comparisons.cases.settings import in_order, settings
+from comparisons.cases.settings import settings
 from comparisons.output import Row, tabulated
 from comparisons.response import Array, Response
 from comparisons.version import version
@@ -18,7 +18,7 @@ HIDDEN = {"label", "load_parameter", "cutbacks", "seconds", "repeats", "peak_mem
 
 
 def result_rows(results: Results) -> list[Row]:
-    """Return a row for each result, with settings that differ, status, last state reached and cost, sorted by scene, model and settings.
+    """Return a row for each result, with settings that differ, status, last state reached and cost.
 
     The columns of answers are ``force:PAIR``, ``arc_position:PAIR``, ``moment:BEAM``, ``tip_x:BEAM`` and ``tip_y:BEAM``.
     """
@@ -26,10 +26,6 @@ def result_rows(results: Results) -> list[Row]:
     names = _varied(stated.values())
     answers = {case: _answers(found.response) for case, found in results.items()}
     columns = list(dict.fromkeys(name for answer in answers.values() for name in answer))
-    ordered = sorted(
-        results,
-        key=lambda case: (case.scene.name, case.model_name, in_order(map(stated[case].get, names)), case.key),
-    )
     return [
         {
             "scene": case.scene.name,
@@ -43,7 +39,7 @@ def result_rows(results: Results) -> list[Row]:
             "version": version(),
             "message": results[case].response.message,
         }
-        for case in ordered
+        for case in results
     ]
 
 

@@ -31,17 +31,10 @@ class WorkersError(InputError):
 
 @dataclass(frozen=True, kw_only=True)
 class Workers:
-    """Where cases run.
+    """Where cases run: `width` at the same time, on the executor that ``start()`` gives.
 
-    Parameters
-    ----------
-    width : int
-        Cases under way at the same time.
-    start : callable
-        ``start()``: a context manager that gives a `concurrent.futures.Executor` and, on leaving after an exception, ends what
-        runs. It is called again after the executor broke.
-    lost : tuple of exception types
-        Exceptions that a future raises after its worker died for good, while the executor goes on.
+    When the context ends by an exception, it ends what runs. `start` is called again after its executor broke. The exceptions `lost` are
+    those of a future whose worker died for good, while the executor goes on.
     """
 
     width: int
@@ -100,16 +93,14 @@ def _end_with(parent: Connection) -> None:
 
 @contextmanager
 def _environment(values: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in values}
+    before = {name: os.environ[name] for name in values if name in os.environ}
     os.environ.update(values)
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in values:
+            del os.environ[name]
+        os.environ.update(before)
 
 
 def cluster(address: str) -> Workers:
@@ -158,11 +149,11 @@ def _client(address: str) -> "Iterator[Client]":
 @contextmanager
 def _silent(*loggers: str) -> Iterator[None]:
     """Keep loggers from printing tracebacks of what is an exception here anyway."""
-    before = {name: logging.getLogger(name).level for name in loggers}
-    for name in loggers:
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    before = {logger: logger.level for logger in map(logging.getLogger, loggers)}
     try:
+        for logger in before:
+            logger.setLevel(logging.CRITICAL)
         yield
     finally:
-        for name, level in before.items():
-            logging.getLogger(name).setLevel(level)
+        for logger, level in before.items():
+            logger.setLevel(level)

@@ -73,7 +73,7 @@ def _answer(given: "argparse.Namespace") -> int:
 
 
 def _run_file(given: "argparse.Namespace") -> int:
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
     from comparisons.cases.run import UNSETTLED
     from comparisons.cases.run import run as run_cases
     from comparisons.cases.study import read_study
@@ -82,13 +82,13 @@ def _run_file(given: "argparse.Namespace") -> int:
 
     study = read_study(Path(given.study))
     folder = writable_folder(given.out, f"{study.name}.csv")
-    with line_ended():
+    with shown(quiet=given.quiet) as progress:
         found = run_cases(
             study.cases,
             folder / study.name,
             workers(given),
             repeats=study.repeats,
-            progress=shown(quiet=given.quiet),
+            progress=progress,
         )
     rows = result_rows(found)
     ends = Counter(row["status"] for row in rows)

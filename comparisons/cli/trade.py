@@ -45,13 +45,13 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     folder = given.out or Path("out/trade") / scene.name
     given.workers = given.workers or 1
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
     from comparisons.cost.references import NoReferenceError
     from comparisons.cost.sweep import trade_off
 
     try:
-        with line_ended():
-            found = trade_off(scene, folder, workers(given), quick=given.quick, progress=shown())
+        with shown() as progress:
+            found = trade_off(scene, folder, workers(given), quick=given.quick, progress=progress)
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
