@@ -50,14 +50,8 @@ class Study:
 def read_study(path: Path) -> Study:
     """Return the study that the TOML file `path` states.
 
-    The table ``[study]`` has ``name``, ``scene`` (a built-in one, or a file beside the study) and ``repeats`` (3). Every table
-    ``[[run]]`` has ``model`` (a name, or a program file beside the study), and may have the model's options and any key of the scene's records, each with one value, a list of
-    values or a range; its cases are all combinations, the first key varying slowest.
-
-    Raises
-    ------
-    StudyError, SceneError
-        All mistakes in the order of the file, each in one line: file, key, value and rule. Nothing has been computed.
+    The cases of a table ``[[run]]`` are all combinations of its values, the first key varying slowest. A `StudyError` or `SceneError`
+    has all mistakes in the order of the file, each in one line: file, key, value and rule.
     """
     source = str(path)
     text = read_text(source, "no such file", StudyError)

@@ -75,7 +75,7 @@ def _processes(count: int) -> Iterator[Executor]:
 def _cause(codes: list[int | None]) -> str:
     """Say how a worker ended; when one dies, the executor ends the others by SIGTERM."""
     code = next((code for code in codes if code not in (None, 0, -signal.SIGTERM)), -signal.SIGTERM)
-    how = f"with exit status {code}" if code >= 0 else f"by {signal.Signals(-code).name}"
+    how = f"with exit status {code}" if code >= 0 else f"by signal {-code}, {signal.strsignal(-code)}"
     return f"the worker process ended {how}"
 
 
@@ -104,15 +104,10 @@ def _environment(values: dict[str, str]) -> Iterator[None]:
 
 
 def cluster(address: str) -> Workers:
-    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``.
+    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``; they need this package.
 
-    They need this package, in the same version. The scheduler itself gives the cases of a worker that died to another one, and
-    gives a case up after `distributed.scheduler.allowed-failures` deaths.
-
-    Raises
-    ------
-    WorkersError
-        If the extra ``cluster`` is not installed or the scheduler does not answer.
+    The scheduler itself gives the cases of a worker that died to another one, and gives a case up after
+    `distributed.scheduler.allowed-failures` deaths. A `WorkersError` says that the extra or the scheduler is missing.
     """
     try:
         from distributed import KilledWorker

@@ -2,9 +2,9 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from shutil import rmtree
 
 from comparisons.cases.case import Case
 from comparisons.cases.run import Progress
@@ -56,10 +56,7 @@ def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool 
     results = measured(cells, kept, workers, progress)
     judgements = tuple(judged(cell, results) for cell in cells)
     files = write(folder, judgements, quick=quick)
-    for case in results:
-        (kept / f"{case.key}.json").unlink()
-    with suppress(OSError):  # something else is in it
-        kept.rmdir()
+    rmtree(kept)
     return Extremes(judgements=judgements, files=files)
 
 
