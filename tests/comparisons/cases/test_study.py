@@ -85,9 +85,11 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, mon
     for stream in (Terminal(), io.StringIO()):
         folder = tmp_path / type(stream).__name__
         shutil.copytree(many.with_suffix(""), folder / "many")
-        files = {json.loads(file.read_text())["model"]: file for file in folder.glob("many/*")}
-        files["rod"].unlink()
-        files["solid"].unlink()
+        told = {file: json.loads(file.read_text()) for file in folder.glob("many/*")}
+        (rod,) = (file for file in told if told[file]["model"] == "rod")
+        (refused,) = (file for file in told if told[file]["response"]["status"] == "REFUSED")
+        rod.unlink()
+        refused.unlink()
         command = ("study", many.with_suffix(".toml"), "--out", folder, "--workers", "1")
         monkeypatch.setattr(sys, "stderr", stream)
         assert crossval(*command) == 0
@@ -97,12 +99,12 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, mon
             assert [picture.count("#") for picture in (first, last)] == [25, 30]
             assert last.endswith("12 of 12 cases done, 4 failed\x1b[K\n")
         else:
-            assert text.splitlines()[0] == "10 of 12 cases done, 4 failed"
+            assert text.splitlines()[0] == "10 of 12 cases done, 3 failed"
             assert text.splitlines()[-1] == "12 of 12 cases done, 4 failed"
             assert re.search(r"^\d+ of 12 cases done, \d failed, \d:\d\d left$", text, re.MULTILINE)
-        files["rod"].write_text("{}")
+        rod.write_text("{}")
         assert crossval(*command) == 2
-        line = f"crossval: {files['rod']}: is damaged: delete it, and the case is solved again\n"
+        line = f"crossval: {rod}: is damaged: delete it, and the case is solved again\n"
         assert stream.getvalue().removeprefix(text) == "\n" * stream.isatty() + line
 
 
