@@ -15,22 +15,7 @@ from comparisons.version import version
 class Case:
     """A scene with a model and its options: all that a result depends on.
 
-    Element order, penalty and load steps are entries of the scene (`BeamSpec.solid_element`, `ContactSpec.penalty`,
-    `Scene.load_parameters`), elements and meshes are options.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    model : str
-        Name of a model, see `comparisons.models.find`.
-    options : Options
-        The model's options.
-
-    Raises
-    ------
-    ModelError
-        If there is no such model.
+    Element order, penalty and load steps are entries of the scene, elements and meshes are options. An unknown model is a `ModelError`.
     """
 
     scene: Scene
@@ -51,6 +36,17 @@ class Case:
             "options": asdict(self.options),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    @property
+    def description(self) -> dict[str, object]:
+        """What the case is, for the file of its result."""
+        options = {name: value for name, value in asdict(self.options).items() if value is not None}
+        return {
+            "scene": to_toml(self.scene),
+            "model": self.model_name,
+            "options": options,
+            "version": version(),
+        }
 
     @property
     def model_name(self) -> str:

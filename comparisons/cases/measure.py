@@ -45,16 +45,15 @@ class Measurement:
         axes if no run is timed, and no wall time.
     seconds : float
         Processor time from the scene to the checked response without imports [s]: the median over `repeats` runs after a warm-up, nan if
-        no run is timed. On one thread it equals the wall time on an idle core, and other programs do not lengthen it.
+        no run is timed. On one thread it equals the wall time on an idle core.
     repeats : int
         Number of timed runs; one, without a warm-up, where the first run took more than 10 s.
     peak_memory : int
-        Largest rise of the process's resident memory over its start in the first run, interpreter and libraries left out [byte].
+        Largest rise of the process's resident memory over its start in the first run [byte].
     verdict : str
-        Verdict of the certificate for the last load parameter and the neighbours of events, ``CERTIFIED`` or another. It is empty if no
-        load parameter was reached or no run is timed.
+        Verdict of the certificate for the last load parameter and the neighbours of events. Empty if none was reached or no run is timed.
     process_seconds : float
-        Processor time of a whole process of ``crossval solve`` without certificate, imports included [s]; nan if it was not asked for.
+        Processor time of a whole process of ``crossval solve`` without certificate [s]; nan if it was not asked for.
     """
 
     response: Response
@@ -70,18 +69,20 @@ class Measurement:
         response = self.response
         return response.false_success or (response.reported_success and self.verdict in REFUSALS)
 
-    def to_json(self) -> str:
-        """Return the measurement as JSON text; a number that is not finite is null."""
+    def to_json(self, **case: object) -> str:
+        """Return the measurement as JSON text, after what `case` tells; a number that is not finite is null."""
         numbers = {item.name: getattr(self, item.name) for item in fields(self) if item.name != "response"}
-        return json.dumps(plain({**numbers, "response": as_dict(self.response)}), allow_nan=False)
+        return json.dumps(plain({**case, **numbers, "response": as_dict(self.response)}), allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> "Measurement":
         """Return the measurement that `to_json` wrote, every number the same."""
         data: dict[str, Any] = json.loads(text)
-        response = restated(data.pop("response"))
-        numbers: dict[str, Any] = {name: np.nan if value is None else value for name, value in data.items()}
-        return cls(response=response, **numbers)
+        numbers: dict[str, Any] = {
+            item.name: data[item.name] for item in fields(cls) if item.name != "response"
+        }
+        numbers = {name: np.nan if value is None else value for name, value in numbers.items()}
+        return cls(response=restated(data["response"]), **numbers)
 
 
 def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measurement:
@@ -111,31 +112,17 @@ def measure(case: Case, *, repeats: int = 3, process: bool = False) -> Measureme
 
 def _process_seconds(case: Case) -> float:
     """Processor time of ``crossval solve`` in a process of its own [s]; nan where the system does not count it."""
-    given = {name: value for name, value in vars(case.options).items() if value is not None}
-    arguments = [
-        word
-        for name, value in given.items()
-        for word in (
-            "--" + name.replace("_", "-"),
-            "x".join(map(str, value)) if isinstance(value, tuple) else str(value),
-        )
-    ]
+    command = [sys.executable, "-c", "from comparisons.cli import main; main()", "solve"]
+    words = ["--model", case.model, "--certify", "none", "--quiet"]
+    for name, value in vars(case.options).items():
+        if value is not None:
+            text = "x".join(map(str, value)) if isinstance(value, tuple) else str(value)
+            words += ["--" + name.replace("_", "-"), text]
     with TemporaryDirectory() as folder:
         file = Path(folder) / f"{case.scene.name}.toml"
         file.write_text(to_toml(case.scene), encoding="utf-8")
-        command = [
-            sys.executable,
-            "-c",
-            "from comparisons.cli import main; main()",
-            "solve",
-            str(file),
-            "--model",
-            case.model,
-        ]
         before = times()
-        subprocess.run(  # noqa: S603 - this program
-            [*command, *arguments, "--certify", "none", "--quiet"], capture_output=True, check=False
-        )
+        subprocess.run([*command, str(file), *words], capture_output=True, check=False)  # noqa: S603 - this program
         after = times()
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     return spent or np.nan

@@ -19,7 +19,8 @@ def with_peak_memory(action: Callable[[], T]) -> tuple[T, int]:
     peak is reset and read again; elsewhere it cannot be reset, and a rise below an earlier peak is counted as zero.
     """
     gc.collect()
-    _trim()
+    if sys.platform == "linux" and hasattr(ctypes.CDLL(None), "malloc_trim"):
+        ctypes.CDLL(None).malloc_trim(0)
     try:
         CLEAR.write_text(RESET_PEAK)
         start = _kibibytes("VmRSS")
@@ -49,11 +50,3 @@ def _largest_so_far() -> int:
         return int(getattr(memory, "peak_wset", memory.rss))
     largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return largest if sys.platform == "darwin" else 1024 * largest
-
-
-def _trim() -> None:
-    """Let glibc give freed memory back to the system."""
-    if sys.platform == "linux":
-        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-        if trim is not None:
-            trim(0)

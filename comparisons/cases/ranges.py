@@ -20,16 +20,8 @@ RULES: dict[str, Rule] = {
 def values(key: str, given: object) -> tuple[object, ...]:
     """Return the values that `given` states for `key`: itself, the items of a list, or a range.
 
-    A range is ``{ from = 1, to = 100, count = 3, spacing = "log" }``, with both ends; ``"linear"`` is the default spacing. Between
-    whole ends, a value that is whole but for round-off is made so.
+    A range has both ends; ``"linear"`` is the default spacing. Between whole ends, a value that is whole but for round-off is made so.
 
-    Raises
-    ------
-    FieldError
-        If a list is empty, or a range is not one.
-
-    Examples
-    --------
     >>> values("elements", {"from": 5, "to": 40, "count": 4, "spacing": "log"})
     (5, 10, 20, 40)
     """

@@ -1,49 +1,45 @@
-"""Run the cases of a sweep: claim, compute, record, until all are done."""
+"""Run the cases of a sweep on an executor. One JSON file a case, named by its key, holds its result."""
 
-from collections import Counter, deque
-from collections.abc import Callable, Iterable
+import math
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass
-from functools import partial
-from time import monotonic, sleep
+from itertools import islice
+from pathlib import Path
+from time import monotonic
+from typing import Any
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement, measure, unmeasured
-from comparisons.cases.store import ERROR, UNSETTLED, WORKER_LOST, Store
 from comparisons.cases.workers import Workers, WorkersError
-from comparisons.files import interrupts_held
+from comparisons.files import OutputError, interrupts_held, writable_folder
 
 BEAT = 5.0
-"""Seconds between signs of life, far below the lease."""
-POLL = 0.2
-"""Seconds between looks at what other runs are working on."""
+"""Seconds between two reports of the progress while no case ends."""
 COMPLETED = "COMPLETED"
 """The status of a completed and checked solution."""
+WORKER_LOST = "WORKER_LOST"
+"""The status of a case whose worker died, and died again when the case was tried alone."""
+ERROR = "ERROR"
+"""The status of a case that raised an exception, which no model should."""
+UNSETTLED = (WORKER_LOST, ERROR)
+"""Statuses that come from the machine or from a bug and not from the case; the next run repeats the case."""
+
+Results = dict[Case, Measurement]
+"""The measurement of every case."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tally:
-    """How far a sweep has come.
-
-    Attributes
-    ----------
-    total, done, failed : int
-        Numbers of all cases, of recorded cases, and of recorded cases without a completed and checked solution.
-    statuses : dict of int
-        Recorded cases by status.
-    seconds, left : float
-        Time since the run began, and estimated time to its end, nan before the first case is done [s].
-    older : dict of int
-        Numbers of cases with a result of another version, by version. They count as recorded only with `keep`.
-    """
+    """How far a sweep has come; `failed` results have no completed and checked solution, and `left` is nan before the first [s]."""
 
     total: int
     done: int
     failed: int
-    statuses: dict[str, int]
     seconds: float
     left: float
-    older: dict[str, int]
 
 
 Progress = Callable[[Tally], None]
@@ -52,163 +48,124 @@ Progress = Callable[[Tally], None]
 
 def run(
     cases: Iterable[Case],
-    store: Store,
+    folder: Path,
     workers: Workers,
     *,
     repeats: int = 3,
-    progress: Progress = lambda _: None,
-    keep: bool = False,
     process: bool = False,
-) -> Tally:
-    """Measure all `cases` without a result of this version in `store`; return when all are recorded.
+    progress: Progress = lambda _: None,
+) -> Results:
+    """Measure all `cases` that have no result in `folder`, in their order; return the results of all, equal cases once.
 
-    Several runs may share one store; each case is then measured by one of them. A case whose worker dies is tried once more, alone.
-    If its worker dies again, the case is recorded as ``WORKER_LOST``. A case that raises is recorded as ``ERROR``. A later run repeats
-    cases with these two statuses; every other status is a result.
-
-    Parameters
-    ----------
-    cases : iterable of Case
-        Cases in the order of work; equal cases are measured once.
-    store : Store
-        Where results are.
-    workers : Workers
-        Where cases run.
-    repeats : int
-        Runs timed for each case.
-    progress : callable
-        Receives the progress.
-    keep : bool
-        Whether results of other versions are accepted.
-    process : bool
-        Whether a whole process is timed too, see `measure`.
+    A result is kept as soon as it is there, and a run may be ended at any point. A case whose worker dies is tried once more,
+    alone. If its worker dies again, the case is recorded as ``WORKER_LOST``. A case that raises is recorded as ``ERROR``.
+    `repeats` and `process` are those of `measure`.
 
     Raises
     ------
     OutputError
-        If the store cannot be written.
+        If a result cannot be written, or read.
     WorkersError
         If the cluster is gone.
     """
-    measuring = partial(solve, repeats=repeats, process=process)
-    sweep = _Sweep({case.key: case for case in cases}, store, measuring, progress, keep=keep)
+    writable_folder(folder)
+    sweep = _Sweep({case.key: case for case in cases}, folder, progress)
     while sweep.unfinished:
-        with workers.start() as executor:
-            sweep.work(executor, workers)
-    return sweep.tally()
+        try:
+            with workers.start() as executor:
+                sweep.work(executor, workers, repeats=repeats, process=process)
+        except BrokenExecutor as error:
+            sweep.suspect(str(error))
+    return {case: sweep.done[key] for key, case in sweep.cases.items()}
 
 
 class _Sweep:
-    """The state of one run."""
+    """The state of a run: what is done, waits, is under way, and what may have ended its worker."""
 
-    def __init__(
-        self,
-        cases: dict[str, Case],
-        store: Store,
-        measuring: Callable[[str, Case], Measurement],
-        progress: Progress,
-        *,
-        keep: bool,
-    ) -> None:
-        recorded, older = store.statuses(), store.older(cases)
-        older = {key: found for key, found in older.items() if recorded.get(key, ERROR) in UNSETTLED}
-        self.older = dict(sorted(Counter(version for version, _ in older.values()).items()))
-        if keep:
-            recorded |= {key: status for key, (_, status) in older.items()}
-        self.cases, self.store, self.measuring, self.progress = cases, store, measuring, progress
-        self.again = frozenset(key for key in cases if recorded.get(key) in UNSETTLED)
-        self.statuses = {key: recorded[key] for key in cases if key in recorded and key not in self.again}
-        self.counts = Counter(self.statuses.values())
-        self.open = deque(key for key in cases if key not in self.statuses)
-        self.suspects: deque[str] = deque()
-        self.flying: dict[str, Future[Measurement] | None] = {}
-        self.began, self.before, self.heard = monotonic(), len(self.statuses), monotonic()
+    def __init__(self, cases: Mapping[str, Case], folder: Path, progress: Progress) -> None:
+        self.cases, self.folder, self.progress = cases, folder, progress
+        kept = ((key, recorded(folder / f"{key}.json")) for key in cases)
+        self.done = {key: found for key, found in kept if found is not None}
+        self.waiting = deque(key for key in cases if key not in self.done)
+        self.under_way: dict[Future[Measurement], str] = {}
+        self.suspects = deque[str]()
+        self.began, self.before = monotonic(), len(self.done)
+        self.failed = sum(found.response.status != COMPLETED for found in self.done.values())
+        self.report()
 
     @property
     def unfinished(self) -> bool:
-        return len(self.statuses) < len(self.cases)
+        return len(self.done) < len(self.cases)
 
-    def work(self, executor: Executor, workers: Workers) -> None:
-        """Go on until all is done or the executor breaks."""
-        self.progress(self.tally())
+    def work(self, executor: Executor, workers: Workers, **how: Any) -> None:
+        """Keep the workers busy until all is done; while there are suspects, with one of them at a time."""
         while self.unfinished:
-            try:
-                self.submit(executor, workers.width)
-                self.collect(workers.lost)
-            except BrokenExecutor:
-                self.suspect()
-                return
+            free = not self.under_way if self.suspects else workers.width - len(self.under_way)
+            for key in list(islice(self.suspects or self.waiting, free)):
+                with interrupts_held():
+                    self.under_way[executor.submit(solve, key, self.cases[key], **how)] = key
+                if not self.suspects:
+                    self.waiting.popleft()
+            finished, _ = wait(self.under_way, timeout=BEAT, return_when=FIRST_COMPLETED)
+            for future in finished:
+                self.finish(self.under_way[future], outcome(future, workers.lost))
+                del self.under_way[future]
+            if not finished:
+                self.report()
 
-    def submit(self, executor: Executor, width: int) -> None:
-        """Fill the executor; while there are suspects, with one of them at a time."""
-        if self.suspects:
-            keys = [] if self.flying else [self.suspects[0]]
-        else:
-            keys = self.claim(width - len(self.flying))
-        # what cannot be started any more is under way like the rest when the executor turns out to be broken
-        self.flying.update(dict.fromkeys(keys))
-        for key in keys:
-            with interrupts_held():
-                self.flying[key] = executor.submit(self.measuring, key, self.cases[key])
-
-    def claim(self, limit: int) -> list[str]:
-        if limit == 0 or not self.open:
-            return []
-        claim = self.store.claim(self.open, limit=limit, again=self.again)
-        for key in (*claim.claimed, *claim.done, *claim.taken):
-            self.open.remove(key)
-        self.open.extend(claim.taken)
-        for key, status in claim.done.items():
-            self.note(key, status)
-        return claim.claimed
-
-    def collect(self, lost: tuple[type[BaseException], ...]) -> None:
-        """Record what has finished, and say that this run is alive."""
-        under_way = {future: key for key, future in self.flying.items() if future is not None}
-        if not under_way:
-            sleep(POLL)
-        finished, _ = wait(under_way, timeout=POLL if self.open else BEAT, return_when=FIRST_COMPLETED)
-        if monotonic() - self.heard > BEAT:
-            self.heard = monotonic()
-            self.store.say_alive()
-            self.progress(self.tally())
-        for future in finished:
-            self.record(under_way[future], outcome(future, lost))
-
-    def record(self, key: str, measurement: Measurement) -> None:
-        self.store.record(key, self.cases[key], measurement)
-        self.flying.pop(key, None)
-        if self.suspects and self.suspects[0] == key:
-            self.suspects.popleft()
-        self.note(key, measurement.response.status)
-
-    def note(self, key: str, status: str) -> None:
-        self.statuses[key] = status
-        self.counts[status] += 1
-        self.progress(self.tally())
-
-    def suspect(self) -> None:
-        """Handle a broken executor: a single running case caused it; of several running cases, each is suspect and later runs alone."""
-        keys = list(self.flying)
-        self.flying.clear()
+    def suspect(self, cause: str) -> None:
+        """Note that a worker died: every case under way is suspect, and one that was alone is to blame."""
+        keys = list(self.under_way.values())
+        self.under_way.clear()
         if not self.suspects:
             self.suspects.extend(keys)
         elif keys:
-            message = "the worker process died, and again when it had nothing else to do"
-            self.record(keys[0], unmeasured(WORKER_LOST, message))
+            self.finish(keys[0], unmeasured(WORKER_LOST, f"{cause}, twice, the second time alone"))
 
-    def tally(self) -> Tally:
-        seconds, pace = monotonic() - self.began, len(self.statuses) - self.before
-        left = len(self.cases) - len(self.statuses)
-        return Tally(
-            total=len(self.cases),
-            done=len(self.statuses),
-            failed=len(self.statuses) - self.counts[COMPLETED],
-            statuses=dict(sorted(self.counts.items())),
-            seconds=seconds,
-            left=seconds / pace * left if pace else float("nan") if left else 0.0,
-            older=self.older,
+    def finish(self, key: str, found: Measurement) -> None:
+        """Keep a result; it is written under a temporary name, which is then renamed."""
+        file = self.folder / f"{key}.json"
+        temporary = file.with_name(f".{key}.{os.getpid()}")
+        try:
+            temporary.write_text(found.to_json(**self.cases[key].description), encoding="utf-8")
+            temporary.replace(file)
+        except OSError as error:
+            raise OutputError(f"{file}: cannot be written: {error.strerror or error}") from None
+        finally:
+            temporary.unlink(missing_ok=True)
+        self.done[key] = found
+        self.failed += found.response.status != COMPLETED
+        if self.suspects:
+            self.suspects.popleft()
+        self.report()
+
+    def report(self) -> None:
+        """Tell the progress."""
+        seconds, pace = monotonic() - self.began, len(self.done) - self.before
+        rest = len(self.cases) - len(self.done)
+        left = seconds / pace * rest if pace else math.nan if rest else 0.0
+        self.progress(
+            Tally(total=len(self.cases), done=len(self.done), failed=self.failed, seconds=seconds, left=left)
         )
+
+
+def recorded(file: Path) -> Measurement | None:
+    """Return the settled result that `file` holds; None if there is none.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be read, or holds something else.
+    """
+    try:
+        found = Measurement.from_json(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise OutputError(f"{file}: cannot be read: {error.strerror or error}") from None
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise OutputError(f"{file}: is damaged: delete it, and the case is solved again") from None
+    return None if found.response.status in UNSETTLED else found
 
 
 def solve(key: str, case: Case, *, repeats: int, process: bool) -> Measurement:
@@ -219,15 +176,7 @@ def solve(key: str, case: Case, *, repeats: int, process: bool) -> Measurement:
 
 
 def outcome(future: Future[Measurement], lost: tuple[type[BaseException], ...]) -> Measurement:
-    """Return what a future holds, exceptions as measurements.
-
-    Raises
-    ------
-    BrokenExecutor
-        If the executor broke.
-    WorkersError
-        If it was cancelled from outside.
-    """
+    """Return what a future holds, exceptions of its case as measurements."""
     try:
         return future.result()
     except BrokenExecutor:

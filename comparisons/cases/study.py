@@ -1,5 +1,7 @@
 """Study files: a scene, and what is varied in it, as TOML."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from itertools import product
 from math import prod
@@ -38,17 +40,7 @@ class StudyError(InputError):
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """A sweep: its cases in the order of the file.
-
-    Parameters
-    ----------
-    name : str
-        Letters, digits, ``-`` and ``_``.
-    repeats : int
-        Runs timed for each case.
-    cases : tuple of Case
-        Every combination of every run, each once.
-    """
+    """A sweep: its cases, each once, in the order of the file, and the number of runs timed for each."""
 
     name: str
     repeats: int
@@ -58,14 +50,8 @@ class Study:
 def read_study(path: Path) -> Study:
     """Return the study that the TOML file `path` states.
 
-    The table ``[study]`` has ``name``, ``scene`` (a built-in one, or a file beside the study) and ``repeats`` (3). Every table
-    ``[[run]]`` has ``model`` (a name, or a program file beside the study), and may have the model's options and any key of the scene's records, each with one value, a list of
-    values or a range; its cases are all combinations, the first key varying slowest.
-
-    Raises
-    ------
-    StudyError, SceneError
-        All mistakes in the order of the file, each in one line: file, key, value and rule. Nothing has been computed.
+    The cases of a table ``[[run]]`` are all combinations of its values, the first key varying slowest. A `StudyError` or `SceneError`
+    has all mistakes in the order of the file, each in one line: file, key, value and rule.
     """
     source = str(path)
     text = read_text(source, "no such file", StudyError)
@@ -82,19 +68,23 @@ def read_study(path: Path) -> Study:
     return Study(name=head["name"], repeats=head.get("repeats", 3), cases=tuple(dict.fromkeys(cases)))
 
 
-def _checked(key: str, value: object, rule: Rule) -> Any:
+@contextmanager
+def _noting(mistakes: list[FieldError], place: str = "") -> Iterator[list[FieldError]]:
+    """Give a list of mistakes; add these, and what is raised, to `mistakes` as mistakes within `place`."""
+    own: list[FieldError] = []
     try:
-        return rule(value)
-    except RuleError as error:
-        raise FieldError(key, value, str(error)) from None
+        yield own
+    except FieldError as error:
+        own += error.mistakes
+    mistakes += (item.within(place) for item in own)
 
 
 def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: list[FieldError]) -> list[Case]:
     """Return the cases of the runs; what is wrong is added to `mistakes`."""
     axes: list[Axes] = []
     for i, run in enumerate(runs):
-        varied, wrong = _axes(scene, run)
-        mistakes += (mistake.within(f"run[{i}].") for mistake in wrong)
+        with _noting(mistakes, f"run[{i}].") as wrong:
+            varied = _axes(scene, run, wrong)
         axes.append({} if wrong else varied)
     total = sum(prod(map(len, varied.values())) for varied in axes)
     if total > LARGEST:
@@ -103,58 +93,52 @@ def _cases(scene: Scene, runs: list[dict[str, Any]], folder: Path, mistakes: lis
     cases: list[Case] = []
     for i, varied in enumerate(axes):
         for chosen in product(*varied.values()) if varied else ():
-            try:
+            with _noting(mistakes, f"run[{i}]."):
                 cases.append(_case(scene, dict(zip(varied, chosen, strict=True)), folder))
-            except FieldError as error:
-                mistakes += error.within(f"run[{i}].").mistakes
     return cases
 
 
-def _axes(scene: Scene, run: dict[str, Any]) -> tuple[Axes, list[FieldError]]:
-    """Return what a run varies, the values of every setting by its place, and the mistakes in it."""
+def _axes(scene: Scene, run: dict[str, Any], mistakes: list[FieldError]) -> Axes:
+    """Return what a run varies: the values of every setting by its place."""
+    mistakes += check_keys(run, RUN_KEYS, required=("model",))
     axes: Axes = {}
-    mistakes = list(check_keys(run, RUN_KEYS, required=("model",)))
-    for key, given in ((key, given) for key, given in run.items() if key in RUN_KEYS):
-        places = _places(scene, key, given, mistakes) if key in LISTS or key == "scene" else {(key,): given}
+    for key in (key for key in run if key in RUN_KEYS):
+        records = key in LISTS or key == "scene"
+        places = _places(scene, key, run[key], mistakes) if records else {(key,): run[key]}
         for place, value in places.items():
-            try:
+            with _noting(mistakes):
                 axes[place] = values(".".join(place), value)
-            except FieldError as error:
-                mistakes += error.mistakes
-    return axes, mistakes
+    return axes
 
 
 def _places(
     scene: Scene, kind: str, given: object, mistakes: list[FieldError]
 ) -> dict[settings.Path, object]:
     """Return what a run states for the records of one kind: for all of them, or for one by its name."""
-    if not isinstance(given, dict):
-        mistakes.append(FieldError(kind, given, f"must be followed by a key, {kind}.KEY"))
-        return {}
-    if kind == "scene":
-        known, named = settings.OWN, set[str]()
-    else:
+    known, named = settings.OWN, set[str]()
+    if kind != "scene":
         known = {item.name for item in fields(LISTS[kind])}  # type: ignore[arg-type]  # every record is a dataclass
         named = set(settings.record_names(kind, map(settings.stated, getattr(scene, f"{kind}s"))))
-        if not named:
+        if isinstance(given, dict) and not named:
             mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))
             return {}
-    mistakes += (mistake.within(f"{kind}.") for mistake in check_keys(given, known | named))
-    places: dict[settings.Path, object] = {(kind, key): given[key] for key in given if key in known}
-    for name in (name for name in given if name in named - known):
-        places |= _named_places((kind, name), given[name], known, mistakes)
+    stated = _keyed((kind,), given, known | named, mistakes)
+    places = {place: value for place, value in stated.items() if place[1] in known}
+    for place in [place for place in stated if place not in places]:
+        places |= _keyed(place, stated[place], known, mistakes)
     return places
 
 
-def _named_places(
-    record: settings.Path, given: object, known: set[str], mistakes: list[FieldError]
+def _keyed(
+    place: settings.Path, given: object, known: set[str], mistakes: list[FieldError]
 ) -> dict[settings.Path, object]:
-    place = ".".join(record)
+    """Return the values of the table at a place by their places; keys that are not `known` are mistakes."""
+    name = ".".join(place)
     if not isinstance(given, dict):
-        mistakes.append(FieldError(place, given, f"must be followed by a key, {place}.KEY"))
+        mistakes.append(FieldError(name, given, f"must be followed by a key, {name}.KEY"))
         return {}
-    mistakes += (mistake.within(f"{place}.") for mistake in check_keys(given, known))
-    return {(*record, key): value for key, value in given.items() if key in known}
+    mistakes += (mistake.within(f"{name}.") for mistake in check_keys(given, known))
+    return {(*place, key): value for key, value in given.items() if key in known}
 
 
 def _model(value: object, folder: Path) -> str:
@@ -195,32 +179,15 @@ RUN_KEYS = ("model", *OPTION_RULES, "scene", *LISTS)
 def _case(scene: Scene, chosen: dict[settings.Path, object], folder: Path) -> Case:
     """Return the case of the chosen settings; raise all mistakes in them."""
     mistakes: list[FieldError] = []
-    options = {}
-    model = ""
-    try:
-        model = _checked("model", chosen[("model",)], lambda value: _model(value, folder))
-        options = _options(model, chosen)
-    except FieldError as error:
-        mistakes += error.mistakes
-    changes = {path: value for path, value in chosen.items() if len(path) > 1}
-    try:
-        scene = settings.changed(scene, changes)
-    except FieldError as error:
-        mistakes += error.mistakes
-    if mistakes:
-        raise RecordError(mistakes)
-    return Case(scene=scene, model=model, options=Options(**options))
-
-
-def _options(model: str, chosen: dict[settings.Path, object]) -> dict[str, Any]:
-    """Return the options among the chosen settings; raise all mistakes in them."""
-    given = {key: chosen[key,] for key in OPTION_RULES if (key,) in chosen}
-    mistakes = [
-        FieldError(key, value, f'is no option of model = "{find(model).name}"')
-        for key, value in given.items()
-        if key not in find(model).options
-    ]
-    options, wrong = table_values(given, OPTION_RULES, ())
+    given = {place[0]: value for place, value in chosen.items() if len(place) == 1}
+    rules_of = {"model": lambda value: _model(value, folder), **OPTION_RULES}
+    own, wrong = table_values(given, rules_of, ())
+    if "model" in own:
+        model = find(own["model"])
+        none = f'is no option of model = "{model.name}"'
+        mistakes += (FieldError(key, given[key], none) for key in given.keys() - {"model", *model.options})
+    with _noting(mistakes):
+        scene = settings.changed(scene, {place: chosen[place] for place in chosen if len(place) > 1})
     if mistakes or wrong:
         raise RecordError([*mistakes, *wrong])
-    return options
+    return Case(scene=scene, model=own.pop("model"), options=Options(**own))

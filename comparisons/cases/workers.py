@@ -2,9 +2,11 @@
 
 import logging
 import os
+import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -29,17 +31,10 @@ class WorkersError(InputError):
 
 @dataclass(frozen=True, kw_only=True)
 class Workers:
-    """Where cases run.
+    """Where cases run: `width` at the same time, on the executor that ``start()`` gives.
 
-    Parameters
-    ----------
-    width : int
-        Cases under way at the same time.
-    start : callable
-        ``start()``: a context manager that gives a `concurrent.futures.Executor` and, on leaving after an exception, ends what
-        runs. It is called again after the executor broke.
-    lost : tuple of exception types
-        Exceptions that a future raises after its worker died for good, while the executor goes on.
+    When the context ends by an exception, it ends what runs. `start` is called again after its executor broke. The exceptions `lost` are
+    those of a future whose worker died for good, while the executor goes on.
     """
 
     width: int
@@ -55,6 +50,11 @@ def local(count: int | None = None) -> Workers:
 
 @contextmanager
 def _processes(count: int) -> Iterator[Executor]:
+    main = str(getattr(sys.modules["__main__"], "__file__", ""))
+    if main.startswith("<"):
+        raise WorkersError(
+            "workers", f"cannot load {main}: a program from standard input must be a file to start processes"
+        )
     context = get_context("spawn")
     # nothing is sent: the workers see the pipe close when this process closes it or dies
     watched, held = context.Pipe(duplex=False)
@@ -62,11 +62,21 @@ def _processes(count: int) -> Iterator[Executor]:
         executor = ProcessPoolExecutor(count, mp_context=context, initializer=_end_with, initargs=(watched,))
         try:
             yield executor
+        except BrokenExecutor:
+            started = list(executor._processes.values())  # noqa: SLF001 - nothing else knows how a worker ended
             executor.shutdown()
+            raise BrokenExecutor(_cause([process.exitcode for process in started])) from None
         finally:
             held.close()
             executor.shutdown(cancel_futures=True)
             watched.close()
+
+
+def _cause(codes: list[int | None]) -> str:
+    """Say how a worker ended; when one dies, the executor ends the others by SIGTERM."""
+    code = next((code for code in codes if code not in (None, 0, -signal.SIGTERM)), -signal.SIGTERM)
+    how = f"with exit status {code}" if code >= 0 else f"by signal {-code}, {signal.strsignal(-code)}"
+    return f"the worker process ended {how}"
 
 
 def _end_with(parent: Connection) -> None:
@@ -83,28 +93,21 @@ def _end_with(parent: Connection) -> None:
 
 @contextmanager
 def _environment(values: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in values}
+    before = {name: os.environ[name] for name in values if name in os.environ}
     os.environ.update(values)
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in values:
+            del os.environ[name]
+        os.environ.update(before)
 
 
 def cluster(address: str) -> Workers:
-    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``.
+    """Return the workers of the Dask cluster whose scheduler is at `address`, as ``tcp://127.0.0.1:8786``; they need this package.
 
-    They need this package, in the same version. The scheduler itself gives the cases of a worker that died to another one, and
-    gives a case up after `distributed.scheduler.allowed-failures` deaths.
-
-    Raises
-    ------
-    WorkersError
-        If the extra ``cluster`` is not installed or the scheduler does not answer.
+    The scheduler itself gives the cases of a worker that died to another one, and gives a case up after
+    `distributed.scheduler.allowed-failures` deaths. A `WorkersError` says that the extra or the scheduler is missing.
     """
     try:
         from distributed import KilledWorker
@@ -141,11 +144,11 @@ def _client(address: str) -> "Iterator[Client]":
 @contextmanager
 def _silent(*loggers: str) -> Iterator[None]:
     """Keep loggers from printing tracebacks of what is an exception here anyway."""
-    before = {name: logging.getLogger(name).level for name in loggers}
-    for name in loggers:
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    before = {logger: logger.level for logger in map(logging.getLogger, loggers)}
     try:
+        for logger in before:
+            logger.setLevel(logging.CRITICAL)
         yield
     finally:
-        for name, level in before.items():
-            logging.getLogger(name).setLevel(level)
+        for logger, level in before.items():
+            logger.setLevel(level)

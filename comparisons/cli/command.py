@@ -18,7 +18,6 @@ from comparisons.cli import (
     league,
     manual,
     reproduce,
-    results,
     scene_files,
     solve,
     study,
@@ -43,12 +42,15 @@ COMMANDS = (
     reproduce,
     trade,
     study,
-    results,
     manual,
     extremes,
 )
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
-GONE = {"doctor": "crossval --version", "completion": "crossval --help"}
+GONE = {
+    "doctor": "crossval --version",
+    "completion": "crossval --help",
+    "results": "the CSV file that crossval study writes",
+}
 """Commands of earlier versions, and what does their work."""
 MARKS = {True: "ok", False: "MISSING", None: "-"}
 """How ``--version`` marks what is there, what is missing, and what only an extra needs."""

@@ -40,13 +40,13 @@ def add_to(commands: "Commands") -> None:
 def run(given: "argparse.Namespace") -> int:
     """Run the matrix, name the files and whatever is wrong."""
     writable_folder(given.out, "extremes.html", "extremes.csv", "extremes.json")
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
     from comparisons.cases.workers import local
     from comparisons.claims.extremes.run import counts, extremes
     from comparisons.output import tabulated
 
-    with line_ended():
-        found = extremes(given.out, local(given.workers), shown(), quick=given.quick)
+    with shown() as progress:
+        found = extremes(given.out, local(given.workers), progress, quick=given.quick)
     print(tabulated([{"axis": axis, **number} for axis, number in counts(found.judgements).items()]))
     print("files:", *(f"  {path}" for path in found.files), sep="\n")
     for item in found.wrong:

@@ -53,19 +53,19 @@ def run(given: "argparse.Namespace") -> int:
         given.out, *(f"league.{kind}" for kind in ("csv", "json", "svg", "png")), "report.html"
     )
     given.workers = given.workers or 1
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
     from comparisons.league.entries import measure_league
     from comparisons.league.page import summary, write_league
     from comparisons.output import tabulated
 
-    with line_ended():
+    with shown() as progress:
         league = measure_league(
             scenes,
             given.others,
-            folder / "results.sqlite",
+            folder / "results",
             workers(given),
             quick=given.quick,
-            progress=shown(),
+            progress=progress,
         )
     print(tabulated(summary(league)))
     for name, program, reason in league.left_out:

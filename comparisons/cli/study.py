@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,6 @@ from comparisons.scene.tables import InputError
 if TYPE_CHECKING:
     import argparse
 
-    from comparisons.cases.run import Tally
     from comparisons.cases.workers import Workers
     from comparisons.cli.outcome import Commands
 
@@ -37,19 +37,13 @@ def add_to(commands: "Commands") -> None:
         type=Path,
         default=Path("out/study"),
         metavar="DIR",
-        help="folder of the table, or of the results NAME.sqlite (out/study)",
+        help="folder of the table NAME.csv; a study file also leaves the results in NAME/ (out/study)",
     )
-    study.add_argument("--results", type=Path, metavar="FILE", help="study file: the results file")
     where = study.add_mutually_exclusive_group()
     where.add_argument(
         "--workers", type=values.count, metavar="N", help="study file: processes (one for each core)"
     )
     where.add_argument("--cluster", metavar="ADDRESS", help="study file: the scheduler of a Dask cluster")
-    study.add_argument(
-        "--keep-old-versions",
-        action="store_true",
-        help="study file: results that other versions of this program left in the file are not computed anew",
-    )
     study.add_argument("--quiet", action="store_true", help="study file: no progress bar")
     study.set_defaults(run=run)
 
@@ -65,11 +59,9 @@ def run(given: "argparse.Namespace") -> int:
 
 
 def _answer(given: "argparse.Namespace") -> int:
-    for option in ("results", "workers", "cluster", "keep_old_versions"):
+    for option in ("workers", "cluster"):
         if getattr(given, option):
-            raise InputError(
-                f"--{option.replace('_', '-')}", f"belongs to a study file, {given.study} is a question"
-            )
+            raise InputError(f"--{option}", f"belongs to a study file, {given.study} is a question")
     writable_folder(given.out, f"{given.study}.csv")
     from comparisons.claims.solid.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
@@ -81,25 +73,32 @@ def _answer(given: "argparse.Namespace") -> int:
 
 
 def _run_file(given: "argparse.Namespace") -> int:
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
+    from comparisons.cases.run import UNSETTLED
     from comparisons.cases.run import run as run_cases
-    from comparisons.cases.store import Store
     from comparisons.cases.study import read_study
+    from comparisons.cases.table import result_rows, result_table
+    from comparisons.output import write_rows
 
     study = read_study(Path(given.study))
-    file = given.results or writable_folder(given.out) / f"{study.name}.sqlite"
-    where = workers(given)
-    with line_ended(), Store(file) as store:
-        tally = run_cases(
+    folder = writable_folder(given.out, f"{study.name}.csv")
+    with shown(quiet=given.quiet) as progress:
+        found = run_cases(
             study.cases,
-            store,
-            where,
+            folder / study.name,
+            workers(given),
             repeats=study.repeats,
-            progress=shown(quiet=given.quiet),
-            keep=given.keep_old_versions,
+            progress=progress,
         )
-    report_older(tally, keep=given.keep_old_versions)
-    return _concluded(study.name, tally, file)
+    rows = result_rows(found)
+    ends = Counter(row["status"] for row in rows)
+    print(result_table(rows))
+    print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")
+    print("file:", write_rows(folder / f"{study.name}.csv", rows))
+    left = sum(ends[name] for name in UNSETTLED)
+    if left:
+        print(f"crossval: {left} cases have no result; the same command tries them again", file=sys.stderr)
+    return STOPPED if left else DONE
 
 
 def workers(given: "argparse.Namespace") -> "Workers":
@@ -107,24 +106,3 @@ def workers(given: "argparse.Namespace") -> "Workers":
     from comparisons.cases.workers import cluster, local
 
     return local(given.workers) if given.cluster is None else cluster(given.cluster)
-
-
-def report_older(tally: "Tally", *, keep: bool = False) -> None:
-    """Say in one line what became of the results of other versions, if there are any."""
-    if tally.older:
-        versions = ", ".join(tally.older)
-        what = "kept" if keep else "left aside, and the cases computed anew"
-        report(f"crossval: {sum(tally.older.values())} results of other versions ({versions}) were {what}")
-
-
-def _concluded(name: str, tally: "Tally", file: Path) -> int:
-    """Say how the cases ended; a case without a result makes the exit status."""
-    from comparisons.cases.store import UNSETTLED
-
-    ends = ", ".join(f"{status} {number}" for status, number in tally.statuses.items())
-    print(f"{name}: {tally.done} cases: {ends}")
-    print(f"file: {file}", f"crossval results {file} shows them", sep="\n")
-    left = sum(tally.statuses.get(status, 0) for status in UNSETTLED)
-    if left:
-        print(f"crossval: {left} cases have no result; the same command tries them again", file=sys.stderr)
-    return STOPPED if left else DONE

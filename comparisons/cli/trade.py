@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.cli import values
 from comparisons.cli.outcome import DONE, STOPPED, report
-from comparisons.cli.study import report_older, workers
+from comparisons.cli.study import workers
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
@@ -45,18 +45,16 @@ def run(given: "argparse.Namespace") -> int:
     scene = load_scene(given.scene)
     folder = given.out or Path("out/trade") / scene.name
     given.workers = given.workers or 1
-    from comparisons.cases.progress import line_ended, shown
+    from comparisons.cases.progress import shown
     from comparisons.cost.references import NoReferenceError
     from comparisons.cost.sweep import trade_off
 
     try:
-        with line_ended():
-            found = trade_off(scene, folder, workers(given), quick=given.quick, progress=shown())
+        with shown() as progress:
+            found = trade_off(scene, folder, workers(given), quick=given.quick, progress=progress)
     except NoReferenceError as error:
         report(f"crossval: {error}")
         return STOPPED
-    for tally in found.tallies:
-        report_older(tally)
     print(_text(found.trade))
     print("\nfiles:", *(f"  {path}" for path in found.files), sep="\n")
     return DONE

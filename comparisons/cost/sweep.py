@@ -2,13 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import nan
 from pathlib import Path
 
 from comparisons.cases import Case
-from comparisons.cases.results import read_results
-from comparisons.cases.run import Progress, Tally, run
-from comparisons.cases.store import Store
+from comparisons.cases.run import Progress, run
 from comparisons.cases.workers import Workers
 from comparisons.cost.cases import meshed, sweep_cases
 from comparisons.cost.orders import orders
@@ -37,17 +36,16 @@ SHOWN = "force"
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """A trade-off, the files that hold it, and how its cases went."""
+    """A trade-off, and the files that hold it."""
 
     trade: Trade
     files: list[Path]
-    tallies: list[Tally]
 
 
 def trade_off(
     scene: Scene, folder: Path, workers: Workers, *, quick: bool = False, progress: Progress = lambda _: None
 ) -> Written:
-    """Measure the trade-off of `scene` and write it to `folder`; what ``results.sqlite`` there has of this version is not run again.
+    """Measure the trade-off of `scene` and write it to `folder`; what its folder ``results`` has of this version is not run again.
 
     Parameters
     ----------
@@ -69,18 +67,11 @@ def trade_off(
     NoReferenceError
         If there is nothing to measure errors against.
     """
-    file = writable_folder(folder, "report.html", "trade.csv", "trade.json") / "results.sqlite"
-
-    tallies: list[Tally] = []
-
-    def measured(cases: Sequence[Case]) -> Measured:
-        with Store(file) as store:
-            tallies.append(run(cases, store, workers, progress=progress))
-        found = {result.key: result.measurement for result in read_results(file)}
-        return {case: found[case.key] for case in cases}
-
-    trade = measure_trade(scene, measured, quick=quick)
-    return Written(trade=trade, files=[file, *write_trade(trade, folder)], tallies=tallies)
+    results = writable_folder(folder, "report.html", "trade.csv", "trade.json") / "results"
+    trade = measure_trade(
+        scene, partial(run, folder=results, workers=workers, progress=progress), quick=quick
+    )
+    return Written(trade=trade, files=write_trade(trade, folder))
 
 
 def measure_trade(scene: Scene, run: Runner, *, quick: bool = False) -> Trade:

@@ -7,9 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.cases import Case, Measurement
-from comparisons.cases.results import read_results
 from comparisons.cases.run import Progress, run
-from comparisons.cases.store import Store
 from comparisons.cases.workers import Workers
 from comparisons.errors import error_histories, largest
 from comparisons.models import MODELS, ROD, Model, find
@@ -111,13 +109,13 @@ class League:
 def measure_league(
     scenes: Sequence[Scene],
     programs: Sequence[str],
-    file: Path,
+    folder: Path,
     workers: Workers,
     *,
     quick: bool = False,
     progress: Progress = lambda _: None,
 ) -> League:
-    """Run every program on every scene that it can state; what `file` has of this version is not run again.
+    """Run every program on every scene that it can state; what `folder` has of this version is not run again.
 
     Parameters
     ----------
@@ -125,8 +123,8 @@ def measure_league(
         The scenes.
     programs : sequence of str
         Names for `comparisons.models.find` of models beside those of this package.
-    file : Path
-        SQLite file of the results.
+    folder : Path
+        Folder of the results.
     workers : Workers
         Where cases run.
     quick : bool
@@ -152,21 +150,14 @@ def measure_league(
                 cases += _cases(scene, name, model, quick=quick)
             else:
                 left_out.append((scene.name, model.label, reason))
-    with Store(file) as store:
-        run(
-            [*references.values(), *(case for case, _ in cases)],
-            store,
-            workers,
-            progress=progress,
-            process=True,
-        )
-    found = {result.key: result.measurement for result in read_results(file)}
-    exact = {name: found[case.key].response for name, case in references.items()}
+    every = [*references.values(), *(case for case, _ in cases)]
+    found = run(every, folder, workers, progress=progress, process=True)
+    exact = {name: found[case].response for name, case in references.items()}
     return League(
         scenes=tuple(scenes),
         entries=[
-            Entry(case=case, program=program, measured=found[case.key],
-                  errors=_errors(found[case.key].response, exact[case.scene.name], case.scene))
+            Entry(case=case, program=program, measured=found[case],
+                  errors=_errors(found[case].response, exact[case.scene.name], case.scene))
             for case, program in cases
         ],
         left_out=left_out,

@@ -23,7 +23,7 @@ CASES = {
     "REFUSED": "the model cannot state the scene; the message says why",
     "STOPPED": "an adapter of this package: its program stopped before the last load parameter",
     "ERROR": "the case raised an exception, which no model should; a later run tries it again",
-    "WORKER_LOST": "the process of the case died, and died again when the case was tried alone; a later run tries it again",
+    "WORKER_LOST": "the process of the case died, and died again when the case was tried alone; the message says how, and a later run tries it again",
 }
 """What a case of a study, and an adapter, can have besides."""
 

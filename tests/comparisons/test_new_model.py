@@ -115,8 +115,7 @@ def test_commands_have_it(way: str, request: pytest.FixtureRequest) -> None:
         ("check", "double-beam"): "chain: no, the chain has one beam",
         ("solve", "ks-cantilever", "--model", "chain", "--quiet"): "CERTIFIED",
         ("gate", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
-        ("study", "study.toml", "--results", "s.sqlite", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
-        ("results", "s.sqlite"): "chain",
+        ("study", "study.toml", "--out", "s", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
     }.items():
         found = crossval(place, *arguments)
         assert found.returncode == 0, found.stderr

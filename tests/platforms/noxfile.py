@@ -9,7 +9,7 @@ import nox
 
 ROOT = Path(__file__).parents[2]
 PYTHONS = ["3.11", "3.12", "3.13"]
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "psutil")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio")
 FIRST = {"3.13": {"numpy": "2.1.0", "scipy": "1.14.1"}}
 """First versions with wheels for a Python that is younger than the lowest."""
 # the commands that pyenv puts on the path find one Python only; the others lie beside it
@@ -30,7 +30,7 @@ def lowest(python):
 @nox.session(python=PYTHONS)
 @nox.parametrize("versions", ["oldest", "newest"])
 def numbers(session, versions):
-    """Compare essential numbers with those stored, and hold locks and processes to what studies need."""
+    """Compare essential numbers with those stored, and show that a lock ends with its process."""
     session.chdir(ROOT)
     if versions == "oldest":
         session.install("--only-binary", ":all:", *lowest(str(session.python)))

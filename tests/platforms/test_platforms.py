@@ -1,4 +1,4 @@
-"""The numbers of this platform are those stored; locks and processes live as studies need."""
+"""The numbers of this platform are those stored; a lock ends with its process."""
 
 import copy
 import json

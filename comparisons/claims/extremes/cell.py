@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from comparisons.cases.case import Case
-from comparisons.cases.run import COMPLETED
-from comparisons.cases.store import UNSETTLED
+from comparisons.cases.run import COMPLETED, UNSETTLED
 from comparisons.claims.claim import Finding, Verdict, decided
 from comparisons.claims.extremes.checks import Check, Results
 from comparisons.models.verify import CHECK_FAILED

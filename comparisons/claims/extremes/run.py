@@ -4,12 +4,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from shutil import rmtree
 
 from comparisons.cases.case import Case
-from comparisons.cases.results import read_results
 from comparisons.cases.run import Progress
 from comparisons.cases.run import run as run_cases
-from comparisons.cases.store import Store
 from comparisons.cases.workers import Workers
 from comparisons.claims.claim import Verdict
 from comparisons.claims.extremes.axes import AXES, matrix
@@ -53,22 +52,18 @@ def extremes(folder: Path, workers: Workers, progress: Progress, *, quick: bool 
         If a file cannot be written, or the workers are gone.
     """
     cells = matrix(quick=quick)
-    kept = folder / ".extremes.sqlite"
+    kept = folder / ".extremes"
     results = measured(cells, kept, workers, progress)
     judgements = tuple(judged(cell, results) for cell in cells)
     files = write(folder, judgements, quick=quick)
-    for name in (kept, *(kept.with_name(kept.name + ending) for ending in ("-wal", "-shm"))):
-        name.unlink(missing_ok=True)
+    rmtree(kept)
     return Extremes(judgements=judgements, files=files)
 
 
 def measured(cells: Sequence[Cell], kept: Path, workers: Workers, progress: Progress) -> Results:
-    """Return the results of all cases of `cells`, kept in the file `kept` as they come."""
+    """Return the results of all cases of `cells`, kept in the folder `kept` as they come."""
     cases = sorted(dict.fromkeys(case for cell in cells for case in cell.cases), key=_cost, reverse=True)
-    with Store(kept) as store:
-        run_cases(cases, store, workers, repeats=0, progress=progress)
-    found = {result.key: result.measurement for result in read_results(kept)}
-    return {case: found[case.key] for case in cases}
+    return run_cases(cases, kept, workers, repeats=0, progress=progress)
 
 
 def _cost(case: Case) -> int:

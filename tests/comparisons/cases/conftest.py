@@ -1,12 +1,10 @@
 """Studies for the tests: small cases, and the command in this process or one of its own."""
 
 import csv
-import io
+import json
 import os
-import sqlite3
 import subprocess
 import sys
-from contextlib import closing, redirect_stdout
 from time import monotonic, sleep
 
 import pytest
@@ -77,27 +75,31 @@ def crossval(*arguments):
         return int(end.code or 0)
 
 
-def rows(file, *options):
-    """Return what ``crossval results --csv`` says of a file."""
-    text = io.StringIO()
-    with redirect_stdout(text):
-        assert crossval("results", file, "--csv", *options) == 0
-    return list(csv.DictReader(io.StringIO(text.getvalue())))
+def rows(table):
+    """Return the rows of a study's table, without what differs from run to run."""
+    with table.open() as file:
+        return [
+            {name: text for name, text in row.items() if name not in {"seconds", "peak_memory"}}
+            for row in csv.DictReader(file)
+        ]
 
 
-def asked(file, query, *values):
-    """Ask or change a results file behind the program's back."""
-    with closing(sqlite3.connect(file)) as connection, connection:
-        return connection.execute(query, values).fetchall()
+def recorded(folder):
+    """Number of results in a folder that may not be there yet."""
+    return len(list(folder.glob("*.json")))
 
 
-def recorded(file):
-    """Number of results in a file that may not be there yet."""
-    try:
-        with closing(sqlite3.connect(f"{file.as_uri()}?mode=ro", uri=True)) as connection:
-            return int(connection.execute("SELECT count(*) FROM result").fetchone()[0])
-    except sqlite3.Error:
-        return 0
+def histories(folder):
+    """Every number of every result of the tiny study but seconds and memory, by key."""
+    texts = {file.stem: json.loads(file.read_text()) for file in (folder / "tiny").glob("*.json")}
+    return {key: text | {"seconds": 0.0, "peak_memory": 0} for key, text in texts.items()}
+
+
+def check_finished(study, folder, whole):
+    """The same command goes on to the table of a run that was left alone."""
+    assert crossval("study", study, "--out", folder, "--workers", "1") == 0
+    assert rows(folder / "tiny.csv") == rows(whole / "tiny.csv")
+    assert histories(folder) == histories(whole)
 
 
 def wait_for(condition, seconds=60):
@@ -114,19 +116,21 @@ def tiny(tmp_path):
 
 
 @pytest.fixture(scope="session")
+def whole(tmp_path_factory):
+    """The folder of the tiny study, uninterrupted."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "tiny.toml").write_text(TINY)
+    assert crossval("study", folder / "tiny.toml", "--out", folder, "--workers", "1") == 0
+    return folder
+
+
+@pytest.fixture(scope="session")
 def many(tmp_path_factory):
-    """The results of `MANY`."""
+    """The table of `MANY`, beside the folder of its results."""
     folder = tmp_path_factory.mktemp("many")
     (folder / "many.toml").write_text(MANY)
     assert crossval("study", folder / "many.toml", "--out", folder, "--workers", "1", "--quiet") == 0
-    return folder / "many.sqlite"
-
-
-@pytest.fixture
-def copy(many, tmp_path):
-    """A copy of these results, which a test may spoil."""
-    (tmp_path / "copy.sqlite").write_bytes(many.read_bytes())
-    return tmp_path / "copy.sqlite"
+    return folder / "many.csv"
 
 
 @pytest.fixture

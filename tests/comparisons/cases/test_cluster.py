@@ -11,9 +11,7 @@ from threading import Thread
 import distributed
 import pytest
 
-from comparisons.cli import main
-from tests.comparisons.cases.conftest import CASES, recorded, wait_for
-from tests.comparisons.cases.test_command import check_finished
+from tests.comparisons.cases.conftest import CASES, check_finished, crossval, recorded, wait_for
 
 
 @pytest.fixture
@@ -25,31 +23,27 @@ def cluster():
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_a_worker(cluster, tiny, tmp_path):
-    here, there = tmp_path / "here.sqlite", tmp_path / "there.sqlite"
-    victim = next(iter(cluster.workers.values())).pid
-    killed = list[int]()
+def test_a_cluster_that_loses_a_worker(cluster, whole, tiny, tmp_path):
+    victim, killed = next(iter(cluster.workers.values())).pid, list[int]()
 
     def kill():
-        wait_for(lambda: recorded(there) >= 3)
-        killed.append(recorded(there))
+        wait_for(lambda: recorded(tmp_path / "tiny") >= 3)
+        killed.append(recorded(tmp_path / "tiny"))
         os.kill(victim, signal.SIGKILL)
 
     killer = Thread(target=kill)
     killer.start()
-    status = main(["study", str(tiny), "--results", str(there), "--cluster", cluster.scheduler_address])
+    status = crossval("study", tiny, "--out", tmp_path, "--cluster", cluster.scheduler_address)
     killer.join()
     assert status == 0
     assert 3 <= killed[0] < CASES
-    assert main(["study", str(tiny), "--results", str(here), "--workers", "1"]) == 0
-    check_finished(tiny, there, here)
+    check_finished(tiny, tmp_path, whole)
 
 
 @pytest.mark.slow_at("tcp://127.0.0.1:9")
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9"])
 def test_no_cluster_there(address, tiny, tmp_path, capsys):
-    status = main(["study", str(tiny), "--results", str(tmp_path / "a.sqlite"), "--cluster", address])
-    assert status == 2
+    assert crossval("study", tiny, "--out", tmp_path, "--cluster", address) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"crossval: cluster {address}: ")
 
@@ -77,7 +71,7 @@ def free_port():
 
 @pytest.mark.slow
 def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path, capfd):
-    file, port = tmp_path / "a.sqlite", free_port()
+    file, port = tmp_path / "tiny", free_port()
     address = f"tcp://127.0.0.1:{port}"
     with dask("scheduler", "--host", "127.0.0.1", "--port", str(port)) as scheduler:
 
@@ -88,7 +82,7 @@ def test_a_scheduler_that_dies_is_one_line_and_keeps_what_is_done(tiny, tmp_path
         with dask("worker", address, "--nthreads", "1", "--no-nanny"):
             killer = Thread(target=kill)
             killer.start()
-            status = main(["study", str(tiny), "--results", str(file), "--cluster", address])
+            status = crossval("study", tiny, "--out", tmp_path, "--cluster", address)
             killer.join()
     assert status == 2
     assert 3 <= recorded(file) < CASES

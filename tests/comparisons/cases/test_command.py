@@ -1,35 +1,31 @@
-"""`crossval study FILE` in processes of its own: killed, interrupted, in company, out of room, on a cluster."""
+"""`crossval study FILE` in processes of its own: killed, interrupted, out of room."""
 
 import json
 import os
 import random
 import resource
 import signal
+import subprocess
 import sys
-import zlib
 from pathlib import Path
 from time import sleep
 
 import pytest
 
 from comparisons.cli import main
-from tests.comparisons.cases.conftest import CASES, TINY, asked, recorded, rows, wait_for
+from tests.comparisons.cases.conftest import (
+    CASES,
+    check_finished,
+    crossval,
+    histories,
+    recorded,
+    rows,
+    wait_for,
+)
 
+NOBODY = 65534
 KILLS = 20
 """A third while the libraries are loaded, the others after 1 to 8 cases more; of the command alone or of its workers too."""
-
-
-def table(file):
-    return rows(file, "--no-timings")
-
-
-def histories(file):
-    """Every number of every result but seconds and memory, by key."""
-    found = {}
-    for key, blob in asked(file, "SELECT key, measurement FROM result"):
-        assert isinstance(blob, bytes)
-        found[key] = json.loads(zlib.decompress(blob)) | {"seconds": 0.0, "peak_memory": 0}
-    return found
 
 
 def running(group):
@@ -45,30 +41,14 @@ def running(group):
     return found
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """The results of the tiny study, uninterrupted."""
-    folder = tmp_path_factory.mktemp("whole")
-    (folder / "tiny.toml").write_text(TINY)
-    assert main(["study", str(folder / "tiny.toml"), "--out", str(folder), "--workers", "1"]) == 0
-    return folder / "tiny.sqlite"
-
-
-def check_finished(study, file, whole):
-    """The same command goes on to the table of a run that was left alone."""
-    assert main(["study", str(study), "--results", str(file), "--workers", "1"]) == 0
-    assert table(file) == table(whole)
-    assert histories(file) == histories(whole)
-
-
-def killed(process, file, chance):
+def killed(process, results, chance):
     """Kill the command, or all its processes, at a random point; whether it was still at work."""
     if chance.random() < 1 / 3:
         # while interpreter and libraries are loaded
         sleep(chance.uniform(0, 1))
     else:
-        goal = recorded(file) + chance.randint(1, 8)
-        wait_for(lambda: recorded(file) >= min(goal, CASES) or process.poll() is not None)
+        goal = recorded(results) + chance.randint(1, 8)
+        wait_for(lambda: recorded(results) >= min(goal, CASES) or process.poll() is not None)
         sleep(chance.uniform(0, 0.05))
     at_work = process.poll() is None
     if at_work:
@@ -83,63 +63,83 @@ def killed(process, file, chance):
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see what is left running")
 def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
     """20 times kill -9, over as many studies as that takes: each ends with the tables of one that was left alone."""
-    chance, hit, files = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
+    chance, hit, folders = random.Random(7), list[int](), list[Path]()  # noqa: S311 - no secret
     while len(hit) < KILLS:
-        file = tmp_path / f"{len(files)}.sqlite"
-        files.append(file)
-        while recorded(file) < CASES and len(hit) < KILLS:
-            if killed(start("study", tiny, "--results", file, "--workers", "2"), file, chance):
-                hit.append(recorded(file))
-    for file in files:
-        check_finished(tiny, file, whole)
+        folder = tmp_path / str(len(folders))
+        folders.append(folder)
+        while recorded(folder / "tiny") < CASES and len(hit) < KILLS:
+            if killed(start("study", tiny, "--out", folder, "--workers", "2"), folder / "tiny", chance):
+                hit.append(recorded(folder / "tiny"))
+    for folder in folders:
+        check_finished(tiny, folder, whole)
     assert len(set(hit)) > KILLS // 4, "the points are spread over the study"
-    print(f"killed with {sorted(hit)} cases done, in {len(files)} studies")
-
-
-@pytest.mark.slow
-def test_four_runs_on_one_file(whole, tiny, tmp_path, start):
-    file = tmp_path / "a.sqlite"
-    runs = [start("study", tiny, "--results", file, "--workers", "1") for _ in range(4)]
-    ends = [(run.communicate(), run.returncode) for run in runs]
-    assert all(status == 0 for _, status in ends), ends
-    assert all(out.startswith("tiny: 30 cases: COMPLETED 30\n") for (out, _), _ in ends)
-    check_finished(tiny, file, whole)
+    print(f"killed with {sorted(hit)} cases done, in {len(folders)} studies")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("whom", ["command", "group"])
 def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
-    file = tmp_path / "a.sqlite"
-    process = start("study", tiny, "--results", file, "--workers", "2")
-    wait_for(lambda: recorded(file) >= 3)
+    process = start("study", tiny, "--out", tmp_path, "--workers", "2")
+    wait_for(lambda: recorded(tmp_path / "tiny") >= 3)
     (os.kill if whom == "command" else os.killpg)(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
     assert (process.returncode, out) == (130, "")
     assert err.splitlines()[-1] == "crossval: interrupted"
     assert "Traceback" not in err
     assert "Warning" not in err
-    kept = histories(file)
+    kept = histories(tmp_path)
     assert 3 <= len(kept) < CASES
-    check_finished(tiny, file, whole)
-    assert kept.items() <= histories(file).items()
+    check_finished(tiny, tmp_path, whole)
+    assert kept.items() <= histories(tmp_path).items()
 
 
 @pytest.mark.slow
 def test_out_of_room(whole, tiny, tmp_path, start):
     """A limit on the size of files stops the command like a full disk: one line, and everything before it kept."""
-    file = tmp_path / "a.sqlite"
+    sizes = [file.stat().st_size for file in (whole / "tiny").glob("*.json")]
 
     def limit():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, resource.RLIM_INFINITY))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (sorted(sizes)[-2], resource.RLIM_INFINITY))
 
-    process = start("study", tiny, "--results", file, "--workers", "2", preexec_fn=limit)
+    process = start("study", tiny, "--out", tmp_path, "--workers", "2", preexec_fn=limit)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2, err
-    assert err.splitlines()[-1].startswith(f"crossval: {file}: cannot be written: ")
+    line = err.splitlines()[-1]
+    assert line.startswith(f"crossval: {tmp_path}/tiny/")
+    assert line.endswith(".json: cannot be written: File too large")
     assert "Traceback" not in err
-    assert asked(file, "PRAGMA integrity_check") == [("ok",)]
-    assert 0 < recorded(file) < CASES
-    check_finished(tiny, file, whole)
+    assert 0 < recorded(tmp_path / "tiny") < CASES
+    assert len(list((tmp_path / "tiny").iterdir())) == recorded(tmp_path / "tiny")
+    check_finished(tiny, tmp_path, whole)
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
+def test_a_folder_that_is_only_read(many, tmp_path, capfd):
+    """The study was run before, so that every module is loaded and nobody needs to read one."""
+    if os.getuid() == 0:
+        for one in (*list(tmp_path.parents)[:3], *many.parents[:3]):
+            one.chmod(0o755)
+    tmp_path.chmod(0o555)
+    child = os.fork()
+    if child == 0:
+        if os.getuid() == 0:
+            os.setgid(NOBODY)
+            os.setuid(NOBODY)
+        os._exit(crossval("study", many.with_suffix(".toml"), "--out", tmp_path))
+    status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    tmp_path.chmod(0o755)
+    told = f"crossval: {tmp_path}: cannot be written: Permission denied\n"
+    assert (status, capfd.readouterr().err) == (2, told)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_program_from_standard_input_is_refused_by_one_line(tiny, tmp_path):
+    """Processes by spawn load the file of the main program, and there is none."""
+    code = f"import sys; from comparisons.cli import main; sys.exit(main(['study', {str(tiny)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
+    found = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True, check=False)
+    assert found.returncode == 2
+    (line,) = found.stderr.splitlines()
+    assert line.startswith("crossval: workers: cannot load <stdin>: ")
 
 
 KILLER = """
@@ -172,8 +172,10 @@ def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(times,
     arguments = ["study", str(tmp_path / "study.toml"), "--out", str(tmp_path), "--workers", "2", "--quiet"]
     for status in [3, 0][2 - times :]:
         assert main(arguments) == status
-        lost = [row["model"] for row in rows(tmp_path / "beside.sqlite") if row["status"] == "WORKER_LOST"]
-        assert lost == ["killer"] * bool(status)
+        lost = [row["message"] for row in rows(tmp_path / "beside.csv") if row["status"] == "WORKER_LOST"]
+        assert lost == ["the worker process ended by signal 9, Killed, twice, the second time alone"] * bool(
+            status
+        )
         out, err = capsys.readouterr()
         assert "COMPLETED 2" in out
         assert ("1 cases have no result; the same command tries them again" in err) == bool(status)

@@ -1,11 +1,10 @@
-"""`crossval study` and `crossval results`: what a study file states, what is found, and one line for whatever is wrong."""
+"""`crossval study`: what a study file states, what is found, and one line for whatever is wrong."""
 
 import io
+import json
 import re
-import sqlite3
+import shutil
 import sys
-import zlib
-from pathlib import Path
 
 import pytest
 
@@ -14,27 +13,27 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
 from docs.extensions.messages import SCENES
-from tests.comparisons.cases.conftest import asked, crossval, rows
+from tests.comparisons.cases.conftest import crossval, rows
 
 HEAD = '[study]\nname = "mine"\nscene = "ks-cantilever"\nrepeats = 1\n'
 RUN = '[[run]]\nmodel = "tsm"\n'
 
 
-def test_cases_are_all_combinations_sorted_by_what_varies(many):
+def test_cases_are_all_combinations_in_the_order_of_the_file(many):
     found = rows(many)
     assert [
         (row["model"], row["element"], row["elements"], row["mesh"], row["status"], row["verdict"])
         for row in found
     ] == [
+        *[("tsm", "mixed", n, "", "COMPLETED", "CERTIFIED") for n in "248"],
+        *[("tsm", "timoshenko", n, "", "CHECK_FAILED", "NOT_AN_EQUILIBRIUM") for n in "24"],
+        ("tsm", "timoshenko", "8", "", "COMPLETED", "CERTIFIED"),
         ("rod", "", "", "", "COMPLETED", "CERTIFIED"),
         *[("solid", "", "", "10x1", "COMPLETED", "CERTIFIED")] * 3,
         ("tsm", "", "", "", "REFUSED", ""),
         ("tsm", "", "5", "", "SLIPPED_OFF", "NOT_JUDGED"),
-        *[("tsm", "mixed", n, "", "COMPLETED", "CERTIFIED") for n in "248"],
-        *[("tsm", "timoshenko", n, "", "CHECK_FAILED", "NOT_AN_EQUILIBRIUM") for n in "24"],
-        ("tsm", "timoshenko", "8", "", "COMPLETED", "CERTIFIED"),
     ]
-    solids = found[1:4]
+    solids = found[7:10]
     assert [float(row["beam.height"]) for row in solids] == pytest.approx([0.01, 0.02, 0.03])
     for row in solids:
         assert (row["beam.width"], row["contact.penalty"]) == ("0.5", "1000.0")
@@ -54,116 +53,26 @@ def test_a_row_is_the_answer_at_the_last_load_parameter(many):
         "tip_y:cantilever": answer.tips["cantilever"][-1, 1],
     }
     assert {name: float(row[name]) for name in expected} == pytest.approx(expected, rel=1e-9)
-    assert float(row["seconds"]) > 0.0
 
 
-def test_the_table_of_one_scene_of_several_and_of_none(many, copy, capsys):
-    assert main(["results", str(many)]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split()[:4] == ["model", "element", "elements", "integration_tolerance"]
-    assert "version" not in lines[0]
-    assert lines[14].startswith("version ")
-    assert lines[16].startswith("ks-cantilever, tsm mixed 20 tolerance 1e-09: REFUSED: tsm: ")
-    assert len(lines) == 20
-    assert set(rows(many)[0]) - set(rows(many, "--no-timings")[0]) == {"seconds", "repeats", "peak_memory"}
-    asked(copy, "UPDATE result SET scene = 'another' WHERE model = 'rod'")
-    assert [row["scene"] for row in rows(copy)] == ["another", *["ks-cantilever"] * 11]
-    assert main(["results", str(copy)]) == 0
-    assert capsys.readouterr().out.startswith("scene")
-    asked(copy, "DELETE FROM result")
-    assert (main(["results", str(copy)]), capsys.readouterr().out, rows(copy)) == (0, "no results yet\n", [])
-
-
-def test_what_is_done_is_not_done_again(many, capsys):
-    before = rows(many)
+def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
+    before, kept = many.read_text(), {file.name for file in many.with_suffix("").iterdir()}
     study = many.with_suffix(".toml")
-    assert main(["study", str(study), "--out", str(many.parent), "--workers", "1"]) == 0
+    assert crossval("study", study, "--out", many.parent, "--workers", "1") == 0
     out, err = capsys.readouterr()
-    assert out.splitlines() == [
+    lines = out.splitlines()
+    assert lines[0].split()[:4] == ["model", "element", "elements", "integration_tolerance"]
+    assert lines[14].startswith("version ")
+    assert lines[18].startswith("ks-cantilever, tsm mixed 20 tolerance 1e-09: REFUSED: tsm: ")
+    assert lines[20:] == [
+        "",
         "many: 12 cases: CHECK_FAILED 2, COMPLETED 8, REFUSED 1, SLIPPED_OFF 1",
         f"file: {many}",
-        f"crossval results {many} shows them",
     ]
-    assert err == ""
-    assert rows(many) == before
-    assert sorted(path.name for path in many.parent.iterdir()) == ["many.sqlite", "many.toml"]
-
-
-def test_results_of_another_version(many, copy, capsys):
-    """Are kept where that is asked for, with one line; the table has a column of versions then."""
-    own = rows(copy)[0]["version"]
-    asked(copy, "UPDATE result SET version = '0.1.0', key = 'x' || key WHERE model != 'rod'")
-    study = str(many.with_suffix(".toml"))
-    assert main(["study", study, "--results", str(copy), "--quiet", "--keep-old-versions"]) == 0
-    assert capsys.readouterr().err == "crossval: 11 results of other versions (0.1.0) were kept\n"
-    assert main(["results", str(copy)]) == 0
-    text = capsys.readouterr().out
-    assert f"\nversion 0.1.0, {own}\n" in text
-    assert [line.split()[-1] for line in text.splitlines()[:3]] == ["version", own, "0.1.0"]
-
-
-@pytest.mark.slow
-def test_wrong_results_of_another_version_are_computed_anew(many, copy, capsys):
-    right = rows(many, "--no-timings")
-    change = "UPDATE result SET version = '0.1.0', key = 'x' || key, status = 'WRONG' WHERE label LIKE ?"
-    asked(copy, change, "%mixed 4")
-    command = ["study", str(many.with_suffix(".toml")), "--results", str(copy), "--workers", "1", "--quiet"]
-    told = "crossval: 1 results of other versions (0.1.0) were left aside, and the cases computed anew\n"
-    for said in (told, ""):
-        assert main(command) == 0
-        out, err = capsys.readouterr()
-        assert err == said
-        assert "WRONG" not in out
-    assert [row for row in rows(copy, "--no-timings") if row["version"] != "0.1.0"] == right
-
-
-@pytest.mark.parametrize(
-    "blob",
-    [b"", b"mine", zlib.compress(b"{}"), zlib.compress(b"[1]"), zlib.compress(b"\xff"), "text", None, 7],
-)
-def test_a_damaged_result_is_one_line(blob, copy, capsys):
-    if blob is None:
-        (blob,) = asked(copy, "SELECT substr(measurement, 1, 40) FROM result WHERE model = 'rod'")[0]
-    asked(copy, "UPDATE result SET measurement = ? WHERE model = 'rod'", blob)
-    assert main(["results", str(copy)]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err == f"crossval: {copy}: cannot be read: the result of 'ks-cantilever, rod' is damaged\n"
-
-
-def other_database(path):
-    sqlite3.connect(path).execute("CREATE TABLE result (key TEXT)").connection.commit()
-
-
-OTHER_FILES = {
-    "file is not a database": lambda path: path.write_text("key,status\n" * 100),
-    "is no results file of crossval, but another SQLite database": other_database,
-    "has schema 99, this version of crossval reads 3: choose another file": lambda path: asked(
-        path, "PRAGMA user_version = 99"
-    ),
-    "has schema 1, this version of crossval reads 3: choose another file": lambda path: asked(
-        path, "PRAGMA user_version = 1"
-    ),
-    "is not a regular file": Path.mkdir,
-    "there is no such file": lambda _: None,
-}
-
-
-@pytest.mark.parametrize("reason", OTHER_FILES)
-def test_other_files_are_refused_and_left_alone(reason, many, tmp_path, capsys):
-    path = tmp_path / "a.sqlite"
-    if "schema" in reason:
-        path.write_bytes(many.read_bytes())
-    OTHER_FILES[reason](path)
-    before = path.read_bytes() if path.is_file() else None
-    commands = [["study", many.with_suffix(".toml"), "--results", path]] * path.exists()
-    for command in (*commands, ["results", path]):
-        assert crossval(*command) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith(f"crossval: {path}: ")
-        assert reason in line or (path.is_dir() and "there is no such file" in line)
-    assert (path.read_bytes() if path.is_file() else None) == before
-    assert [item.name for item in tmp_path.iterdir()] == [path.name] * path.exists()
+    assert err == "12 of 12 cases done, 4 failed\n"
+    assert many.read_text() == before
+    assert {file.name for file in many.with_suffix("").iterdir()} == kept
+    assert len(kept) == 12
 
 
 class Terminal(io.StringIO):
@@ -171,32 +80,32 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, copy, monkeypatch):
-    """Two cases are left to do; the message of a file that is none of ours stands in a line of its own."""
-    study = str(many.with_suffix(".toml"))
-    asked(copy, "DELETE FROM result WHERE model = 'rod' OR status = 'REFUSED'")
-    for schema, status in ((3, 0), (1, 2)):
-        for stream in (Terminal(), io.StringIO()):
-            monkeypatch.setattr(sys, "stderr", stream)
-            file = copy.with_name(f"{type(stream).__name__}.sqlite")
-            file.write_bytes(copy.read_bytes())
-            asked(file, f"PRAGMA user_version = {schema}")
-            assert main(["study", study, "--results", str(file), "--workers", "1"]) == status
-            text = stream.getvalue()
-            if status:
-                assert (
-                    text.strip("\n")
-                    == f"crossval: {file}: has schema 1, this version of crossval reads 3: choose another file"
-                )
-                assert text.startswith("\n") is stream.isatty()
-            elif stream.isatty():
-                first, *_, last = text.split("\r")[1:]
-                assert [picture.count("#") for picture in (first, last)] == [25, 30]
-                assert last.endswith("12 of 12 cases done, 4 failed\x1b[K\n")
-            else:
-                assert text.splitlines()[0] == "10 of 12 cases done, 3 failed"
-                assert text.splitlines()[-1] == "12 of 12 cases done, 4 failed"
-                assert re.search(r"^\d+ of 12 cases done, \d failed, \d:\d\d left$", text, re.MULTILINE)
+def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, monkeypatch):
+    """Two cases are left to do; then a file is damaged, whose message stands in a line of its own."""
+    for stream in (Terminal(), io.StringIO()):
+        folder = tmp_path / type(stream).__name__
+        shutil.copytree(many.with_suffix(""), folder / "many")
+        told = {file: json.loads(file.read_text()) for file in folder.glob("many/*")}
+        (rod,) = (file for file in told if told[file]["model"] == "rod")
+        (refused,) = (file for file in told if told[file]["response"]["status"] == "REFUSED")
+        rod.unlink()
+        refused.unlink()
+        command = ("study", many.with_suffix(".toml"), "--out", folder, "--workers", "1")
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert crossval(*command) == 0
+        text = stream.getvalue()
+        if stream.isatty():
+            first, *_, last = text.split("\r")[1:]
+            assert [picture.count("#") for picture in (first, last)] == [25, 30]
+            assert last.endswith("12 of 12 cases done, 4 failed\x1b[K\n")
+        else:
+            assert text.splitlines()[0] == "10 of 12 cases done, 3 failed"
+            assert text.splitlines()[-1] == "12 of 12 cases done, 4 failed"
+            assert re.search(r"^\d+ of 12 cases done, \d failed, \d:\d\d left$", text, re.MULTILINE)
+        rod.write_text("{}")
+        assert crossval(*command) == 2
+        line = f"crossval: {rod}: is damaged: delete it, and the case is solved again\n"
+        assert stream.getvalue().removeprefix(text) == "\n" * stream.isatty() + line
 
 
 @pytest.mark.slow
@@ -223,7 +132,7 @@ def test_the_scene_is_varied_through_its_records(tmp_path, monkeypatch):
     study.write_text(HEAD.replace("ks-cantilever", "scenes/hinged.toml") + run + run + lines)
     monkeypatch.chdir("/")
     assert main(["study", str(study), "--out", str(tmp_path), "--workers", "1", "--quiet"]) == 0
-    _, row = sorted(rows(tmp_path / "mine.sqlite"), key=lambda row: row["hinge.stiffness"] == "2.0")
+    _, row = sorted(rows(tmp_path / "mine.csv"), key=lambda row: row["hinge.stiffness"] == "2.0")
     named = {key for key in row if key.count(".") and row[key] in changes.values()}
     assert {row[key] for key in named} == set(changes.values())
     assert (row["beam.girder.elements"], row["beam.column.elements"]) == ("7", "3")
@@ -286,8 +195,7 @@ ARGUMENTS = {
     "nosuch.toml: no such file": ["study", "nosuch.toml"],
     "argument --workers: 0: must lie between 1": ["study", "STUDY", "--workers", "0"],
     "not allowed with argument --workers": ["study", "STUDY", "--workers", "2", "--cluster", "tcp://a:1"],
-    "there is no folder": ["study", "STUDY", "--results", "DIR/none/a.sqlite"],
-    "file is not a database": ["study", "STUDY", "--results", "STUDY"],
+    "results: is no longer a command, see": ["results", "a.sqlite"],
     "STUDY: cannot be written": ["study", "STUDY", "--out", "STUDY"],
     "--workers: belongs to a study file, locking is a question": ["study", "locking", "--workers", "2"],
     "nosuch: no such file or built-in scene": ["trade", "nosuch", "--out", "DIR/out"],

@@ -181,7 +181,6 @@ def test_a_file_that_cannot_be_read_is_named_in_one_line(case: str, command: str
         ["solve", "{}.toml", "--model", "tsm"],
         ["check", "{}.toml"],
         ["study", "{}.toml"],
-        ["results", "{}.sqlite"],
         ["view", "./{}"],
         ["solve", "ks-cantilever", "--model", "tsm", "--vtk", "/proc/{}"],
         ["solve", "ks-cantilever", "--model", "tsm", "--json", "/proc/{}/a.json"],

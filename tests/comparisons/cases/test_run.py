@@ -1,0 +1,133 @@
+"""What no command can bring about alone: a worker's exception, a result that is no result, the key and the measurement of a case."""
+
+import pickle
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import psutil  # noqa: F401 - on Unix it takes `resource` itself, so it is there before that is hidden
+import pytest
+
+# not public: a worker's exception cannot be brought about from outside, nor systems without /proc
+from comparisons.cases import Case, Measurement, measure, memory
+from comparisons.cases import run as run_module
+from comparisons.cases.workers import Workers
+from comparisons.files import OutputError
+from comparisons.models import solve
+from comparisons.models.options import Options
+from comparisons.scene import load_scene
+from comparisons.version import version
+
+KS = replace(load_scene("ks-cantilever"), load_parameters=2)
+CASE = Case(scene=KS, model="tsm", options=Options(elements=3))
+MESHED = replace(CASE, scene=replace(KS, beams=(replace(KS.beams[0], solid_mesh_file="a.msh"),)))
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return measure(CASE, repeats=1)
+
+
+@contextmanager
+def thread():
+    with ThreadPoolExecutor(1) as executor:
+        yield executor
+
+
+THREAD = Workers(width=1, start=thread)
+
+
+def test_a_case_that_raises_is_listed_and_done_again(tmp_path, monkeypatch):
+    cases = [CASE, replace(CASE, options=Options(elements=4)), CASE]
+    right, reported = run_module.solve, list[run_module.Tally]()
+
+    def raising(key, case, **how):
+        if case == CASE:
+            raise ZeroDivisionError("a bug\nin two lines")
+        return right(key, case, **how)
+
+    monkeypatch.setattr(run_module, "solve", raising)
+    found = run_module.run(cases, tmp_path, THREAD, repeats=0)
+    assert next((one.response.status, one.response.message) for one in found.values()) == (
+        "ERROR",
+        "ZeroDivisionError: a bug in two lines",
+    )
+    monkeypatch.undo()
+    again = run_module.run(cases, tmp_path, THREAD, repeats=0, progress=reported.append)
+    assert [one.response.status for one in again.values()] == ["COMPLETED"] * 2
+    # on a slow machine the beat reports the same tally again
+    assert list(dict.fromkeys((one.done, one.total) for one in reported)) == [(1, 2), (2, 2)]
+    assert (reported[-1].left, reported[-1].failed) == (0, 0)
+    monkeypatch.setattr(run_module, "solve", None)
+    kept = run_module.run(cases, tmp_path, THREAD)
+    assert [one.to_json() for one in kept.values()] == [one.to_json() for one in again.values()]
+    with pytest.raises(RuntimeError, match="another version"):
+        right("0" * 64, CASE, repeats=1, process=False)
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\xff", None])
+def test_a_file_that_is_no_result_is_one_line_and_left_alone(content, measured, tmp_path):
+    file = tmp_path / f"{CASE.key}.json"
+    file.write_bytes(measured.to_json().encode()[:40] if content is None else content)
+    before = file.read_bytes()
+    with pytest.raises(OutputError, match=r"\.json: is damaged: delete it, and the case is solved again$"):
+        run_module.run([CASE], tmp_path, THREAD)
+    assert (file.read_bytes(), list(tmp_path.iterdir())) == (before, [file])
+
+
+def test_the_key_depends_on_everything_that_the_result_does(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    others = [
+        replace(CASE, options=Options(elements=5)),
+        replace(CASE, options=Options(elements=3, element="timoshenko")),
+        replace(CASE, model="solid", options=Options()),
+        replace(CASE, scene=replace(KS, load_parameters=6)),
+        replace(CASE, scene=replace(KS, contacts=(replace(KS.contacts[0], penalty=1e3),))),
+    ]
+    keys = [CASE.key, *(other.key for other in others)]
+    for text in ("one", "two"):
+        Path("a.msh").write_text(text)
+        keys.append(MESHED.key)
+    package = tmp_path / "version_probe"
+    package.mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("comparisons.version.PACKAGES", ("version_probe",))
+    seen = []
+    for text in ("a = 1\n", "a = 2\n", "a = 1\r\n"):
+        (package / "__init__.py").write_text(text)
+        seen.append(version.__wrapped__())
+    assert seen[0] == seen[2] != seen[1]
+    assert len(set(keys)) == len(keys)
+    again = pickle.loads(pickle.dumps(CASE))  # noqa: S301 made here
+    assert (again, again.key) == (CASE, CASE.key)
+
+
+def test_a_measurement_is_the_response_and_comes_back_as_it_was(measured):
+    """Without a timed run it has neither axes nor a verdict."""
+    found, response = measured.response, solve(KS, "tsm", CASE.options)
+    assert (measured.verdict, measured.repeats) == ("CERTIFIED", 1)
+    assert found.iterations == response.newton_iterations.sum()
+    assert np.array_equal(found.tips["cantilever"], response.tips["cantilever"])
+    line = found.axis_line("cantilever", 1)[1]
+    assert line.shape == (101, 2)
+    assert line[[0, -1]] == pytest.approx(np.array([[0, 0], response.tips["cantilever"][1]]), abs=1e-3)
+    refused, untimed = measure(replace(CASE, options=Options(mesh=(2, 1)))), measure(CASE, repeats=0)
+    assert (refused.response.status, refused.response.completed) == ("REFUSED", False)
+    assert refused.verdict == untimed.verdict == ""
+    for one in (measured, refused, untimed):
+        again = Measurement.from_json(one.to_json())
+        assert again.to_json() == one.to_json() == pickle.loads(pickle.dumps(one)).to_json()  # noqa: S301
+        types = [[type(value) for value in vars(each.response).values()] for each in (again, one)]
+        assert types[0] == types[1]
+
+
+def test_peak_memory_without_proc_and_resource(tmp_path, monkeypatch):
+    """As on Windows: psutil tells how much memory there is."""
+    monkeypatch.setattr(memory, "CLEAR", tmp_path / "none" / "clear_refs")
+    monkeypatch.setitem(sys.modules, "resource", None)
+    size = 64 * 2**20
+    _, rise = memory.with_peak_memory(lambda: np.ones(size // 8))
+    assert 0.9 * size < rise < 1.5 * size
