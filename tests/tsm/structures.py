@@ -109,29 +109,3 @@ def as_mixed(structure):
     """The same structure in `mixed` elements."""
     beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
     return replace(structure, beams=beams)
-
-
-def two_beams(elements=1, lower="exact"):
-    """A tip that meets a second beam, a pin on each, one of them with an offset."""
-    return tsm.Structure(
-        beams=(
-            beam("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
-            beam("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
-        ),
-        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
-        pins=(
-            tsm.Pin(name="p", path=((0.7, 0.01), (0.65, -0.25))),
-            tsm.Pin(name="q", path=((0.4, -0.1), (0.4, -0.08))),
-        ),
-        contacts=(
-            tsm.ContactPair(node="p", beam="upper", side="left", offset=0.01),
-            tsm.ContactPair(node="q", beam="lower"),
-            tsm.ContactPair(node="upper.end", beam="lower", side="left", offset=0.003),
-        ),
-    )
-
-
-def two_pins(elements=1):
-    """Two pins on one beam, from both sides."""
-    both = cantilever(((0.5, -0.01), (0.5, 0.2)), ((0.9, 0.01), (0.9, 0.1)), section=KS, element="exact", elements=elements, offset=0.01)  # fmt: skip
-    return replace(both, contacts=(both.contacts[0], replace(both.contacts[1], side="left")))

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, THICK, THIN, beam, hook, leaning
+from tests.tsm.structures import CLAMP, beam, hook, leaning
 
 
 def heavy_column(weight, element, elements):
@@ -88,24 +88,3 @@ def test_straight_mixed_beams_stand_beside_varying_ones():
         assert result.index.tolist() == [0, 0]
         assert (result.deformation is None) == (element == "exact")
     assert np.abs(np.subtract(*found)).max() <= 2e-6
-
-
-def test_point_force_inside_a_beam():
-    """Half of a beam under a force in its middle is a beam under a force at its end."""
-    whole = tsm.solve(hook(line_loads=(), loads=(tsm.Load(beam="b", arc=0.3, force=(0.0, 3.0)),)), [1.0])
-    whole_beam = hook().beams[0]
-    part = 0.3 / whole_beam.length
-    ratio = (THIN.EI / THICK.EI * THICK.EA / THIN.EA) ** 0.5
-    high, wide = 1 - part * (1 - ratio), 1 - part * (1 - THIN.EA / THICK.EA / ratio)
-    cut = tsm.Section(EA=THICK.EA * high * wide, GA=THICK.GA * high * wide, EI=THICK.EI * high**3 * wide)
-    half = replace(
-        whole_beam,
-        end=whole_beam.point(part),
-        turn=part * whole_beam.turn,
-        end_section=cut,
-        elements=1,
-        nodes=(),
-    )
-    load = tsm.Load(beam="b", end="end", force=(0.0, 3.0))
-    alone = tsm.solve(replace(hook(line_loads=()), beams=(half,), loads=(load,)), [1.0])
-    assert np.abs(whole.shape("b", 0)[1] - alone.shape("b", 0)[1]).max() <= 1e-13
