@@ -13,7 +13,6 @@ from tests.fem_reference.conftest import (
     CLAMP,
     EA,
     NU,
-    PAIR,
     STRIP,
     B,
     E,
@@ -85,13 +84,11 @@ def write_4(path, points, quads, lines):
 
 
 def pulled(force=1e-6 * EA, **changes):
-    """A clamped strip under a force along it."""
     problem = held(load(force=(force, 0.0)), **({"clamped": ("start",), "material": "biot-linear"} | changes))
     return fr.solve(problem, loads(1))
 
 
 def refused(path):
-    """The message of one line with which a mesh file is refused."""
     with pytest.raises(ValueError, match=r"^Strip\('cantilever'\)\.mesh_file = ") as caught:
         pulled(mesh_file=str(path))
     assert len(str(caught.value).splitlines()) == 1
@@ -146,16 +143,6 @@ def test_a_bar_is_stretched_evenly(tmp_path, element):
     np.testing.assert_allclose(result.supports[CLAMP].force[0], [-F, 0], atol=1e-8 * F)
     strains = fr.face_strains(result, STRIP, 0)[1]
     np.testing.assert_allclose([strains["left"], strains["right"]], 0.05, atol=1e-11)
-
-
-def test_ks_cantilever_on_a_mesh_of_the_users_own(tmp_path):
-    """Slanted elements against straight ones."""
-    slanted, straight = (
-        fr.solve(make_problem(contact={"surface": "face"}, mesh_file=file), loads(20)[:10]).contacts[PAIR]
-        for file in (write(tmp_path / "a.msh", *parts(nx=50)), None)
-    )
-    np.testing.assert_allclose(slanted.force, straight.force, rtol=1e-3)
-    np.testing.assert_allclose(slanted.arc_position, straight.arc_position, rtol=5e-4)
 
 
 def test_midsides_are_read_and_must_be_straight(tmp_path):

@@ -139,7 +139,3 @@ def test_data_that_do_not_fit_are_refused_in_one_line(message):
 def test_solve_refuses_load_parameters_out_of_order(parameters):
     with pytest.raises(ValueError, match=r"load_parameters = .*: must"):
         fr.solve(make_problem(), np.array(parameters))
-
-
-def test_default_penalty_is_about_1e4_for_the_ks_strip():
-    assert fr.default_penalty(make_strip()) == pytest.approx(1.05e4)

@@ -120,7 +120,6 @@ def test_a_path_that_ends_early_has_a_status_and_keeps_the_accepted_states(
 
 @pytest.fixture(scope="module")
 def turned():
-    """A biot-linear strip in a turned scene, bent far by a pin."""
     end, *path = np.array([[1.0, 0.0], [0.8, 0.0], [0.6, 0.4]]) @ rotation(0.9).T
     scene = make_problem(end=tuple(end), path=tuple(map(tuple, path)), material="biot-linear")
     return fr.solve(scene, loads(4))

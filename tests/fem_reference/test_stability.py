@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.special import ellipk
 
 import fem_reference as fr
 from tests.fem_reference.conftest import EA, EI, NU, STRIP, held, load, loads, make_problem, pressed, support
@@ -60,20 +59,6 @@ def test_buckling_load_does_not_depend_on_the_load_parameters():
     t = [fr.solve(problem, loads(n), throw=False).critical[0].load_parameter for n in (1, 8)]
     assert 1.3 * t[0] - 1 == pytest.approx(-1.86e-4, abs=2e-6)
     np.testing.assert_allclose(t, t[0], rtol=2e-8)
-
-
-def test_stable_branch_is_the_elasticas():
-    """P/P_1 = (2 K(p) / pi)^2 with p = sin(tip angle / 2), to the left, as beams."""
-    result = fr.solve(column(1.2), loads(6), fr.Settings(branch="stable"))
-    assert np.all(result.index == 0)
-    assert len(result.critical) == 1
-    for t, tip in zip(result.load_parameter, result.tips[STRIP], strict=True):
-        if t * 1.2 > 1.01:
-            m = brentq(lambda m, t=t: (2 * ellipk(m) / np.pi) ** 2 - t * 1.2, 1e-9, 0.9)
-            height = 2 * np.sqrt(m) / ((np.pi / 2) * np.sqrt(t * 1.2))
-            assert tip[1] == pytest.approx(height, rel=5e-3)
-        else:
-            assert abs(tip[1]) < 1e-5
 
 
 def test_pin_that_is_led_behind_the_clamp_meets_the_elasticas_limit_point():

@@ -38,7 +38,6 @@ class Cantilever:
         )
 
     def solve(self, steps: int, element: str = "exact", elements: int = 1) -> tsm.Result:
-        """Result at equal load parameters."""
         structure = self.structure(element, elements)
         return tsm.solve(structure, np.linspace(1 / steps, 1, steps), throw=False)
 
@@ -56,7 +55,6 @@ class Cantilever:
 
 
 def ks(friction: float, section: tsm.Section = KS, face: float = 0.0, radius: float = 0.0) -> Cantilever:
-    """Cantilever of Konyukhov and Schweizerhof with friction."""
     path = ((1.0, -face - radius), LAST)
     return Cantilever(section=section, friction=friction, path=path, face=face, radius=radius)
 

@@ -17,7 +17,6 @@ CLAMP = tsm.Support(beam="b", end="start")
 
 
 def steps(count):
-    """Equal load parameters."""
     return np.arange(1, count + 1) / count
 
 
@@ -33,7 +32,6 @@ def beam(name, start, end, *, section=KS, elements=None, element="exact", **more
 
 
 def raised(x, depth):
-    """Path of a pin that moves straight up."""
     return ((x, 0.0), (x, depth))
 
 
@@ -61,7 +59,6 @@ def kinds(result):
 
 
 def when(result, kind):
-    """Load parameters of the events of a kind."""
     return [event.load_parameter for event in result.events if event.kind is kind]
 
 
@@ -106,6 +103,5 @@ def leaning():
 
 
 def as_mixed(structure):
-    """The same structure in `mixed` elements."""
     beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
     return replace(structure, beams=beams)

@@ -69,16 +69,15 @@ def test_strain_energy_is_the_work_of_the_pin(element):
     assert gained == pytest.approx(weight @ power[1:-1] / 4, rel=1e-9 if element in ENERGETIC else 5e-3)
 
 
-@pytest.mark.parametrize(("element", "bound"), [("mixed", 2e-5), ("exact", 1e-11)])
-def test_one_short_element_among_long_ones_changes_nothing(element, bound):
+def test_one_short_element_among_long_ones_changes_nothing():
     """In the middle of the pin's way, a millionth of the others."""
     nodes = tuple(np.union1d(np.arange(1, 10) / 10, 0.75 + np.array([0.0, 1e-7])))
     plain = cantilever(KS_PATH, section=KS, element="exact")
     graded = replace(
-        plain, beams=(replace(plain.beams[0], element=element, elements=len(nodes) + 1, nodes=nodes),)
+        plain, beams=(replace(plain.beams[0], element="mixed", elements=len(nodes) + 1, nodes=nodes),)
     )
     found, exact = (tsm.solve(structure, steps(20)).contacts["p0->b"].force for structure in (graded, plain))
-    assert found == pytest.approx(exact, abs=bound * exact.max())
+    assert found == pytest.approx(exact, abs=2e-5 * exact.max())
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
@@ -142,7 +141,6 @@ def test_march_and_solve_agree_and_pass_throughs_are_listed():
 
 
 def test_a_result_can_be_pickled():
-    """Processes solve many structures and hand their results back."""
     result = tsm.solve(pressed("exact"), [0.5, 1.0])
     other = pickle.loads(pickle.dumps(result))  # noqa: S301 - its own
     assert repr(other) == repr(result)

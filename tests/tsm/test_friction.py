@@ -17,7 +17,6 @@ SLIP, STICK = TURNS = tsm.EventKind.SLIP, tsm.EventKind.STICK
 
 
 def turns(result):
-    """Where the contact sticks or slips."""
     return [(event.kind, event.load_parameter) for event in result.events if event.kind in TURNS]
 
 
@@ -97,7 +96,6 @@ def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks():
 @pytest.mark.slow
 @pytest.mark.parametrize("first", [0, 10])
 def test_drawn_cantilevers_with_friction(first):
-    """The command ``python -m tests.fuzz cantilevers 0 500`` judges more."""
     found = [verdict(seed) for seed in range(first, first + 10)]
     assert not [item for item in found if item.wrong]
     right = {tsm.Status.COMPLETED.name, tsm.Status.END_CONTACT.name}
@@ -111,6 +109,7 @@ MENDED = {
 """Cantilevers that were answered wrongly, and why."""
 
 
+@pytest.mark.slow_at("351")
 @pytest.mark.parametrize("seed", MENDED)
 def test_drawn_cantilevers_that_once_failed(seed):
     found = verdict(seed)
@@ -127,7 +126,6 @@ def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact():
 
 
 def test_a_load_along_a_beam_works_too():
-    """What pin and load do is stored or dissipated."""
     structure = replace(ks(0.3), path=((1.0, 0.0), (0.8, 0.1))).structure()
     load = tsm.LineLoad(beam="beam", force=((0.0, -5.0 * structure.beams[0].section.EI),))
     result = tsm.solve(replace(structure, line_loads=(load,)), np.ones(1))
@@ -135,6 +133,7 @@ def test_a_load_along_a_beam_works_too():
     assert balance(result) <= 1e-10
 
 
+@pytest.mark.slow
 def test_a_slip_of_a_very_stiff_beam_ends_once():
     """The round-off of a slip rate, times the stiffness, is a force that leaves the cone: the stick is no slip for a moment."""
     section = tsm.Section(EA=1e11, GA=1e11, EI=1.0)

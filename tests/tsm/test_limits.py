@@ -32,10 +32,6 @@ def on_hook(**load):
     return lambda: hook(line_loads=(tsm.LineLoad(**given),))
 
 
-def at_tip(**load):
-    return lambda: tsm.Load(beam="b", end="end", **load)
-
-
 def pair(**changes):
     return lambda: tsm.ContactPair(**{"node": "p", "beam": "b", **changes})
 
@@ -61,24 +57,18 @@ BAD = {
     "negative section": (lambda: tsm.Section(EA=1.0, GA=-1.0, EI=1.0), "must be positive"),
     "large section": (lambda: tsm.Section.rectangle(width=1.0, height=1e200, youngs_modulus=1.0, shear_modulus=1.0), r"EI = .*: must be positive and finite"),
     "support that is free and moves": (lambda: tsm.Support(beam="b", end="end", rotation=None, onward=((0.0, 0.0, 0.1),)), "must be zero where the component is free"),
-    "large force": (at_tip(force=(1e60, 0.0)), r"Load\(b\.end\)\.force = "),
-    "stage of a load": (at_tip(stage=-1), "stage = -1"),
+    "stage of a load": (lambda: tsm.Load(beam="b", end="end", stage=-1), "stage = -1"),
     "point load beside a node": (lambda: hook(loads=(tsm.Load(beam="b", arc=0.4),)), "must be a node, see Beam"),
-    "line load past the end": (on_hook(end=2.0), "must be at most the length"),
     "line load of nothing": (on_hook(force=()), "must hold pairs of finite numbers"),
     "curved beam of the paper": (solved(replace(hook(element="timoshenko"), line_loads=())), BY_THE_PAPER),
     "mixed and exact": (solved(BOTH), r'Beam\(low\).element = .mixed.: must be "exact" as of other beams here'),
-    "far pin": (lambda: tsm.Pin(name="p", path=((0, 0), (1e60, 0))), r"Pin\(p\)\.path = "),
-    "pin at rest in a stage": (lambda: tsm.Pin(name="p", path=((1, 0),), onward=(((1, 0), (2, 0)),)), "must not repeat a point"),
     "pin without a point": (lambda: tsm.Pin(name="p", path=(), onward=((),)), "must have at least one point"),
     "pin behind the surface": (solved(cantilever(((0.8, 0.1), (0.8, 0.2)))), r"side = 'right': the node starts at \(0.8, 0.1\), 0.1 behind"),
     "friction": (pair(friction=-0.1), r"p->b.friction = .*: must lie between 0 and 100"),
-    "friction of the paper": (solved(cantilever(raised(0.8, 0.1), element="timoshenko", friction=0.3)), r'friction = 0.3: elements "timoshenko" have contacts without friction only'),
     "friction on a taper": (pair(**FACE, friction=0.3), "must be 0 on a surface with an end_offset"),
     "steep face": (lambda: pushed(offset=0.04, end_offset=2.0), "must differ from offset by less than the length"),
     "face of a straight beam": (solved(replace(pushed(offset=0.04, end_offset=0.02), line_loads=(), beams=(STRAIGHT,))), "belongs to a beam that tapers or has elements"),
     "no such beam": (structure(contacts=(tsm.ContactPair(node="p0", beam="x"),)), "beam = 'x': names no beam"),
-    "no such pin": (structure(contacts=(tsm.ContactPair(node="x", beam="b"),)), "names no pin"),
     "itself": (structure(contacts=(tsm.ContactPair(node="b.end", beam="b"),)), "does not touch itself"),
     "hinge on nothing": (solved(FREE_JOINT), r"Hinge\(b.end\): the joint turns freely"),
     "spring that pushes": (lambda: tsm.Spring(beam="b", end="end", y=-2.0), "y = -2"),

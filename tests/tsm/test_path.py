@@ -59,7 +59,6 @@ def test_a_perfect_column_ends_at_its_first_critical_load():
 
 
 def pressed(element, elements, *, load, x=0.8, rise=1e-300):
-    """A column under a pin that rests on its side."""
     free = column(load, element, elements)
     pin = tsm.Pin(name="p", path=((x, 0.0), (x, rise)))
     return replace(free, pins=(pin,), contacts=(tsm.ContactPair(node="p", beam="c"),))

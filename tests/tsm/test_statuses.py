@@ -112,11 +112,6 @@ def test_a_contact_that_begins_on_a_held_end(path, turn, element):
         )
 
 
-def test_a_pin_pulled_over_the_clamp_is_never_reported_as_done():
-    result = tsm.solve(cantilever(((0.5, 0.0), (0.5, 0.01), (-0.5, 0.01))), TENTHS, throw=False)
-    assert result.status is not Status.COMPLETED
-
-
 def test_two_slips(monkeypatch):
     """The check by rates is replaced by one that admits both slips."""
     monkeypatch.setattr(

@@ -13,7 +13,6 @@ from tests.tsm.structures import CLAMP, beam, hook, leaning
 
 
 def heavy_column(weight, element, elements):
-    """A clamped column under its weight, nearly without stretch."""
     section = tsm.Section(EA=1e9, GA=1e9, EI=1.0)
     return tsm.Structure(
         beams=(beam("b", (0, 0), (0, 1), section=section, elements=elements, element=element),),
@@ -69,7 +68,7 @@ def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
         hinges=(tsm.Hinge(beam="bar", end="end"),),
         line_loads=(tsm.LineLoad(beam="mast", force=((0.0, -load),)),),
     )
-    (snap,) = tsm.solve(structure, np.linspace(0.1, 1, 5), tsm.Settings(branch="stable")).events
+    (snap,) = tsm.solve(structure, [0.5, 1.0], tsm.Settings(branch="stable")).events
     assert snap.load_parameter * load == pytest.approx(limit, rel=1e-8)
     # the fall begins a little beyond the limit
     assert snap.released == pytest.approx(potential(fold) - potential(rest), rel=1e-3)

@@ -19,12 +19,10 @@ SECTION, LENGTH = SECTIONS["4.1"]
 
 
 def cantilever(*paths, section=KS, element="exact", **more):
-    """Cantilever of Konyukhov and Schweizerhof, of one exact element."""
     return structures.cantilever(*paths, section=section, element=element, **more)
 
 
 def square(height):
-    """A square section with E = 1 and nu = .3."""
     return tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
 
 

@@ -86,7 +86,6 @@ def test_41_at_60_depths_and_its_slip_off(x, stated):
 
 
 def test_double_beam_stages(stated):
-    """Every stage: single rod, coupled rods, single rod, nothing."""
     scene, bound = load_scene("double-beam"), 1e-8
     double = tsm.solve(to_structure(scene, element="exact"), steps(76))
     upper, tip, lower = (

@@ -32,7 +32,6 @@ SLIP_OFF = (1.7814439389, 1.6861593947, 1.4716026278, 1.2107350431, 1.0524732309
 
 
 def mixed(path, *, section="4.1", elements=18, element="mixed"):
-    """Cantilever of `mixed` elements with a section of [P] under one pin."""
     stiffness, length = SECTIONS[section]
     return cantilever(tuple(path), section=stiffness, length=length, elements=elements, element=element)
 

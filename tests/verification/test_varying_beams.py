@@ -86,12 +86,9 @@ CASES = {
 }
 
 
-SLOW = [f"{case}-{key}" for case in ("pin", "face") for key in list(KEYS)[:-1]]
-
-
-@pytest.mark.slow_at(*SLOW)
-@pytest.mark.parametrize("key", KEYS)
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    ("case", "key"), [*(("tip load", key) for key in KEYS), ("pin", "all"), ("face", "all")]
+)
 def test_exact_against_shooting(case, key):
     """Position and angle of the tip, force and moment at the clamp, force and place of the contact, all of the order 1."""
     given = {**KEYS[key], **CASES[case]}

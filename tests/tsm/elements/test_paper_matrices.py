@@ -64,7 +64,6 @@ def derived(formulation):
 
 
 def in_symbols(function, shear):
-    """The code's own matrix and its derivative in a, evaluated with symbols."""
     p = Properties(l0, 0, l0, 1, EI, 12 * shear / l0**2)
     return tuple(sp.Matrix(part) for part in function(p, a / l0))
 
@@ -90,7 +89,6 @@ def table(formulation):
 
 
 def judged(correct, printed):
-    """Verdict on a printed expression."""
     ratio = sp.cancel(printed / correct)
     if ratio == 1:
         return "same"
