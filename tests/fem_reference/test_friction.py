@@ -46,10 +46,7 @@ RUBBED = {
 @pytest.mark.slow_at("round pin on a face")
 @pytest.mark.parametrize("case", RUBBED)
 def test_strip_with_friction_is_the_rod_at_every_load_parameter(case):
-    """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured.
-
-    On a face T has the lever ``h / 2``, whatever the radius.
-    """
+    """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured."""
     mu, changes = RUBBED[case]
     t = loads(2 if "mesh" in changes else 20)
     result, contact = rubbed(mu, t, **changes)

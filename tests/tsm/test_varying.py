@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, beam, hook, leaning
+from tests.tsm.structures import CLAMP, THIN, beam, hook, leaning
 
 
 def heavy_column(weight, element, elements):
@@ -87,3 +87,16 @@ def test_straight_mixed_beams_stand_beside_varying_ones():
         assert result.index.tolist() == [0, 0]
         assert (result.deformation is None) == (element == "exact")
     assert np.abs(np.subtract(*found)).max() <= 2e-6
+
+
+def test_a_force_inside_a_beam_bends_it_as_a_force_at_the_end_of_its_half():
+    whole, half = (
+        beam("b", (0, 0), (1, 0), section=THIN).divided(0.5),
+        beam("b", (0, 0), (0.5, 0), section=THIN),
+    )
+    loads = (tsm.Load(beam="b", arc=0.5, force=(0.0, 3.0)), tsm.Load(beam="b", end="end", force=(0.0, 3.0)))
+    bent, alone = (
+        tsm.solve(tsm.Structure(beams=(one,), supports=(CLAMP,), loads=(load,)), [1.0]).shape("b", 0)[1]
+        for one, load in zip((whole, half), loads, strict=True)
+    )
+    assert np.abs(bent - alone).max() <= 1e-13

@@ -74,10 +74,7 @@ def test_slip_off_displacements(x, exact, stated):
 @pytest.mark.parametrize("section", SECTIONS)
 @pytest.mark.parametrize("element", ["mixed", "exact"])
 def test_no_critical_area(element, section, stated):
-    """Around the places of 11 elements' nodes, ten depths each: the same tolerance everywhere, no cut-back.
-
-    One and eleven exact elements agree. Their contact force turns no further from one position to the next than these are apart.
-    """
+    """Around the places of 11 elements' nodes, ten depths each: the same tolerance everywhere, no cut-back."""
     length = SECTIONS[section][1]
     exact, count = element == "exact", 0
     every = list(places(11, length, extra=(0.25, 0.75) if exact else ()))

@@ -141,10 +141,7 @@ def test_contact_stiffness_near_an_end():
 
 
 def force_errors(formulation, near, end, samples=30):
-    """Median error of the element forces in double precision, at the deformations of the element's own basic system.
-
-    The deformations of given forces are found in exact arithmetic and rounded to the last bit; the position is a double.
-    """
+    """Median error of the element forces in double precision, at the deformations of the element's own basic system."""
     function = FORMULATIONS[formulation].correct
     rng, errors = np.random.default_rng(15), []
     for _ in range(samples):
