@@ -34,8 +34,6 @@ COMPUTED = {
     "friction.{}": "rod elastica exact",
     "friction.solid-{}x{}": "25x1 50x2 100x4",
     "ks.mixed-{}": "5 10 20 40 200",
-    "mixed.roll-up-order-{}": "1 2",
-    "mixed.roll-up-{}": "1 2",
     "paper.tolerance-{}": "euler-bernoulli-simple euler-bernoulli-cantilever timoshenko",
     "paper.{}": "reproduced in-direction not-reproduced open",
     "sliding.places-{}": "4.1 4.2 4.3",

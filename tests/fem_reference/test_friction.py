@@ -16,7 +16,6 @@ from tests.fem_reference.conftest import (
     make_problem,
     pressed,
     support,
-    upper_on_lower,
 )
 from tests.oracles.elastica import three_point_limit
 
@@ -38,23 +37,16 @@ def rubbed(
     return result, result.contacts[PAIR]
 
 
-FACE = {"surface": "face"}
 RUBBED = {
     "mu .3, coarse": (0.3, {"mesh": (20, 1)}),
-    "mu .1": (0.1, {}),
-    "mu .5": (0.5, {}),
-    "face": (0.3, FACE),
-    "round pin on a face": (0.3, {"radius": 0.05} | FACE),
+    "round pin on a face": (0.3, {"radius": 0.05, "surface": "face"}),
 }
 
 
-@pytest.mark.slow_at("mu .1", "mu .5", "face", "round pin on a face")
+@pytest.mark.slow_at("round pin on a face")
 @pytest.mark.parametrize("case", RUBBED)
 def test_strip_with_friction_is_the_rod_at_every_load_parameter(case):
-    """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured.
-
-    On a face T has the lever ``h / 2``, whatever the radius.
-    """
+    """Forces within 2e-3 and arc positions within 3e-4, with the linear law of the rod; 1.5e-3 and 2.5e-4 measured."""
     mu, changes = RUBBED[case]
     t = loads(2 if "mesh" in changes else 20)
     result, contact = rubbed(mu, t, **changes)
@@ -79,22 +71,9 @@ def test_strip_with_friction_is_the_rod_at_every_load_parameter(case):
 
 
 @pytest.mark.slow
-def test_friction_changes_the_strip_of_the_scenes_material_as_it_changes_the_rod():
-    """Saint Venant's law is softer than the rod's by 3.6e-3 at the end, with friction and without; friction differs by 5e-4."""
-    ratios = []
-    for mu in (0.0, 0.3):
-        path = [[1.0, 0.0], [0.0, 2 / np.pi]]
-        rod = rod_with_friction(path, friction=mu, EA=EA, GA=GA, EI=EI, length=1.0)
-        ratios.append(rubbed(mu, 1, material="st-venant-kirchhoff")[1].force[-1] / rod.magnitude[-1])
-    assert ratios[0] - 1 == pytest.approx(-3.6e-3, abs=1e-4)
-    assert ratios[1] == pytest.approx(ratios[0], rel=5e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("radius", [0.0, 0.05])
-def test_answer_does_not_depend_on_the_load_steps(radius):
+def test_answer_does_not_depend_on_the_load_steps():
     """Force and position within 1e-10; dissipated energy within 1e-4 of 80 load parameters; even with steps of .5 at most."""
-    values = {"radius": radius, "mesh": (30, 1), "surface": "face"}
+    values = {"radius": 0.05, "mesh": (30, 1), "surface": "face"}
     many = rubbed(0.3, 80, **values)[1]
     large = fr.Settings(first_step=0.5, largest_departure=0.9)
     for n, settings, energy in ((10, None, 1e-4), (1, None, 1e-4), (1, large, 0.1)):
@@ -103,8 +82,7 @@ def test_answer_does_not_depend_on_the_load_steps(radius):
         assert few.arc_position[-1] == pytest.approx(many.arc_position[-1], abs=1e-10)
         assert few.dissipated[-1] == pytest.approx(many.dissipated[-1], rel=energy)
         # In stick the stretch of the rolled length is the mean of both ends of a step.
-        allowed = 3e-6 if radius else 1e-8
-        np.testing.assert_allclose(slip_changes(few), slip_changes(many), rtol=0, atol=allowed)
+        np.testing.assert_allclose(slip_changes(few), slip_changes(many), rtol=0, atol=3e-6)
 
 
 def test_first_touch_within_a_step_is_located():
@@ -122,14 +100,12 @@ def test_first_touch_within_a_step_is_located():
     assert once.direction[-1] == often.direction[-1] == -1
 
 
-@pytest.mark.slow_at("0.03-face-1e-10")
-@pytest.mark.parametrize(("radius", "surface", "penetration"), [(0.0, "axis", None), (0.03, "face", 1e-10)])
-def test_pin_that_rubs_to_and_fro(radius, surface, penetration):
+def test_pin_that_rubs_to_and_fro():
     """Forces stay in the cone and on it in slip; energy is dissipated only; the second stroke repeats the first."""
-    y = (-0.01 if surface == "face" else 0.0) - radius
+    y = -0.04
     path = ((0.8, y), (0.8, y + 0.05), (0.85, y + 0.05), (0.75, y + 0.05), (0.85, y + 0.05))
-    values = {"radius": radius, "surface": surface, "penetration": penetration}
-    result, contact = rubbed(0.3, 24, path=path, mesh=(40, 1), **values)
+    values = {"radius": 0.03, "surface": "face", "penetration": 1e-10}
+    result, contact = rubbed(0.3, 12, path=path, mesh=(20, 1), **values)
     cone = 0.3 * contact.normal_force
     assert np.all(np.abs(contact.tangential_force) <= cone * (1 + 1e-8))
     assert np.all(result.index == -1)
@@ -142,8 +118,7 @@ def test_pin_that_rubs_to_and_fro(radius, surface, penetration):
     first, second = (np.argmin(np.abs(result.load_parameter - t)) for t in (1 / 3, 1.0))
     assert contact.force[second] == pytest.approx(contact.force[first], rel=1e-9)
     assert contact.slip[second] == pytest.approx(contact.slip[first], abs=1e-5)
-    if penetration is not None:
-        assert np.abs(contact.gap).max() < 1e-10
+    assert np.abs(contact.gap).max() < 1e-10
 
 
 def test_strip_rolls_on_a_round_pin_that_sticks():
@@ -161,14 +136,14 @@ def test_strip_rolls_on_a_round_pin_that_sticks():
     assert np.ptp(contact.slip[stuck]) == 0
 
 
-@pytest.mark.parametrize("mu", [0.1, 0.3])
-def test_limit_load_of_three_point_bending(mu):
+def test_limit_load_of_three_point_bending():
     """Elastica drawn in between rough supports: largest ``V a^2 / EI`` per side, within 1e-4; 4e-5 measured.
 
     At first the beam sticks. The shortening ``3 d^2 / 5 a`` of a cantilever with the deflection d strains it, and it slips where
     ``EA 3 d^2 / (5 a^2) = mu 3 EI d / a^3``, at ``d = 5 mu I / (A a)``. The force there is 37 times the round-off of a nodal force
     for mu = .1.
     """
+    mu = 0.1
     most, height = three_point_limit(mu)[0]
     section = {"height": 0.01, "poissons_ratio": 0.0, "material": "biot-linear"}
     half = held(support(), end=(1.6, 0.0), mesh=(80, 1), **section)
@@ -178,21 +153,3 @@ def test_limit_load_of_three_point_bending(mu):
     ((slips, way),) = slip_changes(contact)
     assert way == 1
     assert slips * height == pytest.approx(5 * mu * 0.01**2 / 12, rel=1e-2)
-
-
-def test_end_of_a_strip_rubs_on_another():
-    """Steps do not matter, and action and reaction cancel: the reactions of both clamps balance the load."""
-    once, often = (fr.solve(upper_on_lower((20, 1), friction=0.5), loads(n)) for n in (1, 40))
-    (a,), (b,) = once.contacts.values(), often.contacts.values()
-    assert a.force[-1] == pytest.approx(b.force[-1], rel=1e-9)
-    assert a.slip[-1] == pytest.approx(b.slip[-1], abs=1e-5)
-    total = sum(often.supports[f"{name}.start"].force[-1] for name in ("upper", "lower"))
-    np.testing.assert_allclose(total, [0.0, 4e-3], rtol=0, atol=1e-9)
-    assert b.tangential_force[-1] / b.normal_force[-1] == pytest.approx(0.5, rel=1e-9)
-
-
-def test_friction_ends_with_a_status_when_the_contact_is_lost():
-    """A pin that drags a rough strip passes its tip."""
-    path = ((0.9, 0.0), (0.9, 0.02), (1.2, 0.02))
-    scene = make_problem(path=path, contact={"friction": 0.3, "penalty": None}, mesh=(20, 1))
-    assert fr.solve(scene, loads(10), throw=False).status is fr.Status.LOST_CONTACT

@@ -14,7 +14,6 @@ from tests.fem_reference.conftest import (
     NU,
     PAIR,
     STRIP,
-    TIP,
     B,
     E,
     H,
@@ -31,12 +30,11 @@ SMALL = 1e-6 * EI
 KEPT = {"clamped": ("start",)}
 
 
-def deflection(moment, shear, height=lambda _: H, width=lambda _: B):
+def deflection(moment, shear):
     """Deflection by virtual work: moment and shear of the load times those of a unit force at the tip."""
 
     def work(x):
-        bent = moment(x) * (1 - x) / (E * width(x) * height(x) ** 3 / 12)
-        return bent + shear(x) / (GA / B / H * width(x) * height(x))
+        return moment(x) * (1 - x) / EI + shear(x) / GA
 
     points = [0.3, 0.437, 0.5, 0.73]
     return quad(work, 0, 1, points=points, epsabs=0, epsrel=1e-10, limit=200)[0]
@@ -56,18 +54,15 @@ def point(at):
 
 
 INSIDE = {
-    "line": line(0, 1),
     "part": line(0.3, 0.73),
     "point": point(0.437),
-    "point between elements": point(0.5),
 }
 
 
-@pytest.mark.parametrize("turned", [0.0, 0.9])
 @pytest.mark.parametrize("name", INSIDE)
-def test_a_load_inside_a_strip_deflects_it_as_a_beam_with_shear(name, turned):
+def test_a_load_inside_a_strip_deflects_it_as_a_beam_with_shear(name):
     place, moment, shear = INSIDE[name]
-    Q = rotation(turned)
+    Q = rotation(0.9)
     force = tuple(map(float, Q @ [0.0, -SMALL]))
     inner = (
         fr.LineLoad(force=(force,), strip=STRIP, **place)
@@ -81,33 +76,6 @@ def test_a_load_inside_a_strip_deflects_it_as_a_beam_with_shear(name, turned):
     reaction = result.supports[CLAMP]
     assert reaction.force[-1] @ Q == pytest.approx([0, SMALL * shear(0.0)], rel=1e-6, abs=1e-5 * SMALL)
     assert reaction.moment[-1] == pytest.approx(SMALL * moment(0.0), rel=1e-9)
-
-
-@pytest.mark.parametrize(("end_height", "end_width"), [(0.01, None), (0.03, 0.01), (None, 0.005)])
-def test_a_tapered_strip_deflects_as_its_sections_bend(end_height, end_width):
-    """With its own weight, whose force per length is quadratic, at h/L = .02: within 2e-4."""
-    h1, b1 = end_height or H, end_width or B
-    height, width = (lambda x: H + x * (h1 - H)), (lambda x: B + x * (b1 - B))
-    density = SMALL / (B * H)
-    area = [B * H, B * (h1 - H) + H * (b1 - B), (h1 - H) * (b1 - B)]
-    weight = fr.LineLoad(strip=STRIP, force=tuple((0.0, -density * a) for a in area))
-
-    def shear(x):
-        return sum(a * (1 - x ** (k + 1)) / (k + 1) for k, a in enumerate(area))
-
-    def moment(x):
-        return sum(
-            a * ((1 - x ** (k + 2)) / (k + 2) - x * (1 - x ** (k + 1)) / (k + 1)) for k, a in enumerate(area)
-        )
-
-    result = fr.solve(held(weight, end_height=end_height, end_width=end_width, **KEPT), loads(1))
-    expected = -density * deflection(moment, shear, height, width)
-    assert result.tips[STRIP][-1, 1] == pytest.approx(expected, rel=2e-4)
-    assert result.supports[CLAMP].force[-1, 1] == pytest.approx(density * shear(0.0), rel=1e-10)
-    forces = fr.section_forces(result, STRIP, 0)
-    x = forces.stations[10]
-    assert forces.V[10] == pytest.approx(-density * shear(x), rel=1e-6)
-    assert forces.M[10] == pytest.approx(-density * moment(x), rel=1e-6)
 
 
 def test_a_face_contact_is_on_the_face_of_the_taper():
@@ -125,21 +93,6 @@ def test_a_face_contact_is_on_the_face_of_the_taper():
     assert x / y == pytest.approx(-np.tan(-0.005), rel=2e-3)  # normal to the face, which falls by .005
 
 
-def test_springs_to_the_ground_carry_what_they_are_loaded_by():
-    """A strip that only springs hold: forces by hand, and a stable state."""
-    k = 3 * EI
-    springs = (
-        fr.Spring(strip=STRIP, end="start", stiffness=(k, k, 0.0)),
-        fr.Spring(strip=STRIP, end="end", stiffness=(0.0, 2 * k, 0.0)),
-    )
-    result = fr.solve(held(*springs, fr.LineLoad(strip=STRIP, force=((0.0, -SMALL),))), loads(1))
-    for end in (CLAMP, TIP):
-        assert result.springs[end].force[-1, 1] == pytest.approx(SMALL / 2, rel=1e-9)
-    assert float(result.tips[STRIP][-1, 1]) == pytest.approx(-SMALL / 4 / k, rel=1e-7)
-    assert result.index[-1] == 0
-    assert not result.supports
-
-
 def test_a_rotational_spring_turns_with_its_moment():
     """By any angle: a strip on a hinge with a spring, turned by a moment of 4 rad times its stiffness."""
     k = 1e-3 * EI
@@ -151,49 +104,37 @@ def test_a_rotational_spring_turns_with_its_moment():
     assert angle == pytest.approx(4.0 + 0.002, abs=1e-7)  # half of the strip's own turn of .004
 
 
-@pytest.mark.parametrize("stiffness", [0.0, 5.0, np.inf])
-def test_a_joint_of_two_strips_bears_its_springs_moment(stiffness):
-    """Two clamped halves, loaded at a hinge, without and with a spring, or at a rigid joint: by beam theory with shear."""
-    a, part = 0.5, {"mesh": (25, 2)}
+def test_a_joint_of_two_strips_bears_its_springs_moment():
+    a, stiffness, part = 0.5, 5.0, {"mesh": (25, 2)}
     halves = (
         make_strip(name="a", end=(a, 0.0), **part),
         make_strip(name="b", start=(a, 0.0), clamped=("end",), **part),
     )
-    hinged = {} if np.isinf(stiffness) else {"hinged": ("b.start",)}
-    springs = {"stiffness": (EI * stiffness,)} if 0 < stiffness < np.inf else {}
-    joint = fr.Joint(ends=("a.end", "b.start"), **hinged, **springs)
+    joint = fr.Joint(ends=("a.end", "b.start"), hinged=("b.start",), stiffness=(EI * stiffness,))
     pushed = fr.EndLoad(strip="a", force=(0.0, -SMALL))
     result = fr.solve(fr.SolidProblem(strips=halves, joints=(joint,), loads=(pushed,)), loads(1))
     # each half: force SMALL/2 and moment m = c 2 turn against its turn at the joint
     c = 2 * stiffness * a
-    m = SMALL * a / 4 * (1.0 if np.isinf(c) else c / (1 + c))
+    m = SMALL * a / 4 * c / (1 + c)
     expected = SMALL / 2 * a**3 / 3 / EI - m * a**2 / 2 / EI + SMALL / 2 * a / GA
     assert result.tips["a"][-1, 1] == pytest.approx(-expected, rel=2e-4)
     assert result.supports["a.start"].moment[-1] == pytest.approx(SMALL / 2 * a - m, rel=1e-7)
     np.testing.assert_allclose(result.tips["a"][-1], fr.axis_line(result, "b", -1)[0], atol=1e-12)
 
 
-turns = pytest.mark.parametrize("turn", [1e-3, 1.0, -2.5])
-
-
 def arc(turn, **changes):
-    """A strip of length 1."""
     chord = np.sin(turn / 2) / (turn / 2)
     return {"start": (0.3, 0.2), "end": (0.3 + 0.6 * chord, 0.2 + 0.8 * chord), "turn": turn} | changes
 
 
-@turns
+@pytest.mark.parametrize("turn", [1e-3, -2.5])
 def test_a_moment_straightens_a_curved_strip(turn):
     """The moment -EI kappa, up to terms of the order (kappa h)^2, and the strains of the faces; at first the mesh is the arc."""
     t = np.array([1e-9, 1 / 3, 2 / 3, 1.0])
     result = fr.solve(held(load(moment=-EI * turn), material="biot-linear", **KEPT, **arc(turn)), t)
     strip, axis, bent = result.model.problem.strips[0], fr.axis_line(result, STRIP, 0), (turn * H) ** 2
     middle = np.add(strip.start, strip.end) / 2 - (1 - np.cos(turn / 2)) / turn * np.array([-0.8, 0.6])
-    assert strip.length == pytest.approx(1.0, rel=1e-14)
-    for place, expected in ((0, strip.start), (50, middle), (-1, strip.end)):
-        np.testing.assert_allclose(axis[place], expected, atol=2e-9 * abs(turn) + H**2 * abs(turn) / 12)
-    np.testing.assert_allclose(strip.to_global(strip.placed(np.array([0.5, 0.0]))), middle, atol=1e-13)
-    assert strip.place(strip.placed(np.array([0.37, 0.004]))) == pytest.approx((0.37, 0.004), abs=1e-13)
+    np.testing.assert_allclose(axis[50], middle, atol=2e-9 * abs(turn) + H**2 * abs(turn) / 12)
     straight = np.array(strip.start) + strip.frame[:, 0]
     np.testing.assert_allclose(result.tips[STRIP][-1], straight, atol=1e-7 + bent)
     forces = fr.section_forces(result, STRIP, -1)
@@ -208,28 +149,10 @@ def test_a_moment_straightens_a_curved_strip(turn):
 
 
 @pytest.mark.parametrize(
-    ("clamp", "mesh", "element"), [("rod", (8, 1), "Q2"), ("full", (8, 2), "Q2"), ("rod", (20, 3), "Q1")]
+    ("element", "plane", "clamped"), [("Q2", "strain", ()), ("Q2-full", "stress", ("start",))]
 )
-def test_an_arc_that_is_clamped_at_its_end_is_the_arc_stated_from_there(clamp, mesh, element):
-    """Also where no node is at the middle of the clamped edge."""
-    values = arc(1.2, clamp=clamp, mesh=mesh, element=element)
-    back = values | {"start": values["end"], "end": values["start"], "turn": -1.2}
-    force = (0.3 * EI, -EI)
-    a = fr.solve(held(load(end="start", force=force), clamped=("end",), **values), loads(2))
-    b = fr.solve(held(load(end="end", force=force), clamped=("start",), **back), loads(2))
-    np.testing.assert_allclose(a.supports[TIP].force, -np.outer([0.5, 1.0], force), rtol=1e-8)
-    np.testing.assert_allclose(a.supports[TIP].moment, b.supports[CLAMP].moment, rtol=1e-8)
-    np.testing.assert_allclose(fr.axis_line(a, STRIP, 1), fr.axis_line(b, STRIP, 1)[::-1], atol=1e-9)
-
-
-@pytest.mark.parametrize("element", ["Q2", "Q2-full"])
-@pytest.mark.parametrize("plane", ["stress", "strain"])
-@pytest.mark.parametrize("clamped", [(), ("start",)])
 def test_a_moment_gives_pure_bending_in_small_strain(element, plane, clamped):
-    """The rate at rest is the exact field ``(-x y, x^2 / 2 + nu' y^2 / 2)`` of curvature M / EI, to 1e-10.
-
-    It is extrapolated from four moments. The strip is stocky, since the round-off of its stiffness grows with L/h.
-    """
+    """The rate at rest is the exact field ``(-x y, x^2 / 2 + nu' y^2 / 2)`` of curvature M / EI, to 1e-10."""
     height, modulus = 0.2, {"stress": E, "strain": E / (1 - NU**2)}[plane]
     stiffness = modulus * B * height**3 / 12
     changes = {"element": element, "plane": plane, "clamped": clamped, "mesh": (8, 2), "height": height}
@@ -245,33 +168,6 @@ def test_a_moment_gives_pure_bending_in_small_strain(element, plane, clamped):
     mean = 0.0 if clamped else height**2 / 12
     exact = np.stack([-x * y, x**2 / 2 + nu * (y**2 - mean) / 2], axis=1)
     np.testing.assert_allclose(rate, exact, rtol=0, atol=1e-10 * np.abs(exact).max())
-
-
-def test_a_moment_rolls_the_strip_up():
-    """The tip turns by more than once round: M L / EI to a quarter of the square of twice the face's strain, ``kappa h``."""
-    stiffness, turned = E * B * 0.002**3 / 12, 2.2 * np.pi
-    problem = held(
-        support(), load(moment=turned * stiffness), height=0.002, mesh=(80, 1), material="biot-linear"
-    )
-    result = fr.solve(problem, loads(5))
-    tip = np.array([np.sin(turned), 1 - np.cos(turned)]) / turned
-    np.testing.assert_allclose(result.tips[STRIP][-1], tip, atol=3e-5)
-    line = fr.axis_line(result, STRIP, -1)
-    ahead = np.diff(line[-2:], axis=0)[0]
-    last = np.arctan2(ahead[1], ahead[0]) + turned / 160 / 2
-    assert last == pytest.approx(turned - 2 * np.pi, abs=turned * (turned * 0.002) ** 2 / 4)
-    assert result.supports[CLAMP].moment[-1] == pytest.approx(-turned * stiffness, rel=1e-9)
-
-
-def test_a_pin_goes_on_from_where_it_is_at_constant_speed():
-    pin = fr.Pin(
-        name="p",
-        path=((0.0, 0.0),),
-        onward=(((1.0, 0.0), (1.0, 1.0)), (), ((0.0, 1.0),), ((0.0, 4.0), (1.0, 4.0))),
-    )
-    places = [pin.position(t).tolist() for t in (0.5, 1.0, 1.5, 2.0, 2.7, 3.5, 4.0, 4.375, 4.875)]
-    assert places == [[0, 0], [0, 0], [1, 0], [1, 1], [1, 1], [0.5, 1], [0, 1], [0, 2.5], [0.5, 4]]
-    assert pin.turns == (1.5, 4.75)
 
 
 def staged():

@@ -22,28 +22,23 @@ class Cantilever:
     face: float = 0.0
     radius: float = 0.0
 
-    def structure(self, element: str = "exact", elements: int = 1, *, left: bool = False) -> tsm.Structure:
-        """The cantilever, or its mirror image, in which the pin comes from the left."""
-        up = -1.0 if left else 1.0
+    def structure(self, element: str = "exact", elements: int = 1) -> tsm.Structure:
         beam = tsm.Beam(
             name="beam", start=(0.0, 0.0), end=(1.0, 0.0), section=self.section, elements=elements, element=element
         )  # fmt: skip
         pair = tsm.ContactPair(
-            node="pin", beam="beam", side="left" if left else "right",
+            node="pin", beam="beam", side="right",
             offset=self.face + self.radius, friction=self.friction, radius=self.radius,
         )  # fmt: skip
         return tsm.Structure(
             beams=(beam,),
             supports=(tsm.Support(beam="beam", end="start"),),
-            pins=(tsm.Pin(name="pin", path=tuple((x, up * y) for x, y in self.path)),),
+            pins=(tsm.Pin(name="pin", path=self.path),),
             contacts=(pair,),
         )
 
-    def solve(
-        self, steps: int, element: str = "exact", elements: int = 1, *, left: bool = False
-    ) -> tsm.Result:
-        """Result at equal load parameters."""
-        structure = self.structure(element, elements, left=left)
+    def solve(self, steps: int, element: str = "exact", elements: int = 1) -> tsm.Result:
+        structure = self.structure(element, elements)
         return tsm.solve(structure, np.linspace(1 / steps, 1, steps), throw=False)
 
     def exact(self, steps: int) -> tuple[FrictionPath, np.ndarray]:
@@ -60,7 +55,6 @@ class Cantilever:
 
 
 def ks(friction: float, section: tsm.Section = KS, face: float = 0.0, radius: float = 0.0) -> Cantilever:
-    """Cantilever of Konyukhov and Schweizerhof with friction."""
     path = ((1.0, -face - radius), LAST)
     return Cantilever(section=section, friction=friction, path=path, face=face, radius=radius)
 

@@ -17,7 +17,6 @@ CLAMP = tsm.Support(beam="b", end="start")
 
 
 def steps(count):
-    """Equal load parameters."""
     return np.arange(1, count + 1) / count
 
 
@@ -33,7 +32,6 @@ def beam(name, start, end, *, section=KS, elements=None, element="exact", **more
 
 
 def raised(x, depth):
-    """Path of a pin that moves straight up."""
     return ((x, 0.0), (x, depth))
 
 
@@ -61,7 +59,6 @@ def kinds(result):
 
 
 def when(result, kind):
-    """Load parameters of the events of a kind."""
     return [event.load_parameter for event in result.events if event.kind is kind]
 
 
@@ -106,32 +103,5 @@ def leaning():
 
 
 def as_mixed(structure):
-    """The same structure in `mixed` elements."""
     beams = tuple(replace(beam, element="mixed", elements=len(beam.parts) - 1) for beam in structure.beams)
     return replace(structure, beams=beams)
-
-
-def two_beams(elements=1, lower="exact"):
-    """A tip that meets a second beam, a pin on each, one of them with an offset."""
-    return tsm.Structure(
-        beams=(
-            beam("upper", (0.0, 0.0), (1.0, 0.0), elements=elements),
-            beam("lower", (0.0, -0.1), (1.2, -0.1), elements=elements, element=lower),
-        ),
-        supports=(tsm.Support(beam="upper", end="start"), tsm.Support(beam="lower", end="start")),
-        pins=(
-            tsm.Pin(name="p", path=((0.7, 0.01), (0.65, -0.25))),
-            tsm.Pin(name="q", path=((0.4, -0.1), (0.4, -0.08))),
-        ),
-        contacts=(
-            tsm.ContactPair(node="p", beam="upper", side="left", offset=0.01),
-            tsm.ContactPair(node="q", beam="lower"),
-            tsm.ContactPair(node="upper.end", beam="lower", side="left", offset=0.003),
-        ),
-    )
-
-
-def two_pins(elements=1):
-    """Two pins on one beam, from both sides."""
-    both = cantilever(((0.5, -0.01), (0.5, 0.2)), ((0.9, 0.01), (0.9, 0.1)), section=KS, element="exact", elements=elements, offset=0.01)  # fmt: skip
-    return replace(both, contacts=(both.contacts[0], replace(both.contacts[1], side="left")))

@@ -11,7 +11,6 @@ from tsm.elements import CLOSED_FORM, beam
 from tsm.elements.properties import Properties
 
 STEP = 1e-30j
-CHORD = [name for name, kind in CLOSED_FORM.items() if not kind.contact_unknowns]
 
 
 def random_properties(rng, n=None):
@@ -72,11 +71,12 @@ def test_contact_tangent_is_the_derivative_of_its_gradient(name):
             assert np.abs(tangent - tangent.T).max() <= 1e-13 * np.abs(tangent).max()
 
 
-@pytest.mark.parametrize("name", CHORD)
 @pytest.mark.parametrize("l0", [1e-200, 1e200])
-def test_contact_whose_powers_of_the_length_cannot_be_stated_is_not_finite(name, l0):
+def test_contact_whose_powers_of_the_length_cannot_be_stated_is_not_finite(l0):
     p = Properties(l0, 0.0, l0, 1.0, 1.0, 0.1)
-    found = CLOSED_FORM[name].contact.response(p, [0.0] * 6, (-0.3 * l0, 0.1 * l0), 0.3, (0, 0), 1.0, 0.0)
+    found = CLOSED_FORM["timoshenko"].contact.response(
+        p, [0.0] * 6, (-0.3 * l0, 0.1 * l0), 0.3, (0, 0), 1.0, 0.0
+    )
     assert all(np.isnan(part).any() for part in found)
 
 
@@ -104,7 +104,7 @@ def rod_energy(p, theta_i, theta_j, e, points=12):
     return functional(z)
 
 
-@pytest.mark.parametrize("Phi", [0.05, 0.8, 5.0])
+@pytest.mark.parametrize("Phi", [0.05, 5.0])
 @pytest.mark.parametrize(("power", "largest", "order"), [(2, 0.1, 6.0), (1, 0.025, 4.0)])
 def test_energy_is_the_reissner_rods_to_fourth_order(power, largest, order, Phi):
     """Halving the rotations divides the energy's error by 2^6 where the elongation is of second order, by 2^4 where it is of first."""

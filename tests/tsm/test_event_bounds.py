@@ -87,7 +87,7 @@ def test_no_contact_is_so_stiff_that_a_large_residual_is_round_off():
     )
     scale = newton.model.force_scale
 
-    def noisy(noise: float, carried: float = 0.0) -> SimpleNamespace:
+    def noisy(noise, carried=0.0):
         groups = (SimpleNamespace(ends=np.full((6, 1), carried * scale)),)
         return SimpleNamespace(noise=noise * scale, groups=groups)
 
@@ -112,7 +112,7 @@ def test_a_position_passes_from_element_to_element():
         assert 0.0 <= at <= 1.0 or arc < 0.0 or arc > 1.0
 
 
-def test_sizes_of_a_frame_and_of_a_beam_beside_it() -> None:
+def test_sizes_of_a_frame_and_of_a_beam_beside_it():
     """The frame is as large as its diagonal, 5, and the beam as its own length, though it ends where it begins."""
     nodes = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [9.0, 9.0], [9.0, 9.5]])
     lengths = np.array([4.0, 3.0, 2.0])

@@ -7,7 +7,6 @@ import pytest
 
 import tsm
 from tests.fuzz.cantilevers import verdict
-from tests.oracles.elastica import three_point_limit
 from tests.oracles.friction import elastica_with_friction
 from tests.tsm.friction_scenes import LAST, Cantilever, drawn, ks
 from tests.tsm.structures import KS
@@ -17,12 +16,11 @@ STIFF = tsm.Section(EA=1e12, GA=1e12, EI=1.0)
 SLIP, STICK = TURNS = tsm.EventKind.SLIP, tsm.EventKind.STICK
 
 
-def turns(result: tsm.Result) -> list[tuple[tsm.EventKind, float]]:
-    """Where the contact sticks or slips."""
+def turns(result):
     return [(event.kind, event.load_parameter) for event in result.events if event.kind in TURNS]
 
 
-def balance(result: tsm.Result) -> float:
+def balance(result):
     """Largest difference of work and strain energy, dissipation and what jumps release, over the last work."""
     lost = sum(history.friction.dissipated for history in result.contacts.values() if history.friction)
     jumps = [(event.load_parameter, event.released) for event in result.events if event.released]
@@ -30,12 +28,10 @@ def balance(result: tsm.Result) -> float:
     return float(np.abs(result.work - result.strain_energy - lost - released).max() / result.work.max())
 
 
-@pytest.mark.slow_at("0.1")
-@pytest.mark.parametrize("friction", [0.1, 0.3])
-def test_one_exact_element_is_the_elastica_with_friction(friction: float) -> None:
-    result = ks(friction, STIFF).solve(50)
+def test_one_exact_element_is_the_elastica_with_friction():
+    result = ks(0.3, STIFF).solve(20)
     points = np.array([[1.0, 0.0], *((1 - t, t * LAST[1]) for t in result.load_parameter)])
-    exact, contact = elastica_with_friction(points, friction=friction), result.contacts[PAIR]
+    exact, contact = elastica_with_friction(points, friction=0.3), result.contacts[PAIR]
     assert result.status is tsm.Status.COMPLETED
     assert contact.force == pytest.approx(exact.magnitude[1:], rel=1e-9)
     assert contact.arc_position == pytest.approx(exact.arc_position[1:], rel=1e-9)
@@ -47,31 +43,7 @@ def test_one_exact_element_is_the_elastica_with_friction(friction: float) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("face", "radius"), [(0.01, 0.03), (0.0, 0.0)])
-def test_one_exact_element_is_the_rod_with_friction(face: float, radius: float) -> None:
-    scene = ks(0.3, face=face, radius=radius)
-    result, (exact, at) = scene.solve(8), scene.exact(8)
-    contact = result.contacts[PAIR]
-    assert contact.force == pytest.approx(exact.magnitude[at], rel=1e-9)
-    assert contact.friction.tangential == pytest.approx(exact.tangential[at], rel=1e-9)
-    assert contact.friction.normal == pytest.approx(exact.normal[at], rel=1e-9)
-    assert contact.arc_position == pytest.approx(exact.arc_position[at], rel=1e-9)
-    assert contact.friction.slip.tolist() == [exact.state[k].sense for k in at]
-    times = [event.load_parameter for event in exact.events[-2:]]
-    assert [t for _, t in turns(result)] == pytest.approx(times, abs=1e-9)
-
-
-@pytest.mark.slow
-def test_mixed_elements_converge_with_the_fourth_order() -> None:
-    scenes = (("exact", 1), ("mixed", 10), ("mixed", 20), ("mixed", 40))
-    exact, *found = (ks(0.3).solve(10, *elements).contacts[PAIR].force for elements in scenes)
-    errors = [np.abs(force / exact - 1).max() for force in found]
-    assert errors[0] <= 1e-4
-    assert np.diff(np.log2(errors)).max() <= -3.5
-
-
-@pytest.mark.slow
-def test_a_slip_that_has_come_and_gone_within_a_step_is_found() -> None:
+def test_a_slip_that_has_come_and_gone_within_a_step_is_found():
     """A slip between two sticks, whose margins are positive at the end of the step."""
     scene = drawn(14)
     found, exact = turns(scene.solve(1)), [event.load_parameter for event in scene.exact(1)[0].events[-5:]]
@@ -83,9 +55,7 @@ def test_a_slip_that_has_come_and_gone_within_a_step_is_found() -> None:
 CORNER = Cantilever(section=KS, friction=0.3, path=((0.5, 0.0), (0.5, 0.1), (0.6, 0.1), (0.5, 0.1)))
 ROUND = Cantilever(section=KS, friction=0.3, face=0.02, radius=0.03, path=((0.5, -0.05), (0.5, 0.0)))
 WORK = {  # scene, load parameters, elements, largest part of the work that is lost
-    "axis": (ks(0.5), 5, ("exact", 1), 1e-9),
     "face": (ks(0.3, face=0.01), 5, ("exact", 1), 1e-9),
-    "drawn": (drawn(13), 5, ("exact", 1), 1e-9),
     # the trapezium of the slip rate lost 1.7e-5 of the work here; the arc position turns within a step
     "a thick rod that rolls": (drawn(8), 1, ("exact", 1), 1e-12),
     "jumps at nodes": (ks(0.3), 10, ("mixed", 10), 5e-7),
@@ -94,9 +64,9 @@ WORK = {  # scene, load parameters, elements, largest part of the work that is l
 }
 
 
-@pytest.mark.slow_at("axis", "face", "a thick rod that rolls", "jumps at nodes")
+@pytest.mark.slow_at("face", "a thick rod that rolls", "jumps at nodes")
 @pytest.mark.parametrize("name", WORK)
-def test_work_is_stored_or_dissipated(name: str) -> None:
+def test_work_is_stored_or_dissipated(name):
     scene, steps, elements, lost = WORK[name]
     result = scene.solve(steps, *elements)
     assert result.status is tsm.Status.COMPLETED
@@ -104,53 +74,17 @@ def test_work_is_stored_or_dissipated(name: str) -> None:
     assert np.diff(result.contacts[PAIR].friction.dissipated, prepend=0.0).min() >= -1e-15
 
 
-@pytest.mark.slow
-@pytest.mark.long
-def test_a_thousand_cycles_do_not_drift() -> None:
-    """A pin that goes up and down square to the beam, always in contact."""
-    path = ((0.8, 0.0), *(((0.8, 0.5), (0.8, 0.25)) * 1000))
-    structure = Cantilever(section=KS, friction=0.3, path=path).structure()
-    result = tsm.solve(structure, np.array(structure.pins[0].corners[1::2]))
-    force, lost = result.contacts[PAIR].force, result.contacts[PAIR].friction.dissipated
-    assert np.abs(force[1:] / force[1] - 1).max() <= 1e-9
-    assert np.abs(np.diff(lost)[1:] / np.diff(lost)[1] - 1).max() <= 1e-8
-    assert np.diff(lost).min() > 0
-
-
-def test_no_friction_is_the_frictionless_contact() -> None:
+def test_no_friction_is_the_frictionless_contact():
     path = ((1.0, 0.0), (0.8, 0.1))
-    free, little, plain = (
-        replace(ks(friction), path=path).solve(4, "mixed", 8) for friction in (0.0, 1e-6, 0.1)
-    )
+    free, little = (replace(ks(friction), path=path).solve(4, "mixed", 8) for friction in (0.0, 1e-6))
     assert free.contacts[PAIR].friction is None
     assert not len(free.work)
-    force = free.contacts[PAIR].force
-    assert little.contacts[PAIR].force == pytest.approx(force, rel=1e-6)
-    assert np.abs(little.contacts[PAIR].force / force - 1).max() > 1e-9
-    assert np.abs(plain.contacts[PAIR].force / force - 1).max() > 5e-3
-
-
-@pytest.mark.slow_at("0.2")
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_limit_loads_of_three_point_bending(friction: float) -> None:
-    """A half of the beam, its middle held, on a support that rises and goes back."""
-    for back, (greatest, place) in enumerate(three_point_limit(friction)):
-        top = 0.62 if back else place + 0.02
-        path = ((1.0, 0.0), (1.0, top), *(((1.0, place - 0.05),) if back else ()))
-        scene = Cantilever(section=STIFF, friction=friction, path=path).structure()
-        structure = replace(scene, beams=(replace(scene.beams[0], end=(3.0, 0.0)),))
-        (pin,) = structure.pins
-        begin = pin.corners[0] if back else 0.0
-        way = -1 if back else 1
-        here = begin + way * (place - (top if back else 0.0)) / pin.length
-        result = tsm.solve(structure, np.array([here - 1e-3, here, here + 1e-3]))
-        load = -result.supports["beam.start"].force[:, 1]
-        assert load[1] == pytest.approx(greatest, rel=1e-9)
-        assert load[0] < load[1] > load[2]
+    assert little.contacts[PAIR].force == pytest.approx(free.contacts[PAIR].force, rel=1e-6)
+    assert np.abs(little.contacts[PAIR].force / free.contacts[PAIR].force - 1).max() > 1e-9
 
 
 @pytest.mark.slow
-def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
+def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks():
     structure = ks(0.3).structure()
     traced = tsm.trace(structure, arc_length=0.02, steps=400, throw=False)
     assert traced.status is tsm.Status.CONTACT_CHANGED
@@ -161,8 +95,7 @@ def test_arc_length_control_follows_a_slip_and_ends_where_it_sticks() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("first", [0, 10])
-def test_drawn_cantilevers_with_friction(first: int) -> None:
-    """The command ``python -m tests.fuzz cantilevers 0 500`` judges more."""
+def test_drawn_cantilevers_with_friction(first):
     found = [verdict(seed) for seed in range(first, first + 10)]
     assert not [item for item in found if item.wrong]
     right = {tsm.Status.COMPLETED.name, tsm.Status.END_CONTACT.name}
@@ -176,24 +109,23 @@ MENDED = {
 """Cantilevers that were answered wrongly, and why."""
 
 
+@pytest.mark.slow_at("351")
 @pytest.mark.parametrize("seed", MENDED)
-def test_drawn_cantilevers_that_once_failed(seed: int) -> None:
+def test_drawn_cantilevers_that_once_failed(seed):
     found = verdict(seed)
     assert not found.wrong
     assert found.ended == tsm.Status.COMPLETED.name
 
 
-@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 8)])
-def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact(element: str, elements: int) -> None:
+def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact():
     scene = Cantilever(section=KS, friction=0.2, path=((0.5, 0.0), (0.5, -0.1)))
-    result = scene.solve(3, element, elements)
+    result = scene.solve(3, "mixed", 8)
     assert result.status is tsm.Status.COMPLETED
     assert [(event.kind, event.load_parameter) for event in result.events] == [(tsm.EventKind.RELEASE, 0.0)]
     assert not result.contacts[PAIR].force.any()
 
 
-def test_a_load_along_a_beam_works_too() -> None:
-    """What pin and load do is stored or dissipated."""
+def test_a_load_along_a_beam_works_too():
     structure = replace(ks(0.3), path=((1.0, 0.0), (0.8, 0.1))).structure()
     load = tsm.LineLoad(beam="beam", force=((0.0, -5.0 * structure.beams[0].section.EI),))
     result = tsm.solve(replace(structure, line_loads=(load,)), np.ones(1))
@@ -201,7 +133,8 @@ def test_a_load_along_a_beam_works_too() -> None:
     assert balance(result) <= 1e-10
 
 
-def test_a_slip_of_a_very_stiff_beam_ends_once() -> None:
+@pytest.mark.slow
+def test_a_slip_of_a_very_stiff_beam_ends_once():
     """The round-off of a slip rate, times the stiffness, is a force that leaves the cone: the stick is no slip for a moment."""
     section = tsm.Section(EA=1e11, GA=1e11, EI=1.0)
     result = replace(ks(0.2, section), path=((1.0, 0.0), (0.36, 0.64 * LAST[1]))).solve(1, "mixed", 3)

@@ -12,8 +12,6 @@ from tests.tsm.structures import TENTHS as T
 from tests.tsm.structures import beam as made
 
 SECTION = tsm.Section(EA=1e4, GA=4e3, EI=2.0)
-TRUSS = tsm.Section(EA=100.0, GA=40.0, EI=30.0)
-ELEMENTS = ("mixed", "exact", "timoshenko")
 FOOT = tsm.Support(beam="b", end="start")
 
 
@@ -34,25 +32,6 @@ def on_foot(held, stiffness, *, element="exact", end=(1.0, 0.0), **more):
     )
 
 
-@pytest.mark.parametrize("element", ELEMENTS)
-def test_a_beam_on_two_springs_turns_without_strain(element):
-    structure = tsm.Structure(
-        beams=(beam("b", (0, 0), (2, 0), element),),
-        supports=(replace(FOOT, uy=None, rotation=None),),
-        springs=(tsm.Spring(beam="b", end="start", y=3.0), tsm.Spring(beam="b", end="end", y=5.0)),
-        loads=(
-            tsm.Load(beam="b", end="start", force=(0, 1.2)),
-            tsm.Load(beam="b", end="end", force=(0, -4.0)),
-        ),
-    )
-    result = tsm.solve(structure, T)
-    down, angle = -4.0 * T / 5.0, np.arcsin((-4.0 * T / 5.0 - 1.2 * T / 3.0) / 2.0)
-    assert result.tips["b"] == pytest.approx(np.stack([2.0 * np.cos(angle), down], axis=1), abs=1e-12)
-    assert result.springs["b.end"].force == pytest.approx(np.stack([0 * T, 4.0 * T], axis=1), abs=5e-12)
-    assert result.strain_energy == pytest.approx(1.5 * (1.2 * T / 3.0) ** 2 + 2.5 * down**2, abs=1e-12)
-    assert (result.index == 0).all()
-
-
 @pytest.mark.parametrize("held", ["hinge", "spring"])
 def test_a_spring_at_the_foot_turns_a_beam_that_rolls_up(held):
     M, k = 2.5, 4.0
@@ -64,37 +43,6 @@ def test_a_spring_at_the_foot_turns_a_beam_that_rolls_up(held):
     assert result.shape("b", -1)[0, 2] == pytest.approx(M / k, abs=1e-14)
     reaction = result.supports["b.start"].moment if held == "hinge" else result.springs["b.start"].moment
     assert reaction == pytest.approx(-M * T, abs=1e-13)
-
-
-@pytest.mark.parametrize("element", ELEMENTS)
-def test_two_hinged_bars_snap_through_at_the_load_of_mises(element):
-    height, EA = 0.4, 100.0
-    length = math.hypot(1.0, height)
-    limit = 2.0 * EA * math.sqrt(1.0 - (1.0 / length) ** (2 / 3)) ** 3
-    spans = {"left": ((0, 0), (1, height)), "right": ((1, height), (2, 0))}
-
-    def truss(load):
-        return tsm.Structure(
-            beams=tuple(beam(name, *span, element, section=TRUSS) for name, span in spans.items()),
-            supports=tuple(
-                tsm.Support(beam=n, end=e, rotation=None) for n, e in (("left", "start"), ("right", "end"))
-            ),
-            hinges=(tsm.Hinge(beam="left", end="end"),),
-            loads=(tsm.Load(beam="left", end="end", force=(0, -load)),),
-        )
-
-    def off(result, load):
-        """Largest error of the load at the positions of the apex, over the greatest load."""
-        rise = result.tips["left"][:, 1]
-        now = np.hypot(1.0, rise)
-        return float(np.abs(2.0 * EA * (1.0 - now / length) * rise / now - load).max() / limit)
-
-    # what is left is Newton's tolerance
-    for settings, allowed in ((tsm.Settings(), 1e-9), (tsm.Settings(tolerance=1e-13), 1e-12)):
-        assert off(tsm.solve(truss(0.9 * limit), T, settings), 0.9 * limit * T) < allowed
-        path = tsm.trace(truss(5.0 * limit), arc_length=0.1, steps=60, settings=settings)
-        assert off(path, 5.0 * limit * path.load_parameter) < allowed
-        assert [event.load_parameter for event in path.events] == pytest.approx([0.2, -0.2], abs=1e-12)
 
 
 @pytest.mark.parametrize("held", ["hinge", "spring"])
@@ -129,7 +77,7 @@ def test_a_mechanism_has_a_name():
     assert tsm.solve(free, T, throw=False).status is tsm.Status.MECHANISM
 
 
-@pytest.mark.parametrize(("element", "held"), [("mixed", "hinge"), ("exact", "hinge"), ("exact", "pinned")])
+@pytest.mark.parametrize(("element", "held"), [("mixed", "hinge"), ("exact", "pinned")])
 def test_a_contact_without_force_holds_no_mechanism(element, held):
     """A beam on a hinge or a pinned support, and on a pin: it may lie there or lift off unless a load presses it down, at the start and where a stage begins."""
     load, back = (tsm.Load(beam="b", end="end", force=(0, f), stage=k) for k, f in enumerate((-1e-3, 1e-3)))

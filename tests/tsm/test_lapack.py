@@ -31,5 +31,5 @@ assert lapack() is sys.modules["scipy.linalg.lapack"]
 
 @pytest.mark.slow_at("alone, and the package imported after it")
 @pytest.mark.parametrize("code", CODE.values(), ids=CODE)
-def test_the_routines_are_those_of_the_package(code: str) -> None:
+def test_the_routines_are_those_of_the_package(code):
     subprocess.run([sys.executable, "-c", code], check=True, timeout=300)

@@ -2,7 +2,6 @@
 
 import re
 import tracemalloc
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,117 +15,82 @@ STAGED = replace(ONE, pins=(tsm.Pin(name="p0", path=((0.8, 0.0),), onward=(((0.8
 FACE = {"node": "p", "beam": "b", "offset": 0.04, "end_offset": 0.02}
 
 
-def of_beam(**changes: object) -> Callable[[], object]:
-    return lambda: replace(ONE.beams[0], **changes)  # type: ignore[arg-type]
+def of_beam(**changes):
+    return lambda: replace(ONE.beams[0], **changes)
 
 
-def structure(**changes: object) -> Callable[[], object]:
-    return lambda: replace(ONE, **changes)  # type: ignore[arg-type]
+def structure(**changes):
+    return lambda: replace(ONE, **changes)
 
 
-def solved(structure: tsm.Structure, t: object = (1.0,)) -> Callable[[], object]:
+def solved(structure, t=(1.0,)):
     return lambda: tsm.solve(structure, t)
 
 
-def on_hook(**load: object) -> Callable[[], object]:
+def on_hook(**load):
     given = {"beam": "b", "force": ((0.0, -1.0),), **load}
-    return lambda: hook(line_loads=(tsm.LineLoad(**given),))  # type: ignore[arg-type]
+    return lambda: hook(line_loads=(tsm.LineLoad(**given),))
 
 
-def at_tip(**load: object) -> Callable[[], object]:
-    return lambda: tsm.Load(beam="b", end="end", **load)  # type: ignore[arg-type]
-
-
-def pair(**changes: object) -> Callable[[], object]:
-    return lambda: tsm.ContactPair(**{"node": "p", "beam": "b", **changes})  # type: ignore[arg-type]
+def pair(**changes):
+    return lambda: tsm.ContactPair(**{"node": "p", "beam": "b", **changes})
 
 
 BY_THE_PAPER = "such elements are straight and uniform, without loads along them; use mixed"
-LADEN = replace(
-    hook(line_loads=()),
-    line_loads=hook().line_loads[:1],
-    beams=(beam("b", (0, 0), (1, 0), element="timoshenko"),),
-)
 STRAIGHT = beam("b", (0.0, 0.0), (1.0, 0.2), element="mixed", elements=4)
 BOTH = replace(leaning(), beams=(as_mixed(leaning()).beams[0], leaning().beams[1]))
 FREE_JOINT = replace(ONE, pins=(), contacts=(), hinges=(tsm.Hinge(beam="b", end="end"),))
 LONG = replace(ONE.beams[0], elements=600_000)
-BAD: dict[str, tuple[Callable[[], object], str]] = {
+BAD = {
     "far end": (of_beam(end=(1e155, 0)), r"Beam\(b\)\.end = \(1e\+155, 0\): must be two finite numbers, of at most 1e\+50"),
-    "far start": (of_beam(start=(-1e308, 0)), r"Beam\(b\)\.start = "),
     "huge integer": (of_beam(start=(10**400, 0)), r"Beam\(b\)\.start = "),
-    "short": (of_beam(end=(1e-320, 0)), r"Beam\(b\)\.end = .*: must differ from start, by 1e-50 to 1e\+50"),
-    "no length": (of_beam(end=(0.0, 0.0)), "must differ"),
     "element": (of_beam(element="cubic"), "must be one of mixed"),
-    "elements": (of_beam(elements=10**9), r"Beam\(b\)\.elements = 1000000000: must be a whole number from 1 to 1000000"),
     "elements in all": (structure(beams=(LONG, replace(LONG, name="c"))), r"Structure\.elements = 1200000: must be at most 1000000 in all"),
     "memory": (
         solved(cantilever(elements=100_000), np.linspace(1e-5, 1, 100_000)),
         r"load_parameters = 100000: with 100000 elements and 0 contacts needs 5e\+03 GB, more than 80% of the memory",
     ),
-    "nodes that repeat": (of_beam(nodes=(0.2, 0.5, 0.5)), r"Beam\(b\)\.nodes = .*must rise between 0 and 1"),
-    "node at the start": (of_beam(nodes=(0.0, 0.2, 0.5)), "must rise between 0 and 1"),
     "node at the end": (of_beam(nodes=(0.2, 0.5, 1.0)), "must rise between 0 and 1"),
-    "node without a place": (of_beam(nodes=(float("nan"), 0.5, 0.6)), "must rise between 0 and 1"),
     "too few nodes": (of_beam(nodes=(0.5,)), "must be one less than elements = 4"),
     "whole turn": (of_beam(turn=2 * np.pi), "must lie between -2 pi and 2 pi"),
     "shear of a taper": (of_beam(end_section=tsm.Section(EA=1.0, GA=1.0, EI=1.0)), "must have the GA/EA of section"),
     "negative section": (lambda: tsm.Section(EA=1.0, GA=-1.0, EI=1.0), "must be positive"),
-    "small section": (lambda: tsm.Section.rectangle(width=1.0, height=1e-200, youngs_modulus=1.0, shear_modulus=1.0), r"EI = .*: must be positive and finite"),
     "large section": (lambda: tsm.Section.rectangle(width=1.0, height=1e200, youngs_modulus=1.0, shear_modulus=1.0), r"EI = .*: must be positive and finite"),
-    "far support": (lambda: tsm.Support(beam="b", end="end", ux=1e60), r"Support\(b\.end\)\.ux = 1e\+60: "),
-    "support without a place": (lambda: tsm.Support(beam="b", end="start", ux=float("nan")), "finite"),
     "support that is free and moves": (lambda: tsm.Support(beam="b", end="end", rotation=None, onward=((0.0, 0.0, 0.1),)), "must be zero where the component is free"),
-    "large force": (at_tip(force=(1e60, 0.0)), r"Load\(b\.end\)\.force = "),
-    "large moment": (at_tip(moment=np.inf), r"Load\(b\.end\)\.moment = inf"),
-    "stage of a load": (at_tip(stage=-1), "stage = -1"),
+    "stage of a load": (lambda: tsm.Load(beam="b", end="end", stage=-1), "stage = -1"),
     "point load beside a node": (lambda: hook(loads=(tsm.Load(beam="b", arc=0.4),)), "must be a node, see Beam"),
-    "line load beside a node": (on_hook(start=0.2), "must be a node of the beam"),
-    "line load past the end": (on_hook(end=2.0), "must be at most the length"),
-    "line load backwards": (on_hook(start=0.8, end=0.3), "must lie between 0 and end"),
     "line load of nothing": (on_hook(force=()), "must hold pairs of finite numbers"),
     "curved beam of the paper": (solved(replace(hook(element="timoshenko"), line_loads=())), BY_THE_PAPER),
-    "laden beam of the paper": (solved(LADEN), BY_THE_PAPER),
     "mixed and exact": (solved(BOTH), r'Beam\(low\).element = .mixed.: must be "exact" as of other beams here'),
-    "far pin": (lambda: tsm.Pin(name="p", path=((0, 0), (1e60, 0))), r"Pin\(p\)\.path = "),
-    "pin at rest": (lambda: tsm.Pin(name="p", path=((0, 0), (0, 0))), "must not repeat"),
-    "pin at rest in a stage": (lambda: tsm.Pin(name="p", path=((1, 0),), onward=(((1, 0), (2, 0)),)), "must not repeat a point"),
     "pin without a point": (lambda: tsm.Pin(name="p", path=(), onward=((),)), "must have at least one point"),
     "pin behind the surface": (solved(cantilever(((0.8, 0.1), (0.8, 0.2)))), r"side = 'right': the node starts at \(0.8, 0.1\), 0.1 behind"),
-    "far surface": (pair(offset=1e60), r"p->b\.offset = 1e\+60"),
     "friction": (pair(friction=-0.1), r"p->b.friction = .*: must lie between 0 and 100"),
-    "friction without a value": (pair(friction=float("nan")), r"p->b.friction = .*: must lie between 0 and 100"),
-    "large friction": (pair(friction=101.0), r"p->b.friction = .*: must lie between 0 and 100"),
-    "friction of the paper": (solved(cantilever(raised(0.8, 0.1), element="timoshenko", friction=0.3)), r'friction = 0.3: elements "timoshenko" have contacts without friction only'),
     "friction on a taper": (pair(**FACE, friction=0.3), "must be 0 on a surface with an end_offset"),
     "steep face": (lambda: pushed(offset=0.04, end_offset=2.0), "must differ from offset by less than the length"),
     "face of a straight beam": (solved(replace(pushed(offset=0.04, end_offset=0.02), line_loads=(), beams=(STRAIGHT,))), "belongs to a beam that tapers or has elements"),
     "no such beam": (structure(contacts=(tsm.ContactPair(node="p0", beam="x"),)), "beam = 'x': names no beam"),
-    "no such pin": (structure(contacts=(tsm.ContactPair(node="x", beam="b"),)), "names no pin"),
     "itself": (structure(contacts=(tsm.ContactPair(node="b.end", beam="b"),)), "does not touch itself"),
-    "one name": (structure(beams=ONE.beams * 2), "more than one"),
     "hinge on nothing": (solved(FREE_JOINT), r"Hinge\(b.end\): the joint turns freely"),
-    "hinge that pushes": (lambda: tsm.Hinge(beam="b", end="end", stiffness=-1.0), "stiffness = -1"),
     "spring that pushes": (lambda: tsm.Spring(beam="b", end="end", y=-2.0), "y = -2"),
     "past the last stage": (solved(STAGED, [1.0, 2.5]), r"must increase within \(0, 2\]"),
     "arc length over stages": (lambda: tsm.trace(STAGED, arc_length=0.1, steps=2), "arc-length control follows a single stage"),
     **{
         f"load parameters {t}": (solved(ONE, np.array(t)), "must increase within")
-        for t in ([], [0.0, 1.0], [0.5, 0.5], [0.5, 1.5], [float("nan")], [[0.5]])
+        for t in ([], [0.5, 0.5], [0.5, 1.5], [float("nan")], [[0.5]])
     },
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_what_cannot_be_is_refused(case: str) -> None:
+def test_what_cannot_be_is_refused(case):
     make, sentence = BAD[case]
     with pytest.raises(ValueError, match=sentence) as caught:
         make()
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("size", [1e-40, 1e-20, 1e20, 1e40])
-def test_a_structure_at_the_limits_is_solved(size: float) -> None:
+@pytest.mark.parametrize("size", [1e-40, 1e40])
+def test_a_structure_at_the_limits_is_solved(size):
     """The same cantilever in other units of length and force."""
     force = 1e-3 if size < 1 else 1e3
     section = tsm.Section(EA=8.4 * force, GA=2.7 * force, EI=2.8e-4 * force * size**2)
@@ -136,7 +100,7 @@ def test_a_structure_at_the_limits_is_solved(size: float) -> None:
 
 
 @pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_the_estimate_of_the_memory_holds(element: str) -> None:
+def test_the_estimate_of_the_memory_holds(element):
     """What a solution keeps of an element and a step is at most the estimate and at least half of it."""
     load = tsm.Load(beam="b", end="end", force=(0.0, 0.3 * SECTION.EI))
     structure = cantilever(element=element, elements=200, load=load)

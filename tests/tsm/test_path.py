@@ -7,37 +7,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.special import ellipk
 
 import tsm
-from tests.tsm.structures import STIFF, beam, steps
+from comparisons.claims.problems import frames
+from comparisons.models.translate import to_structure
+from comparisons.scene import load_scene
+from tests.tsm.structures import beam, steps
 
 EA, GA = 5000.0, 2000.0
 SECTION = tsm.Section(EA=EA, GA=GA, EI=1.0)
-HELD = {"ux": None, "rotation": None}
-ENDS = {
-    "clamped-free": ({}, None),
-    "pinned": ({"rotation": None}, HELD),
-    "clamped": ({}, {"ux": None}),
-}
-"""Supports of a column along x that is pressed at its end."""
-WAVES = {"clamped-free": 0.5, "pinned": 1.0, "clamped": 2.0}
 PRIMARY, STABLE = tsm.Settings(branch="primary"), tsm.Settings(branch="stable")
 
 
-def critical(waves, EA=EA, GA=GA):
-    """Load of a straight Reissner column, EI = L = 1, that bends in half waves: ``P (1 + P (1/GA - 1/EA)) = (waves pi)^2``."""
+def critical(EA=EA, GA=GA):
+    """Load at which a clamped Reissner column buckles, EI = L = 1: ``P (1 + P (1/GA - 1/EA)) = (pi/2)^2``."""
     c = 1.0 / GA - 1.0 / EA
-    return (math.sqrt(1.0 + 4.0 * c * (waves * math.pi) ** 2) - 1.0) / (2.0 * c)
+    return (math.sqrt(1.0 + c * math.pi**2) - 1.0) / (2.0 * c)
 
 
-def column(ends, load, element="exact", elements=1, section=SECTION):
-    start, end = ENDS[ends]
-    supports = [tsm.Support(beam="c", end="start", **start)]
-    supports += [] if end is None else [tsm.Support(beam="c", end="end", **end)]
+def column(load, element="exact", elements=1, section=SECTION):
     return tsm.Structure(
         beams=(beam("c", (0, 0), (1, 0), section=section, elements=elements, element=element),),
-        supports=tuple(supports),
+        supports=(tsm.Support(beam="c", end="start"),),
         loads=(tsm.Load(beam="c", end="end", force=(-load, 0.0)),),
     )
 
@@ -49,22 +40,15 @@ def index(structure):
     return int(result.index[0])
 
 
-@pytest.mark.parametrize(
-    ("element", "elements", "factors"), [("timoshenko", 40, (0.5, 2, 9.5, 26)), ("mixed", 600, (9.5,))]
-)
-def test_the_index_of_the_papers_element_and_of_matrices_that_are_counted_sparse(element, elements, factors):
-    load = critical(0.5)
-    for factor in factors:
-        expected = {0.5: 0, 2: 1, 9.5: 2, 26: 3}[factor]
-        assert index(column("clamped-free", factor * load, element, elements)) == expected
+def test_the_index_of_matrices_that_are_counted_sparse():
+    assert index(column(9.5 * critical(), "mixed", 600)) == 2
 
 
-@pytest.mark.parametrize("ends", ENDS)
-def test_a_perfect_column_ends_at_its_first_critical_load(ends):
+def test_a_perfect_column_ends_at_its_first_critical_load():
     section = tsm.Section(EA=3e4, GA=50.0, EI=1.0)
-    first = critical(WAVES[ends], 3e4, 50.0)
+    first = critical(3e4, 50.0)
     for count in (1, 5):
-        result = tsm.solve(column(ends, 1.7 * first, section=section), steps(count), throw=False)
+        result = tsm.solve(column(1.7 * first, section=section), steps(count), throw=False)
         assert result.status is tsm.Status.BIFURCATION
         (point,) = result.critical
         assert point.kind.value == "bifurcation"
@@ -74,25 +58,13 @@ def test_a_perfect_column_ends_at_its_first_critical_load(ends):
         assert np.abs(point.mode["c"]).max(axis=0) == pytest.approx([0.0, 1.0], abs=1e-3)
 
 
-@pytest.mark.parametrize("degrees", [20.0, 160.0])
-def test_the_stable_branch_is_the_elastica(degrees):
-    """P/P_1 = (2 K(p)/pi)^2 with p = sin(tip angle/2), in the slender limit."""
-    load = float(ellipk(np.sin(np.radians(degrees) / 2) ** 2)) ** 2
-    result = tsm.solve(column("clamped-free", load, section=STIFF), [1.0], STABLE)
-    assert abs(result.shape("c", -1)[-1, 2]) == pytest.approx(np.radians(degrees), abs=1e-6)
-    assert result.index.tolist() == [0]
-    (turned,) = result.events
-    assert turned.released > 0
-
-
 def pressed(element, elements, *, load, x=0.8, rise=1e-300):
-    """A column under a pin that rests on its side."""
-    free = column("clamped-free", load, element, elements)
+    free = column(load, element, elements)
     pin = tsm.Pin(name="p", path=((x, 0.0), (x, rise)))
     return replace(free, pins=(pin,), contacts=(tsm.ContactPair(node="p", beam="c"),))
 
 
-@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("exact", 4), ("mixed", 10)])
+@pytest.mark.parametrize(("element", "elements"), [("exact", 1), ("mixed", 10)])
 def test_contact_without_force_has_an_index_only_if_it_does_not_matter(element, elements):
     for load, expected in ((0.0, 0), (1.0, 0), (5.0, -1)):
         assert index(pressed(element, elements, load=load)) == expected
@@ -106,40 +78,27 @@ def test_contacts_of_the_paper_have_no_index():
 def test_index_does_not_see_where_a_contact_cuts(element, elements):
     """Segments without length keep their moment; beyond the load at which the free column buckles."""
     down = tsm.Load(beam="c", end="end", force=(0.0, -1e-4))
-    for arc in (0.5 - 1e-2, 0.5 - 1e-12, 0.5, 0.5 + 1e-12, 0.5 + 1e-5, 1.0 - 1e-12, 1.0 - 1e-5):
+    for arc in (0.5 - 1e-12, 0.5, 0.5 + 1e-5, 1.0 - 1e-12):
         structure = pressed(element, elements, load=4.0, x=arc * (1 - 4.0 / EA), rise=1e-6)
         result = tsm.solve(replace(structure, loads=(*structure.loads, down)), [0.5, 1.0])
         assert (result.contacts["p->c"].force > 0).all()
         assert result.index.tolist() == [0, 0]
 
 
-def toggle(load):
-    """Williams' toggle."""
-    section = tsm.Section(EA=1.885e6, GA=1.885e10, EI=9274.0)
-    apex = (12.94328, 0.386)
-    spans = {"left": ((0.0, 0.0), apex), "right": (apex, (25.88656, 0.0))}
-    return tsm.Structure(
-        beams=tuple(
-            beam(name, *span, section=section, element="mixed", elements=8) for name, span in spans.items()
-        ),
-        supports=(tsm.Support(beam="left", end="start"), tsm.Support(beam="right", end="end")),
-        loads=(tsm.Load(beam="left", end="end", force=(0.0, -load)),),
-    )
-
-
 def test_load_control_ends_at_the_limit_point_or_snaps_through():
     """Where arc-length control finds it, to 1e-8; and to the stable branch at which it arrives."""
-    traced = tsm.trace(toggle(40.0), arc_length=0.02, steps=30)
+    toggle = to_structure(frames.under_load(load_scene("williams-toggle"), 40.0), elements=8)
+    traced = tsm.trace(toggle, arc_length=0.02, steps=30)
     passed = next(event for event in traced.events if event.kind is tsm.EventKind.LIMIT_POINT)
     for count in (1, 7):
-        result = tsm.solve(toggle(40.0), steps(count), throw=False)
+        result = tsm.solve(toggle, steps(count), throw=False)
         assert result.status is tsm.Status.LIMIT_POINT
         (point,) = result.critical
         assert point.kind.value == "limit point"
         assert point.load_parameter == pytest.approx(passed.load_parameter, abs=1e-8)
     t, apex = traced.load_parameter[12:], traced.tips["left"][12:, 1]
     last = int(np.argmax((t[:-1] < 1.0) & (t[1:] >= 1.0)))
-    result = tsm.solve(toggle(40.0), steps(20), STABLE)
+    result = tsm.solve(toggle, steps(20), STABLE)
     assert (result.index == 0).all()
     expected = np.interp(1.0, t[last : last + 2], apex[last : last + 2])
     assert result.tips["left"][-1, 1] == pytest.approx(expected, abs=2e-3)
@@ -159,7 +118,7 @@ def held(shortened, *, height=0.02, turn=0.0, aside=0.0, angle=0.0, elements=1):
     )
 
 
-@pytest.mark.parametrize(("angle", "elements", "count"), [(0.0, 20, 20), (2.0, 1, 1), (2.0, 2, 3)])
+@pytest.mark.parametrize(("angle", "elements", "count"), [(0.0, 20, 20), (2.0, 2, 3)])
 def test_a_symmetric_bifurcation_turns_to_the_left(angle, elements, count):
     """To the side to which the mode goes first, seen from start to end; at .00437433, by name."""
     structure = held(0.3, aside=0.01, angle=angle, elements=elements)

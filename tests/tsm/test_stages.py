@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
-from tests.tsm.structures import CLAMP, beam, cantilever, essentials, steps
+from tests.tsm.structures import CLAMP, cantilever, essentials, steps
 
 SECTION = tsm.Section(EA=8.4, GA=2.7, EI=2.8e-4)
 T = steps(4)
@@ -22,15 +22,8 @@ def under_pin(element, path, friction=0.0, *, onward=(), **more):
     return replace(structure, pins=(replace(structure.pins[0], onward=onward),), **more)
 
 
-@pytest.mark.parametrize(
-    ("element", "friction"),
-    [
-        ("mixed", 0.0),
-        ("exact", 0.0),
-        pytest.param("exact", 0.3, marks=pytest.mark.slow),
-        pytest.param("mixed", 0.3, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow_at("exact-0.3")
+@pytest.mark.parametrize(("element", "friction"), [("mixed", 0.0), ("exact", 0.3)])
 def test_stages_of_a_pin_are_its_path_with_corners(element, friction):
     staged = tsm.solve(under_pin(element, (BACK, THERE), friction, onward=((BACK,), (THERE,))), THREE)
     single = tsm.solve(under_pin(element, (BACK, THERE, BACK, THERE), friction), np.array(THREE) / 3)
@@ -65,57 +58,10 @@ def negative(*parts):
     return tuple(-value for value in summed(*parts))
 
 
-def loaded(stages, motions):
-    """A tip load (force, moment) and a motion of the clamp, each with its increment of every stage."""
-    (ux, uy, rotation), *onward = motions
-    structure = cantilever(
-        section=SECTION, supports=(replace(CLAMP, ux=ux, uy=uy, rotation=rotation, onward=tuple(onward)),)
-    )
-    loads = (tsm.Load(beam="b", end="end", force=f[:2], moment=f[2], stage=k) for k, f in enumerate(stages))
-    return replace(structure, loads=tuple(loads))
-
-
-def test_loads_and_supports_go_on_and_come_back():
-    up, more = (1e-4, 3e-4, 2e-4), (0.0, -2e-4, 5e-4)
-    moved, further = (0.1, 0.0, 0.4), (-0.2, 0.3, -0.9)
-    staged = tsm.solve(
-        loaded((up, more, negative(up, more)), (moved, further, negative(moved, further))), THREE
-    )
-    single = tsm.solve(loaded((up,), (moved,)), T)
-    whole = tsm.solve(loaded((summed(up, more),), (summed(moved, further),)), [1.0])
-    support = staged.supports["b.start"]
-    assert staged.tips["b"][:4] == pytest.approx(single.tips["b"], abs=1e-13)
-    assert staged.tips["b"][7] == pytest.approx(whole.tips["b"][0], abs=1e-9)
-    assert support.moment[7] == pytest.approx(whole.supports["b.start"].moment[0], abs=1e-10)
-    assert staged.tips["b"][11] == pytest.approx((1.0, 0.0), abs=1e-9)
-    assert support.force[11] == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert (staged.index == 0).all()
-
-
-def test_loads_along_a_beam_go_on_by_stages():
-    """Weight, then a load on a part, then both taken away, against one stage with the sums."""
-    strip = beam("b", (0, 0), (1, 0), section=SECTION).divided(0.4)
-
-    def structure(*loads):
-        return tsm.Structure(beams=(strip,), supports=(CLAMP,), line_loads=loads)
-
-    whole = tsm.LineLoad(beam="b", force=((0.0, -2e-3),))
-    part = tsm.LineLoad(beam="b", force=((1e-3, 3e-3), (0.0, 1e-3)), start=0.4)
-    back = [replace(load, force=tuple((-x, -y) for x, y in load.force), stage=2) for load in (whole, part)]
-    staged = tsm.solve(structure(whole, replace(part, stage=1), *back), THREE)
-    first, both = tsm.solve(structure(whole), [0.5, 1.0]), tsm.solve(structure(whole, part), [1.0])
-    assert staged.tips["b"][[1, 3]] == pytest.approx(first.tips["b"], abs=1e-12)
-    assert staged.tips["b"][7] == pytest.approx(both.tips["b"][0], abs=1e-9)
-    assert staged.supports["b.start"].force[7] == pytest.approx(both.supports["b.start"].force[0], abs=1e-14)
-    assert staged.tips["b"][11] == pytest.approx((1.0, 0.0), abs=1e-9)
-
-
-@pytest.mark.slow_at("mixed")
-@pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_the_work_of_all_stages_is_stored_or_dissipated(element):
+def test_the_work_of_all_stages_is_stored_or_dissipated():
     """Of a pin with friction, a moving clamp, loads, a spring and a hinge."""
     structure = under_pin(
-        element, ((0.8, -0.05), (0.7, 0.25)), 0.2, onward=((), ((0.8, 0.1),)),
+        "exact", ((0.8, -0.05), (0.7, 0.25)), 0.2, onward=((), ((0.8, 0.1),)),
         supports=(replace(CLAMP, onward=((0.0, 0.02, 0.1), (0.01, 0.0, -0.05))),),
         loads=(tsm.Load(beam="b", end="end", force=(0.0, -2e-4)), tsm.Load(beam="b", end="end", force=(1e-4, 3e-4), stage=1)),
         springs=(tsm.Spring(beam="b", end="end", y=3e-4),),
@@ -128,8 +74,38 @@ def test_the_work_of_all_stages_is_stored_or_dissipated(element):
     assert {tsm.EventKind.STICK, tsm.EventKind.SLIP} <= {event.kind for event in result.events}
 
 
-def test_the_first_stage_is_the_structure_without_stages_to_the_bit():
-    first = tsm.solve(under_pin("exact", (BACK, THERE)), T)
-    both = tsm.solve(under_pin("exact", (BACK, THERE), onward=((BACK,),)), [*T, 1.01])
-    assert np.array_equal(first.contacts[PAIR].force, both.contacts[PAIR].force[:4])
-    assert np.array_equal(first.tips["b"], both.tips["b"][:4])
+def loaded(stages, motions, lines):
+    """Loads (force, moment) at the tip, motions of the clamp, and loads along halves of the beam, by their increments of every stage."""
+    (ux, uy, rotation), *onward = motions
+    structure = cantilever(
+        section=SECTION, supports=(replace(CLAMP, ux=ux, uy=uy, rotation=rotation, onward=tuple(onward)),)
+    )
+    loads = (tsm.Load(beam="b", end="end", force=f[:2], moment=f[2], stage=k) for k, f in enumerate(stages))
+    line_loads = (tsm.LineLoad(beam="b", force=(f,), start=a, end=a + 0.5, stage=k) for k, a, f in lines)
+    return replace(structure, loads=tuple(loads), line_loads=tuple(line_loads))
+
+
+def test_loads_and_supports_go_on_and_come_back():
+    up, more = (1e-4, 3e-4, 2e-4), (0.0, -2e-4, 5e-4)
+    moved, further = (0.1, 0.0, 0.4), (-0.2, 0.3, -0.9)
+    first, second = (0, 0.0, (0.0, -2e-4)), (1, 0.5, (1e-4, 3e-4))
+    back = [(2, a, (-x, -y)) for _, a, (x, y) in (first, second)]
+    staged = tsm.solve(
+        loaded(
+            (up, more, negative(up, more)),
+            (moved, further, negative(moved, further)),
+            (first, second, *back),
+        ),
+        THREE,
+    )
+    single = tsm.solve(loaded((up,), (moved,), (first,)), T)
+    at_once = loaded((summed(up, more),), (summed(moved, further),), (first, (0, *second[1:])))
+    whole = tsm.solve(at_once, [1.0])
+    support = staged.supports["b.start"]
+    assert staged.tips["b"][:4] == pytest.approx(single.tips["b"], abs=1e-13)
+    assert staged.tips["b"][7] == pytest.approx(whole.tips["b"][0], abs=1e-9)
+    assert support.moment[7] == pytest.approx(whole.supports["b.start"].moment[0], abs=1e-10)
+    assert support.force[7] == pytest.approx(whole.supports["b.start"].force[0], abs=1e-12)
+    assert staged.tips["b"][11] == pytest.approx((1.0, 0.0), abs=1e-9)
+    assert support.force[11] == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert (staged.index == 0).all()

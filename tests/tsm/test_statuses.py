@@ -25,10 +25,6 @@ WAY = raised(0.83, 0.2)
 SETTINGS = tsm.Settings(tolerance=1e-10, max_iterations=10)
 
 
-def with_beam(structure, **changes):
-    return replace(structure, beams=(replace(structure.beams[0], **changes),))
-
-
 def sliding(element):
     """A clamp that slides along y and a load along -y: a pin carries both until the beam slips off it, at a third of its way."""
     load = tsm.Load(beam="b", end="end", force=(0.0, -0.1))
@@ -102,9 +98,10 @@ def test_a_failure_is_an_error_unless_it_is_asked_for():
     assert caught.value.result.status is Status.CUTBACK_FLOOR
 
 
-@pytest.mark.parametrize("path", [((0.0, -0.1), (0.0, 0.1)), ((0.0, 0.0), (0.3, 0.1)), raised(0.0, 0.1)])
-@pytest.mark.parametrize("turn", [0.0, None])
-@pytest.mark.parametrize("element", ["mixed", "exact"])
+@pytest.mark.parametrize(
+    ("path", "turn", "element"),
+    [(((0.0, -0.1), (0.0, 0.1)), 0.0, "mixed"), (((0.0, 0.0), (0.3, 0.1)), None, "exact")],
+)
 def test_a_contact_that_begins_on_a_held_end(path, turn, element):
     """The support takes any force there: the step length does not decide how this is named."""
     held = replace(CLAMP, rotation=turn), tsm.Support(beam="b", end="end", ux=None)
@@ -113,12 +110,6 @@ def test_a_contact_that_begins_on_a_held_end(path, turn, element):
             tsm.solve(cantilever(path, element=element, supports=held), times, throw=False).status
             is Status.FOLDED
         )
-
-
-@pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.slow)])
-def test_a_pin_pulled_over_the_clamp_is_never_reported_as_done(count):
-    result = tsm.solve(cantilever(((0.5, 0.0), (0.5, 0.01), (-0.5, 0.01))), steps(count), throw=False)
-    assert result.status is not Status.COMPLETED
 
 
 def test_two_slips(monkeypatch):
@@ -154,7 +145,7 @@ def test_ping_pong(monkeypatch):
     assert Newton(model, SETTINGS).solve(moved).status is Status.PING_PONG
 
 
-@pytest.mark.parametrize("allowed", [1, 2, 5])
+@pytest.mark.parametrize("allowed", [1, 5])
 def test_chatter(allowed):
     """A margin that opens whatever closes: so many events are allowed at one load parameter, not one more."""
     stepper = Stepper(Model(cantilever(WAY)), tsm.Settings(max_chatter=allowed))
@@ -185,9 +176,3 @@ def test_unbalanced():
 
     stepper.newton.solve = leaking
     assert list(stepper.march(TENTHS))[-1].status is Status.UNBALANCED
-
-
-def test_every_status_has_its_sentence():
-    assert len({status.value for status in Status}) == len(Status)
-    assert all(status.value[0].islower() or status.value[0] == "N" for status in Status)
-    assert all(not status.value.endswith(".") for status in Status)

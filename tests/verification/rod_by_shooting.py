@@ -34,14 +34,14 @@ class Rod:
     loads: tuple[tuple[Callable[[float], Array], float, float], ...] = ()
     tip: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def stiffness(self, s: float) -> tuple[float, float, float]:
+    def stiffness(self, s):
         """EA, GA, EI."""
         x = s / self.length
         h, b = (a + (c - a) * x for a, c in (self.height, self.width))
         E, G = self.youngs_modulus, self.shear_modulus
         return E * b * h, 5 / 6 * G * b * h, E * b * h**3 / 12
 
-    def slope(self, s: float, z: Array) -> Array:
+    def slope(self, s, z):
         """Derivatives of x, y, angle, moment and force (2)."""
         EA, GA, EI = self.stiffness(s)
         c, sn = math.cos(z[2]), math.sin(z[2])
@@ -56,7 +56,7 @@ class Rod:
         turn = z[3] / EI + self.turn / self.length
         return np.array([x, y, turn, y * z[4] - x * z[5], -x_load, -y_load])
 
-    def carry(self, z: Array, begin: float, end: float) -> Array:
+    def carry(self, z, begin, end):
         """State at one arc position from the state at another; no interval has the end of a load inside."""
         ends = sorted({self.length * part for _, a, b in self.loads for part in (a, b)})
         stops = [begin, *(stop for stop in ends if begin < stop < end), end]
@@ -66,8 +66,7 @@ class Rod:
                 z = solve_ivp(self.slope, inside, z, method="DOP853", rtol=3e-14, atol=1e-15).y[:, -1]
         return z
 
-    def tangent(self, s: float, z: Array) -> Array:
-        """Tangent vector r'."""
+    def tangent(self, s, z):
         return self.slope(s, z)[:2]
 
 
@@ -81,17 +80,17 @@ class Shot:
     arc: float
 
 
-def free(rod: Rod, guess: Array) -> Shot:
+def free(rod, guess):
     """Equilibrium without a pin, from a guess of force and moment at the clamp."""
 
-    def end(clamp: Array) -> Array:
+    def end(clamp):
         return rod.carry(np.array([0.0, 0.0, rod.direction, clamp[2], *clamp[:2]]), 0.0, rod.length)
 
     clamp = _solved(lambda z: end(z)[[4, 5, 3]] - np.array(rod.tip), guess)
     return Shot(clamp=clamp, tip=end(clamp)[:3], force=np.zeros(2), arc=math.nan)
 
 
-def pinned(rod: Rod, pin: tuple[float, float], reach: tuple[float, float], guess: Array) -> Shot:
+def pinned(rod, pin, reach, guess):
     """Equilibrium with a pin at a distance from the axis, given at clamp and tip and linear between.
 
     The distance to the pin, less the distance that is given, is zero and stationary along the rod. `guess` has force and moment at the
@@ -99,12 +98,12 @@ def pinned(rod: Rod, pin: tuple[float, float], reach: tuple[float, float], guess
     """
     rise = (reach[1] - reach[0]) / rod.length
 
-    def ends(z: Array) -> tuple[Array, Array, Array]:
+    def ends(z):
         before = rod.carry(np.array([0.0, 0.0, rod.direction, z[2], *z[:2]]), 0.0, z[5])
         after = before - np.array([0, 0, 0, 0, z[3], z[4]])
         return before, after, rod.carry(after, z[5], rod.length)
 
-    def residual(z: Array) -> Array:
+    def residual(z):
         before, after, tip = ends(z)
         mean = rod.tangent(z[5], before) + rod.tangent(z[5], after)
         away = -z[3:5] / np.hypot(*z[3:5])
@@ -115,7 +114,7 @@ def pinned(rod: Rod, pin: tuple[float, float], reach: tuple[float, float], guess
     return Shot(clamp=z[:3], tip=ends(z)[2][:3], force=z[3:5], arc=float(z[5]))
 
 
-def _solved(residual: Callable[[Array], Array], guess: Array) -> Array:
+def _solved(residual, guess):
     found = root(residual, guess, tol=1e-13)
     z = np.asarray(found.x)
     # two steps of Newton's method by central differences

@@ -1,22 +1,12 @@
 """Structures that the verification tests share: cantilevers under pins, the sections of [P], frames, rigid motions."""
 
-from dataclasses import replace
-
 import numpy as np
 
 import tsm
-
-# the problems with known answers are stated once, for the manual, the paper's claims and these tests
-from comparisons.claims.problems import double_beam, frames, friction
 from comparisons.exact import rod_under_pin
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
-from tests.oracles import elastica
-from tests.oracles.coupled import pair_of
-from tests.oracles.elastica import tip_under_dead_load
 from tests.tsm import structures
-
-__all__ = ["double_beam", "elastica", "frames", "friction", "pair_of", "tip_under_dead_load"]
 
 PINS = (4.05, 4.1, 4.2, 4.3, 4.35, 4.4)
 """Places of the pin in [P] 4.1."""
@@ -29,12 +19,10 @@ SECTION, LENGTH = SECTIONS["4.1"]
 
 
 def cantilever(*paths, section=KS, element="exact", **more):
-    """Cantilever of Konyukhov and Schweizerhof, of one exact element."""
     return structures.cantilever(*paths, section=section, element=element, **more)
 
 
 def square(height):
-    """A square section with E = 1 and nu = .3."""
     return tsm.Section.rectangle(width=height, height=height, youngs_modulus=1.0, shear_modulus=1 / 2.6)
 
 
@@ -67,19 +55,6 @@ def slip_offs(result):
     return structures.when(result, tsm.EventKind.SLIP_OFF)
 
 
-def divided(scene, elements, element="mixed"):
-    """A frame with `elements` a beam, a quarter of that in the short one beside the load."""
-    counts = {"near": max(1, elements // 4)}
-    beams = tuple(replace(beam, elements=counts.get(beam.name, elements)) for beam in scene.beams)
-    return to_structure(replace(scene, beams=beams), element=element)
-
-
-def limit_points(structure, arc_length, count, **settings):
-    """Load parameters at the limit points of a traced path."""
-    result = tsm.trace(structure, arc_length=arc_length, steps=count, settings=tsm.Settings(**settings))
-    return structures.when(result, tsm.EventKind.LIMIT_POINT)
-
-
 def places(elements, length, extra=()):
     """Places on and beside every node of a mesh: one unit in the last place, 1e-16 to 1e-1 of an element, the middle, and `extra`."""
     powers = 10.0 ** np.arange(-16, 0)
@@ -87,24 +62,3 @@ def places(elements, length, extra=()):
     for node in range(1, elements):
         x0 = length * node / elements
         yield [*(x0 + away * length / elements).tolist(), np.nextafter(x0, 0), np.nextafter(x0, 9)]
-
-
-def moved(structure, angle, shift):
-    """The structure turned about the origin, then shifted; prescribed displacements turn with it."""
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-    def place(point):
-        return tuple((turn @ np.array(point, dtype=float) + shift).tolist())
-
-    def moving(support):
-        if support.ux is None or support.uy is None:
-            return support
-        ux, uy = turn @ [support.ux, support.uy]
-        return replace(support, ux=ux, uy=uy)
-
-    return replace(
-        structure,
-        beams=tuple(replace(b, start=place(b.start), end=place(b.end)) for b in structure.beams),
-        supports=tuple(moving(support) for support in structure.supports),
-        pins=tuple(replace(pin, path=tuple(place(point) for point in pin.path)) for pin in structure.pins),
-    )

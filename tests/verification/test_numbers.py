@@ -7,13 +7,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from comparisons.claims.problems import friction
 from comparisons.compare import ELASTICA, MIXED, PAPER, ROD, RUNS, SOLID
 from comparisons.errors import errors
 from comparisons.models import find, solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
-from tests.stated import MARK, ROOT
-from tests.verification.structures import friction
 
 COLUMNS = ("force", "arc", "moment", "tip")
 ROWS = {
@@ -42,14 +41,6 @@ def test_the_table_of_errors(name, stated):
     found = errors(response, rod(), scene)["path"]
     stated(f"unknowns.{name}", response.unknowns)
     stated(f"errors.{name}", *(found[column] for column in COLUMNS), bound=run.options.element == "exact")
-
-
-def test_the_readme_has_rows_of_this_table():
-    """Every model at least once."""
-    marks = MARK.findall((ROOT / "README.md").read_text())
-    rows = [ROWS[name.partition(".")[2]] for name in marks if name.startswith("errors.")]
-    models = {run.options.element or run.model for run in rows}
-    assert models == {"timoshenko", "mixed", "exact", "solid", "elastica"}
 
 
 @cache

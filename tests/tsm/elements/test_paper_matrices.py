@@ -18,7 +18,6 @@ from tsm.elements import CLOSED_FORM, as_printed, cantilever, chord_contact, mix
 from tsm.elements.properties import Properties
 
 ERRATA = Path(__file__).parents[3] / "tsm" / "elements" / "errata.md"
-PRINTED = [name for name in CLOSED_FORM if name.endswith("-as-printed")]
 
 a, b, EI, Psi, x = sp.symbols("a b EI Psi x", positive=True)
 l0 = a + b
@@ -65,7 +64,6 @@ def derived(formulation):
 
 
 def in_symbols(function, shear):
-    """The code's own matrix and its derivative in a, evaluated with symbols."""
     p = Properties(l0, 0, l0, 1, EI, 12 * shear / l0**2)
     return tuple(sp.Matrix(part) for part in function(p, a / l0))
 
@@ -91,7 +89,6 @@ def table(formulation):
 
 
 def judged(correct, printed):
-    """Verdict on a printed expression."""
     ratio = sp.cancel(printed / correct)
     if ratio == 1:
         return "same"
@@ -144,10 +141,7 @@ def test_contact_stiffness_near_an_end():
 
 
 def force_errors(formulation, near, end, samples=30):
-    """Median error of the element forces in double precision, at the deformations of the element's own basic system.
-
-    The deformations of given forces are found in exact arithmetic and rounded to the last bit; the position is a double.
-    """
+    """Median error of the element forces in double precision, at the deformations of the element's own basic system."""
     function = FORMULATIONS[formulation].correct
     rng, errors = np.random.default_rng(15), []
     for _ in range(samples):
@@ -253,49 +247,3 @@ def test_eliminating_the_contact_force_gives_the_papers_elements(name, xi):
     lam = -(g @ v) / C
     assert lam == pytest.approx(-0.3, rel=1e-9)
     assert np.abs(S - (k @ v - lam * g)).max() <= 1e-13 * (np.abs(K) @ np.abs(v)).max()
-
-
-def newton(element_force, state, iterations, lift):
-    """Iterates of a cantilever of one element over a pin at 0.6 of its length."""
-    p, states = Properties(1.0, 0.0, 1.0, 1e3, 1.0, 0.01), [state]
-    for _ in range(iterations):
-        force, tangent = chord_contact.response(element_force, p, states[-1], (-0.6, -lift), 1.0, 0.0)
-        states.append(states[-1] - np.pad(np.linalg.solve(tangent[3:6, 3:6], force[3:6]), (3, 0)))
-    return states
-
-
-def test_newton_is_linear_without_the_part_of_the_slide():
-    """With ``J (dS/da) da`` left out every iteration leaves the same part of the error; with it the error is squared."""
-    exact = chord_contact.simply_supported(chord_contact.timoshenko)
-
-    def without(p, xi, deformation):
-        S, K, slope = exact(p, xi, deformation)
-        return S, K, 0 * slope
-
-    solution = np.zeros(6)
-    for lift in np.linspace(0.02, 0.3, 15):
-        solution = newton(exact, solution, 8, lift)[-1]
-    near = solution + np.array([0, 0, 0, 1e-4, -1e-4, 1e-4])
-    whole, part = (
-        np.array([np.abs(state - solution).max() for state in newton(f, near, 4, 0.3)])
-        for f in (exact, without)
-    )
-    assert whole[2] < 1e-11
-    assert part[2:] / part[1:-1] == pytest.approx(0.0095, rel=0.1)
-
-
-@pytest.mark.parametrize("name", PRINTED)
-def test_printed_elements_depend_on_the_unit_of_length(name):
-    """Metres to millimetres: a force in newtons stays what it is, but not with the misprints."""
-    corrected = CLOSED_FORM[name.removesuffix("-as-printed")]
-    forces = {}
-    for unit in (1.0, 1000.0):
-        p = Properties(unit, 0.0, unit, 10.0, 2.0 * unit**2, 0.4)
-        state = np.array([0.0, 0.0, 0.1, 0.0, 0.0, -0.05]) * np.array([unit, unit, 1] * 2)
-        lever = -unit * np.array([0.3, 0.03])
-        for kind in (corrected, CLOSED_FORM[name]):
-            gradient, _ = kind.contact.response(p, state, lever, 0.0, np.zeros(2), 1.0, 0.0)
-            forces.setdefault(kind.source, []).append(gradient[4])
-    right, wrong = forces[corrected.source], forces[CLOSED_FORM[name].source]
-    assert right[1] == pytest.approx(right[0], rel=1e-12)
-    assert abs(wrong[1] / wrong[0] - 1) > 1e-2
