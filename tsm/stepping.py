@@ -104,20 +104,6 @@ class Stepper:
         """The last equilibrium of the path."""
         return self.track.accepted
 
-    def resume(self, accepted: list[State], step: float) -> None:
-        """Go on from configurations that were accepted elsewhere, oldest first, instead of from the start.
-
-        Parameters
-        ----------
-        accepted : list of State
-            States in equilibrium, all with the same closed contacts.
-        step : float
-            Longest next step.
-        """
-        self.track.resume(accepted)
-        self.margins = self._measure(self.accepted)
-        self.control.step = step
-
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         rates = slip_rates(self.newton, equilibrium, self._drive(equilibrium.state.load_parameter))
         return margins(self.newton, equilibrium, rates)
