@@ -329,7 +329,9 @@ class Stepper:
                 return self.control.failure
             if after.kind is EventKind.TOUCH and before.value < 1.0 and located[1].value < -ROUND_OFF:
                 return self.control.refuse()
-            if first is None or located[0].state.load_parameter < first[0].state.load_parameter:
+            # at one load parameter a release comes last: another contact that opens may take its pull away
+            order = located[0].state.load_parameter, after.kind is EventKind.RELEASE
+            if first is None or order < (first[0].state.load_parameter, first[1].kind is EventKind.RELEASE):
                 first = located
         assert first is not None, "events is not empty"
         event, margin = first
