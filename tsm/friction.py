@@ -22,6 +22,8 @@ from tsm.system import Drive, Linearisation
 
 _EDGE = 1e-9
 """Distance of a force from the edge of the cone, over ``EI/L^2``, that counts as zero."""
+_NOISE = 1e-13
+"""Rate of a force, over the largest EA, that is round-off: that of a contact which turns a beam without bending it."""
 _STILL = 1e-9
 """Slip rate, in longest beams per whole load, that counts as zero."""
 _FLAT = 1e-6
@@ -212,7 +214,8 @@ def _grows(model: Model, k: int, here: Traction, by: Rates, grip: Grip) -> bool:
     fx, fy = by.unknowns[model.equations :][pair.slots][:2]
     c, s = math.cos(here.place.direction), math.sin(here.place.direction)
     tangential, normal = fx * c + fy * s, pair.side * (fy * c - fx * s)
-    edge = _EDGE * model.force_scale
+    stiff = max(beam.section.EA for beam in model.structure.beams)
+    edge = _EDGE * model.force_scale + _NOISE * stiff
     if grip == UNDECIDED:
         return bool(normal < -edge)
     return bool(normal >= -edge if grip.slip else abs(tangential) <= pair.pair.friction * normal + edge)

@@ -58,7 +58,7 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     """Number of negative eigenvalues of the energy's Hessian over the variations that supports and closed contacts admit.
 
     A contact that is closed without force admits variations to one side only. The index is then defined only if it is the same with the
-    contact open.
+    contact open, where the structure is no mechanism.
 
     Parameters
     ----------
@@ -108,10 +108,14 @@ def index(assembler: Assembler, state: State, system: Linearisation) -> int:
     ]
     if not idle:
         return held
-    free = negatives(_freed(symmetric, idle))
-    return (
-        held if free is not None and free - symmetric.multipliers + 2 * len(idle) // 3 == held else UNDEFINED
-    )
+    # a mechanism without its idle contacts has an eigenvalue of zero, whose sign is round-off
+    free, moves = _freed(symmetric, idle), (model.kind[: model.banded] < 3) / symmetric.units**2
+    stiffest = float((free.band[0, moves > 0] / moves[moves > 0]).max(initial=0.0))
+    shift = _LOOSE * float(np.finfo(float).eps) * stiffest * moves
+    shifted = (np.concatenate([free.band[:1] + way * shift, free.band[1:]]) for way in (-1, 1))
+    expected = held + symmetric.multipliers - 2 * len(idle) // 3
+    agreed = all(negatives(free._replace(band=band)) == expected for band in shifted)
+    return held if agreed else UNDEFINED
 
 
 def _freed(symmetric: Symmetric, idle: list[int]) -> Symmetric:
@@ -243,16 +247,14 @@ def _with_variation(
     right = np.zeros((model.equations + 1, border + sum(angles) + sum(moments)))
     corner = np.eye(right.shape[1])
     values = second.tangent.reshape(len(second.tangent), -1).T
+    closed = [part.tangent.ravel() for part in system.tangent.groups[: group.number]] if mixed else []
+    flat = np.concatenate([*closed, values.ravel(), assembler.spring_values])
+    band = np.bincount(assembler.scatter, flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
+    there = slice(before, before + values.size if mixed else None)
     if mixed:
         tangent = system.tangent
-        values = values - tangent.groups[group.number].tangent
+        flat = (values - tangent.groups[group.number].tangent).ravel()
         right[:, :border], corner[:border, :border] = tangent.right, tangent.corner
-    flat = values.ravel()
-    there = slice(before, before + len(flat) if mixed else None)
-    flat = flat if mixed else np.append(flat, assembler.spring_values)
-    band = np.bincount(assembler.scatter[there], flat, assembler.band_size + 1)[:-1].reshape(model.banded, -1)
-    if mixed:
-        band = band + system.tangent.band
     if aside:
         added = np.bincount(assembler.scatter_right[there], flat, assembler.size + 1)[:-1]
         right[:, :border] += added.reshape(-1, border)

@@ -104,20 +104,6 @@ class Stepper:
         """The last equilibrium of the path."""
         return self.track.accepted
 
-    def resume(self, accepted: list[State], step: float) -> None:
-        """Go on from configurations that were accepted elsewhere, oldest first, instead of from the start.
-
-        Parameters
-        ----------
-        accepted : list of State
-            States in equilibrium, all with the same closed contacts.
-        step : float
-            Longest next step.
-        """
-        self.track.resume(accepted)
-        self.margins = self._measure(self.accepted)
-        self.control.step = step
-
     def _measure(self, equilibrium: Equilibrium) -> list[Margin]:
         rates = slip_rates(self.newton, equilibrium, self._drive(equilibrium.state.load_parameter))
         return margins(self.newton, equilibrium, rates)
@@ -343,7 +329,9 @@ class Stepper:
                 return self.control.failure
             if after.kind is EventKind.TOUCH and before.value < 1.0 and located[1].value < -ROUND_OFF:
                 return self.control.refuse()
-            if first is None or located[0].state.load_parameter < first[0].state.load_parameter:
+            # at one load parameter a release comes last: another contact that opens may take its pull away
+            order = located[0].state.load_parameter, after.kind is EventKind.RELEASE
+            if first is None or order < (first[0].state.load_parameter, first[1].kind is EventKind.RELEASE):
                 first = located
         assert first is not None, "events is not empty"
         event, margin = first

@@ -50,19 +50,6 @@ class Track:
         self.tangent = self.earlier = PathTangent(newton, start)
         self.index = max(self.tangent.index, 0) if start.status is Status.CONVERGED else 0
 
-    def resume(self, states: list[State]) -> None:
-        """Go on from states that were accepted elsewhere, oldest first."""
-        state = states[-1]
-        self.accepted = Equilibrium(
-            state=state,
-            status=Status.CONVERGED,
-            iterations=0,
-            residuals=(),
-            system=self.newton.assembler.linearise(state),
-        )
-        self.history = states
-        self.tangent = PathTangent(self.newton, self.accepted)
-
     def accept(self, equilibrium: Equilibrium, tangent: PathTangent | None = None) -> None:
         """Make an equilibrium the last of the path."""
         state = equilibrium.state

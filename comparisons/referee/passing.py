@@ -49,8 +49,12 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
     if response.events is None:
         return
     times = np.concatenate([[0.0], response.load_parameter])
+    slipped = {event.pair for event in response.events if event.kind == "slip-off"}
     for spec in scene.contacts:
-        closed = response.contacts[spec.pair].force != 0.0
+        contact = response.contacts[spec.pair]
+        if np.isfinite(contact.slip_off) and spec.pair not in slipped:
+            yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
+        closed = contact.force != 0.0
         events = np.array(
             [
                 event.load_parameter

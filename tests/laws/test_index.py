@@ -9,6 +9,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import certify
 from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec
+from tests.laws.scenes import answer, scene
 
 EA, GA = 4e3, 5e2
 ENDS = {"free": ((), ()), "pinned": (("x", "y"), ("y",)), "clamped": ((), ("y", "rotation"))}
@@ -59,3 +60,9 @@ def test_the_index_is_the_number_of_critical_loads_passed(element: str, ends: st
         assert [
             item.index for item in certify(found, asked, at=range(12), allowance=math.inf).judged
         ] == passed
+
+
+@pytest.mark.parametrize("element", ["exact", "mixed"])
+def test_a_beam_that_idle_contacts_hold_has_no_index(element: str) -> None:
+    """Without them it turns about its pin: an eigenvalue is zero, and its sign was that of the round-off."""
+    assert set(answer(scene("world-12"), element).index) == {-1}

@@ -30,8 +30,8 @@ def registered(monkeypatch):
 
 
 def pressed(element, *, section=SLACK):
-    """A cantilever pushed up by a pin, or by two on the same exact element."""
-    pins = 2 if element == "exact" else 1
+    """A cantilever pushed up by a pin, or by two on the same element where its matrix knows both."""
+    pins = 2 if tsm.ELEMENTS[element].contact_unknowns else 1
     paths = [((x, -0.02), (x - 0.02, depth - 0.02)) for x, depth in ((0.55, 0.035), (0.95, 0.08))][:pins]
     return cantilever(*paths, section=section, element=element, elements=2, offset=0.02)
 
@@ -67,6 +67,18 @@ def test_strain_energy_is_the_work_of_the_pin(element):
     power = np.einsum("tpi,pi->t", forces, pins)
     gained = result.strain_energy[-1] - result.strain_energy[0]
     assert gained == pytest.approx(weight @ power[1:-1] / 4, rel=1e-9 if element in ENERGETIC else 5e-3)
+
+
+@pytest.mark.parametrize("second", [0.0, 0.3])
+def test_work_of_two_pins_on_one_element_is_stored_or_dissipated(second):
+    """Friction on the first contact, and on none or the second."""
+    paths = [((x, 0.0), (x - 0.04, depth)) for x, depth in ((0.55, 0.055), (0.95, 0.14))]
+    plain = cantilever(*paths, section=SLACK, elements=1)
+    contacts = [replace(pair, friction=mu) for pair, mu in zip(plain.contacts, (0.3, second), strict=True)]
+    result = tsm.solve(replace(plain, contacts=tuple(contacts)), [1.0])
+    assert all(contact.force[-1] > 0 for contact in result.contacts.values())
+    lost = sum(contact.friction.dissipated[-1] for contact in result.contacts.values() if contact.friction)
+    assert result.work[-1] - lost == pytest.approx(result.strain_energy[-1], rel=1e-6)
 
 
 def test_one_short_element_among_long_ones_changes_nothing():

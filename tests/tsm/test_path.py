@@ -70,6 +70,19 @@ def test_contact_without_force_has_an_index_only_if_it_does_not_matter(element, 
         assert index(pressed(element, elements, load=load)) == expected
 
 
+def test_the_index_of_exact_among_other_elements_does_not_depend_on_the_units():
+    """The exact elements' own rows, of compliances as large as 1e25, had cancelled all digits of their units."""
+    for length, stiffness in ((1.0, 1.0), (1e-5, 1e-25)):
+        section = tsm.Section(EA=1e6 * stiffness / length**2, GA=1e6 * stiffness / length**2, EI=stiffness)
+        heavy = beam("a", (0.0, 0.0), (length, 0.0), section=section, element="mixed")
+        light = beam("b", (length, 0.0), (length, length), section=section, element="mixed")
+        weight = tsm.LineLoad(beam="a", force=((0.0, -stiffness / length**3),))
+        structure = tsm.Structure(
+            beams=(heavy, light), supports=(tsm.Support(beam="a", end="start"),), line_loads=(weight,)
+        )
+        assert tsm.solve(structure, [1.0]).index.tolist() == [0]
+
+
 def test_contacts_of_the_paper_have_no_index():
     assert tsm.solve(pressed("timoshenko", 11, load=0.0, rise=0.04), [0.1]).index.tolist() == [-1]
 

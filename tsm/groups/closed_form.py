@@ -183,7 +183,9 @@ class ClosedFormGroup(ElementGroup):
             for other in state.touches[:k]:
                 if coupling and other is not None and other.element == touch.element:
                     dot = touch.force[0] * other.force[0] + touch.force[1] * other.force[1]
-                    total += coupling.dent(p, touch.xi, other.xi) * dot
+                    # the Lagrangian of each contact without friction holds it once, in equilibrium
+                    times = 1 - (touch.grip is None) - (other.grip is None)
+                    total += times * coupling.dent(p, touch.xi, other.xi) * dot
         return total
 
     def contact(self, pair: PairModel, touch: Touch, state: State) -> tuple[Array, Array]:

@@ -241,6 +241,7 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "all arc positions .3": ("ks", pin("arc_position", [0.3] * STEPS), WRONG + "supports and contacts are off by 0.6 L"),
     "tip moved by 7": ("ks", put("tips", BEAM, to=plus(7.0)), WRONG + "tip off by 9.9e+02 %"),
     "lost contact": ("ks", lost, NOT + "pin->cantilever is open and its node goes through the beam up to load parameter 0.1"),
+    "a slip-off without an event": ("ks", both(lost, pin("slip_off", 0.0)), NOT + "pin->cantilever slips off at load parameter 0 without an event"),
     "a pin that goes through": ("through", both(instead("ks"), lost), NOT + "pin->cantilever is open and its node goes through the beam"),
     "a pin around the end": ("around", both(instead("ks"), lost), "NOT_JUDGED: nothing to judge: no load, support or contact carries a force"),
     "a pull": ("ks", pin("force", -1.0, 6), WRONG + "the contact force of pin->cantilever pulls"),
