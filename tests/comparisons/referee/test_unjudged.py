@@ -12,6 +12,7 @@ from comparisons.models.options import Options
 from comparisons.referee import Verdict, certify
 from comparisons.response import Response
 from comparisons.scene import load_scene, to_toml
+from tests.fuzz.world import drawn
 
 
 def weakened(response: Response, kept: list[float], factor: float) -> Response:
@@ -42,6 +43,12 @@ def test_forces_at_load_parameters_that_are_not_judged_do_the_work_that_is_store
     found = certify(weakened(answer, [item.load_parameter for item in right.judged], 0.9), scene)
     assert found.verdict is Verdict.NOT_AN_EQUILIBRIUM
     assert found.reason.startswith("the work of supports, pins and loads is not the strain energy")
+
+
+def test_a_force_that_is_there_at_once_does_its_work_too() -> None:
+    """In the first of ten steps, where the trapezoidal rule takes it for one that grows."""
+    scene = drawn(2026112513)
+    assert certify(solve(scene, "tsm", Options(element="exact")), scene, at=range(10)).certified
 
 
 def test_an_answer_that_reached_nothing_is_not_judged(
