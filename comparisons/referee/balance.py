@@ -13,6 +13,8 @@ from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
 BALANCE = 1e-6
 """Largest unbalanced force of a model of this package, over the largest force that acts. Newton's tolerances are far below."""
 
+_FEWEST = 8
+"""Fewest load parameters up to which the work is compared with the strain energy."""
 _PANELS, _NODES = 20, 4
 """Panels, and nodes in each, of the quadrature of a load along a beam."""
 
@@ -75,12 +77,12 @@ def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allo
 
     ``W = sum int F dx + sum int M dtheta`` of supports, pins and loads by the trapezoidal rule over all load parameters. Its error is bounded
     by three times the differences from the rule with every second one, pair by pair of intervals, and by the work of a first interval
-    without a partner. A jump releases energy, friction dissipates it, and the rotation of a moment's end is not stated: there is nothing
-    to compare with then.
+    without a partner. It is not bounded by few load parameters or over the end of a stage; a jump releases energy, friction dissipates it,
+    and the rotation of a moment's end is not stated: there is nothing to compare with then.
     """
     rubbed = any(spec.friction for spec in scene.contacts)
     turned = any(any(history.at(t)[2] for t in scene.times) for history in scene.load_histories)
-    if response.events is None or rubbed or turned or not len(response.load_parameter):
+    if response.events is None or rubbed or turned or scene.stages or len(response.load_parameter) < _FEWEST:
         return
     jumps = [event.load_parameter for event in response.events if event.released]
     actions = [*_supports(response, scene), *_loads(response, scene)]
@@ -88,7 +90,7 @@ def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allo
     actions += _pins(response, scene, outer)[2]
     least = least_force(scene) * max(beam.length for beam in scene.beams)
     for k, energy in energies.items():
-        if k < 3 or any(t <= response.load_parameter[k] for t in jumps):
+        if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in jumps):
             continue
         fine, coarse = (
             sum(item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions)
