@@ -40,7 +40,10 @@ def run_line(line: str) -> str:
     stated = re.search(r"# exit status (\d+)$", line)
     out, err = StringIO(), StringIO()
     with redirect_stdout(out), redirect_stderr(err):
-        status = main(arguments)
+        try:
+            status = main(arguments)
+        except SystemExit as ended:  # argparse's own, of --version
+            status = ended.code
     assert status == (int(stated[1]) if stated else 0), f"{line}: {err.getvalue()}"
     return out.getvalue() + err.getvalue()
 
