@@ -1,5 +1,7 @@
 """Beams that are held at both ends: the path is followed inside elements too, with any number of load parameters."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
@@ -35,3 +37,11 @@ def test_more_beams_held_at_both_ends(first: int) -> None:
         assert not found.findings, found.report()
         ended = {row.model: row.ended for row in found.rows if row.number == NUMBERS[0]}
         assert ended["exact"] == "COMPLETED" or ended["mixed"] != "COMPLETED"
+
+
+@pytest.mark.slow
+def test_the_command_judges_on_all_cores() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.fuzz", "held", "0", "2"], capture_output=True, text=True, check=True
+    )
+    assert "0 wrong: " in done.stdout
