@@ -93,7 +93,7 @@ def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allo
         if k + 1 < _FEWEST or any(t <= response.load_parameter[k] for t in jumps):
             continue
         fine, coarse = (
-            sum(item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions)
+            np.sum([item.work(np.array([0, *range(1 + k % step, k + 2, step)])) for item in actions], axis=0)
             for step in (1, 2)
         )
         pairs = np.add.reduceat(fine, np.arange(-(k % 2 == 0), len(fine), 2).clip(0))
