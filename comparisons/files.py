@@ -180,6 +180,19 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
+def interrupts_held() -> Iterator[None]:
+    """Hold back Ctrl-C. Processes started inside the block ignore it for good, so that this process alone handles it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
 def staging(folder: Path) -> Iterator[Path]:
     """Yield a new hidden folder in `folder`, for files that are moved out when they are finished.
 
@@ -191,26 +204,19 @@ def staging(folder: Path) -> Iterator[Path]:
         If the disk is full or the system refuses to write.
     """
     try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".crossval-") as aside:
-            yield Path(aside)
+        # an interrupt within its making or its removal would leave it; at any other point its finalizer removes it
+        with interrupts_held():
+            aside = tempfile.TemporaryDirectory(dir=folder, prefix=".crossval-")
+        try:
+            yield Path(aside.name)
+        finally:
+            with interrupts_held():
+                aside.cleanup()
     except OutputError as error:
         # the message names the final path of a file, not its temporary one
-        raise OutputError(str(error).replace(f"{aside}{os.sep}", f"{folder}{os.sep}")) from error
+        raise OutputError(str(error).replace(f"{aside.name}{os.sep}", f"{folder}{os.sep}")) from error
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror or error}") from error
-
-
-@contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Hold back Ctrl-C. Processes started inside the block ignore it for good, so that this process alone handles it."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def writable_folder(folder: Path, *names: str) -> Path:
