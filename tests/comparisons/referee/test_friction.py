@@ -61,9 +61,7 @@ def forces_alone(response: Response) -> Response:
         ("ks-cantilever", 0.3, forces_alone),
     ],
 )
-def test_exact_elements_are_certified_to_round_off_all_along(
-    name: str, friction: float, leave: Callable[[Response], Response]
-) -> None:
+def test_exact_elements_are_certified_to_round_off_all_along(name, friction, leave):
     """The referee finds itself what they do not state."""
     scene = rough(name, friction)
     response = answer(scene)
@@ -80,7 +78,7 @@ def test_exact_elements_are_certified_to_round_off_all_along(
 
 
 @pytest.mark.slow
-def test_the_solid_is_certified_all_along() -> None:
+def test_the_solid_is_certified_all_along():
     """With its events, and without them, so that the referee finds slip and stick itself."""
     scene = rough("ks-cantilever")
     response = solve(scene, "solid", Options(mesh=(50, 2)))
@@ -93,7 +91,7 @@ def test_the_solid_is_certified_all_along() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
-def test_the_dissipation_is_that_of_the_exact_elements(name: str) -> None:
+def test_the_dissipation_is_that_of_the_exact_elements(name):
     """Two quadratures of different programs; work less dissipation is the strain energy."""
     scene = rough(name)
     response = answer(scene)
@@ -135,7 +133,7 @@ def of_another_history(
     )
 
 
-def test_equilibria_of_another_history_are_refused() -> None:
+def test_equilibria_of_another_history_are_refused():
     """They obey every equation of their own: a stick from another place, and a force that leans the wrong way."""
     scene = rough("ks-cantilever")
     held = of_another_history(answer(scene), scene, elsewhere)
@@ -154,7 +152,7 @@ def test_equilibria_of_another_history_are_refused() -> None:
 
 
 @pytest.mark.slow
-def test_a_strut_buckles_in_stick_whatever_the_steps() -> None:
+def test_a_strut_buckles_in_stick_whatever_the_steps():
     """The strut of the crossed beams sticks on the lower beam; on the straight branch its force would be 5130 N instead of 2905 N."""
     for steps in (6, 12, 24):
         scene = rough("crossed-beams", 0.2, steps)
@@ -163,23 +161,16 @@ def test_a_strut_buckles_in_stick_whatever_the_steps() -> None:
         assert response.contacts["upper.end->lower"].force[-1] == pytest.approx(2904.509, rel=1e-6)
 
 
-@pytest.mark.slow_at(
-    "axis-0.1-1.0-0.0-8", "axis-None-1.0-0.003-8", "face-None-20.0-0.0-8", "face-0.1-20.0-0.003-8"
-)
+@pytest.mark.slow_at("axis-None-1.0-0.003-8", "face-0.1-20.0-0.003-8")
 @pytest.mark.parametrize(
     ("surface", "radius", "friction", "gap", "steps"),
     [
-        ("axis", None, 1.0, 0.0, 8),
         ("axis", 0.1, 1.0, 0.0, 2),
-        ("axis", 0.1, 1.0, 0.0, 8),
         ("axis", None, 1.0, 0.003, 8),
-        ("face", None, 20.0, 0.0, 8),
         ("face", 0.1, 20.0, 0.003, 8),
     ],
 )
-def test_a_pin_that_sticks_where_it_touches_is_certified(
-    surface: str, radius: float | None, friction: float, gap: float, steps: int
-) -> None:
+def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, friction, gap, steps):
     """A round pin rolls. With and without events."""
     offset = (0.1 if surface == "face" else 0.0) + (radius or 0.0)
     scene = scene_of(
