@@ -1,5 +1,6 @@
 """Comparisons that leave something out, stop, or find models on different branches; `show/pages` has a whole one."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from comparisons.compare import ROD, compare
 from comparisons.models.options import Options
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from tests.comparisons.show.pages.markup import check_alone
 from tests.comparisons.show.specimen import SPECIMEN
 
 KS = load_scene("ks-cantilever")
@@ -87,6 +89,11 @@ def test_models_on_different_branches_end_with_status_3(refereed, told, short, m
         monkeypatch.setattr(compared, "certified", lambda response, _: response)
     assert main(["compare", str(short), "--out", "out", "--quiet"]) == 3
     assert capsys.readouterr().err.startswith(f"crossval: TSM mixed, 20 elements: {told}")
+    out = Path("out")
+    check_alone((out / "report.html").read_text(), out)
+    assert [
+        name for name in json.loads((out / "summary.json").read_text())["files"] if not (out / name).is_file()
+    ] == []
 
 
 def test_an_event_that_the_reference_does_not_have_is_a_line(short, monkeypatch):

@@ -31,6 +31,7 @@ def summarised(folder: Path) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]
     return summary, {run["label"]: run for run in summary["runs"]}
 
 
+@pytest.mark.slow
 def test_a_comparison_writes_every_file_and_names_it(compared):
     folder = compared.folder
     there = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
@@ -45,6 +46,7 @@ def test_a_comparison_writes_every_file_and_names_it(compared):
     assert compared.progress.endswith("measuring the error budget\ndrawing and writing files\n")
 
 
+@pytest.mark.slow
 def test_summary_table_and_page_have_the_same_numbers(compared):
     folder = compared.folder
     summary, runs = summarised(folder)
@@ -74,6 +76,7 @@ def test_summary_table_and_page_have_the_same_numbers(compared):
         assert {len(lines[0]) for lines in line["lines"]} == {61}
 
 
+@pytest.mark.slow
 def test_a_page_is_alone_and_begins_with_the_findings(compared):
     html, (_, runs) = (compared.folder / "report.html").read_text(), summarised(compared.folder)
     check_alone(html, compared.folder)
