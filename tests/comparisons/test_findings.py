@@ -66,15 +66,6 @@ ENDS = [
     ("twopins-8", BOTH, (1, 8), None, pressed("q->b"), pytest.approx(6750, rel=3e-3)),
     ("pin-29", BOTH, (1,), "COMPLETED", pressed("p->b"), 0.0),
     ("beams-146", BOTH, (7,), None, pressed("p->u"), pytest.approx(3.09, rel=1e-2)),
-    # a beam that rolls on a round pin slips where it must, below and in full
-    (
-        "thick-roll",
-        EXACT,
-        (5,),
-        "COMPLETED",
-        lambda found: slips(found),
-        pytest.approx([0.6492235334], abs=1e-9),
-    ),
     ("portal", MIXED, (None,), "COMPLETED", lambda found: found.certificate.certified, True),
 ]
 """Scene, elements, numbers of load parameters, status, and a value of the last answer."""

@@ -1,7 +1,6 @@
 """Material force: zero of frictionless answers, a model's error of direction, and every seeded fault of a contact."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -39,12 +38,12 @@ def friction(response: Response, scene: Scene = KS) -> float:
     return difference(response, none, scene, "friction")
 
 
-def test_the_exact_answers_have_no_friction(stated: Callable[..., None]) -> None:
+def test_the_exact_answers_have_no_friction(stated):
     for name, given in {"rod": ("rod",), "elastica": ("elastica",), "exact": ("tsm", EXACT)}.items():
         stated(f"friction.{name}", friction(answer(*given)), bound=True)
 
 
-def test_the_friction_of_the_elements(stated: Callable[..., None]) -> None:
+def test_the_friction_of_the_elements(stated):
     stated("friction.mixed", friction(answer("tsm", Options(element="mixed", elements=10))))
     for elements in (10, 20, 50):
         paper = answer("tsm", Options(element="timoshenko", elements=elements))
@@ -53,9 +52,7 @@ def test_the_friction_of_the_elements(stated: Callable[..., None]) -> None:
 
 @pytest.mark.slow_at("mesh1", "mesh2")
 @pytest.mark.parametrize("mesh", [(25, 1), (50, 2), (100, 4)])
-def test_the_friction_of_the_solid_by_its_j_integral(
-    mesh: tuple[int, int], stated: Callable[..., None]
-) -> None:
+def test_the_friction_of_the_solid_by_its_j_integral(mesh, stated):
     solid = answer("solid", Options(mesh=mesh))
     stated(f"friction.solid-{mesh[0]}x{mesh[1]}", friction(solid))
     if mesh == (50, 2):
@@ -66,7 +63,7 @@ def test_the_friction_of_the_solid_by_its_j_integral(
 
 
 @pytest.mark.parametrize("clamp", ["start", "end"])
-def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
+def test_a_naturally_curved_beam_has_no_friction(clamp):
     """Its H has the part of the natural curvature: without it the friction is more than one percent."""
     beam = replace(KS.beams[0], turn=0.8)
     if clamp == "end":
@@ -82,7 +79,7 @@ def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
 
 @pytest.mark.parametrize("coefficient", [-0.5, 0.0, 0.05, 2.0])
 @pytest.mark.parametrize("lever", [0.0, 0.05])
-def test_the_coefficient_of_friction_found(coefficient: float, lever: float) -> None:
+def test_the_coefficient_of_friction_found(coefficient, lever):
     """From H at the clamp of a rod that stretches and shears strongly, under forces at every angle, with the couple of a face."""
     size = {"width": 0.1, "height": 0.1, "youngs_modulus": 1.0, "poissons_ratio": 0.3}
     beam = BeamSpec(name="b", start=(0.0, 0.0), end=(1.0, 0.0), **size)
@@ -111,13 +108,13 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("kind", [*OTHERS, "own end touches"])
-def test_where_there_is_no_material_force(kind: str) -> None:
+def test_where_there_is_no_material_force(kind):
     scene = load_scene("double-beam") if kind == "own end touches" else replace(KS, **OTHERS[kind])
     few = solve(replace(scene, load_parameters=2), "tsm", Options(elements=4))
     assert set(few.material_force) == ({"lower"} if kind == "own end touches" else set())
 
 
-def test_the_error_of_the_friction() -> None:
+def test_the_error_of_the_friction():
     """Against the exact rod it is the friction; a response without a material force has an infinite one."""
     rod, response = answer("rod"), answer("tsm", Options(element="timoshenko", elements=10))
     assert difference(response, rod, KS, "friction") == pytest.approx(friction(response), rel=1e-9)
@@ -125,7 +122,7 @@ def test_the_error_of_the_friction() -> None:
     assert difference(response, replace(rod, material_force={}), KS, "friction") == np.inf
 
 
-def test_a_bound_on_a_friction_that_is_not_there_is_refused() -> None:
+def test_a_bound_on_a_friction_that_is_not_there_is_refused():
     scene = load_scene("two-pins")
     with pytest.raises(ModelError, match="one clamp alone"):
         gate(scene, "tsm", Options(), {"friction": 1e-3})
@@ -137,7 +134,7 @@ def test_a_bound_on_a_friction_that_is_not_there_is_refused() -> None:
     ]
 
 
-def test_a_certificate_does_not_replace_the_material_force() -> None:
+def test_a_certificate_does_not_replace_the_material_force():
     """The paper's element is certified within a coarse allowance, with a friction of two hundredths."""
     response = certified(answer("tsm", Options(element="timoshenko", elements=10)), KS)
     assert response.certificate is not None
@@ -148,7 +145,7 @@ def test_a_certificate_does_not_replace_the_material_force() -> None:
 @pytest.mark.slow_at("axis-0.1", "axis-0.5", "face-0.1", "face-0.5")
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize("surface", ["axis", "face"])
-def test_the_clamp_shows_the_friction_of_the_contact(friction: float, surface: str) -> None:
+def test_the_clamp_shows_the_friction_of_the_contact(friction, surface):
     (pin,), (contact,) = KS.pins, KS.contacts
     pin = replace(pin, start=(1.0, 0.0 if surface == "axis" else -0.01))
     scene = replace(KS, pins=(pin,), contacts=(replace(contact, surface=surface, friction=friction),))

@@ -129,16 +129,17 @@ def distance(case: Scene, mesh: tuple[int, int] | None = None) -> float:
     return float(max(found))
 
 
-@pytest.mark.slow_at("tip load", "turned pins", "moved clamp")
+@pytest.mark.slow_at("tip load", "turned pins", "moved clamp", "pushed between", "raised", "part", "inside")
+@pytest.mark.slow_at("weight", "turn", "other end", "sliding on an arc")
 @pytest.mark.parametrize("case", CASES)
-def test_forces_and_reactions_are_the_rods(case: str) -> None:
+def test_forces_and_reactions_are_the_rods(case):
     """Within a thousandth at h/L = .02."""
     assert distance(CASES[case](0.02), (40, 1)) < 1e-3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", list(CASES)[:7])
-def test_the_difference_falls_as_the_height_squared(case: str) -> None:
+@pytest.mark.parametrize("case", ["moved clamp", "driven tip", "frame"])
+def test_the_difference_falls_as_the_height_squared(case):
     thick, thin = distance(CASES[case](0.02)), distance(CASES[case](0.01), (100, 2))
     assert np.log2(thick / thin) == pytest.approx(2.0, abs=0.25)
 
@@ -151,12 +152,12 @@ def with_the_rods_law(found: Scene) -> Scene:
 @pytest.mark.parametrize(
     ("name", "within"), [("two-pins", 1e-4), ("ks-tied-tip", 1.1e-3), (str(FINDINGS / "portal.toml"), 1e-4)]
 )
-def test_scenes_of_users(name: str, within: float) -> None:
+def test_scenes_of_users(name, within):
     """A beam under two pins, a tip that its support moves beyond buckling, and a frame stated by area and second moment."""
     assert distance(with_the_rods_law(load_scene(name))) < within
 
 
-def test_a_strut_on_a_beam_buckles_where_the_rods_does() -> None:
+def test_a_strut_on_a_beam_buckles_where_the_rods_does():
     """The strut's clamp drives its tip on the beam: both paths end at a bifurcation, within 1 % of the motion."""
     crossed = with_the_rods_law(load_scene(FINDINGS / "crossed.toml"))
     exact, solid = solve(crossed, "tsm", EXACT), solve(crossed, "solid")
@@ -189,7 +190,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("why", REFUSED)
-def test_what_a_model_cannot_state_costs_one_line(why: str) -> None:
+def test_what_a_model_cannot_state_costs_one_line(why):
     model, asked = REFUSED[why]
     with pytest.raises(ModelError) as caught:
         solve(asked, model)
