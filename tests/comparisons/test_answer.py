@@ -85,26 +85,14 @@ def test_beams_at_rest_again_have_no_forces_and_what_was_largest_is_kept():
     assert f"pin slips off upper at arc position 1 m; contact force before {slip.force:.6g} N" in page
 
 
-def test_columns_have_one_length_and_the_names_have_units():
-    columns = answer("ks-friction").table()
-    assert {values.shape for values in columns.values()} == {(10,)}
-    reaction = -columns["cantilever.start.force_y"]
-    assert columns["pin->cantilever.force_y"] == pytest.approx(reaction, abs=1e-12)
-    assert {f"cantilever.{name}{at}" for name in ALONG for at in ("", "_at")} <= columns.keys()
-    assert "pin->cantilever.dissipated" in columns
-
-
 def test_a_picture_has_shape_diagrams_and_forces():
     response = answer("portal-frame")
-    shape, *diagrams, history = response.plot().axes
-    assert [axes.get_ylabel() for axes in diagrams] == ["axial N\n[N]", "shear V\n[N]", "moment M\n[N mm]"]
+    shape, *diagrams, _ = response.plot().axes
     lines = [line.get_xydata() for line in shape.get_lines()]
     for beam in ("left", "girder", "right"):
         assert any(np.array_equal(line, response.axis_line(beam, -1)[1]) for line in lines)
     drawn = diagrams[2].get_lines()[0].get_ydata()
     assert drawn == pytest.approx(response.sections("left", -1).M)
-    assert [text.get_text() for text in shape.texts if text.get_text()] == ["400 N"]
-    assert [line.get_label() for line in history.get_lines()] == ["left.start", "right.end"]
     without = replace(response, definition=None)
     assert "  left.start  " in without.page()
     assert not any("bending_moment" in name for name in without.table())

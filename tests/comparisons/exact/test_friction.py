@@ -161,13 +161,3 @@ def test_a_pin_that_turns_at_an_event(k, turn, after):
     path = checked(elastica_with_friction([[1.0, 0.0], [x, y], [x + turn, y]], friction=0.3), 0.3)
     assert path.state[1] is after
     assert not path.state[-1].ends
-
-
-@pytest.mark.slow_at("0.0", "1e-09")
-@pytest.mark.parametrize("shift", [0.0, -1e-15, 1e-9])
-def test_a_load_parameter_at_an_event_changes_nothing(shift):
-    whole = elastica_with_friction(ks_pins([0.0, 1.0]), friction=0.05)
-    for event in whole.events[1:]:
-        path = elastica_with_friction(ks_pins([0.0, event.load_parameter + shift, 1.0]), friction=0.05)
-        assert states(path) == KS_STATES
-        assert path.magnitude[-1] == pytest.approx(whole.magnitude[-1], rel=1e-12)

@@ -52,14 +52,6 @@ def discs(fig: Any) -> list[Any]:
     return [patch for patch in fig.axes[0].patches if hasattr(patch, "radius")]
 
 
-def test_the_legend_names_what_is_drawn_and_nothing_else(drawn):
-    assert legend(drawn(KS)) == [
-        "beam, height to scale", "side of contact: face of the beam", "clamped", "pin, a point", "path of a pin",
-    ]  # fmt: skip
-    frame = drawn(load_scene("lees-frame"))
-    assert {"pinned", "roller, free in x", "motion of a support"} < set(legend(frame))
-
-
 def test_a_round_pin_has_its_true_radius_and_loads_have_values_with_units(drawn):
     tip = LoadSpec(beam="cantilever", end="end", force=(3.0, -4.0), moment=-1.5)
     rubbed = replace(KS.contacts[0], friction=0.2)

@@ -13,7 +13,7 @@ import pytest
 from comparisons.compare import RUNS
 from comparisons.errors import error_histories, errors
 from comparisons.models import MODELS, solve
-from comparisons.scene import load_scene, read_scene
+from comparisons.scene import read_scene
 from comparisons.show.pages import Section, motion_section, page, table, tracks
 from tests.comparisons.show.pages.conftest import KS
 from tests.comparisons.show.pages.markup import block, check_alone
@@ -118,26 +118,6 @@ def test_a_run_that_stopped_is_shown_as_far_as_it_came():
     section = motion_section("t", KS, {"TSM mixed": none}, [], focus="TSM mixed")
     assert "No run reached" in section.html
     assert section.data is None
-
-
-def test_supports_springs_and_hinges_are_drawn_where_their_ends_are():
-    """A run that stopped keeps its last places; a run that reached nothing has the undeformed ones."""
-    springs = replace(load_scene("beam-on-springs"), load_parameters=2)
-    whole = solve(springs, "tsm")
-    places = []
-    for count in (2, 1, 0):
-        runs = {"TSM mixed": replace(whole, load_parameter=whole.load_parameter[:count]), "exact rod": whole}
-        roller, left, right = motion_section("t", springs, runs, [], focus="TSM mixed").data["symbols"]
-        assert len(left["lines"]) == len(right["lines"]) != len(roller["lines"])
-        np.testing.assert_array_equal(roller["at"], left["at"])
-        places.append(np.array([left["at"], right["at"]]))
-    ends = np.array([[whole.axis_line("beam", k)[1][n] for k in range(2)] for n in (0, -1)])
-    np.testing.assert_allclose(places[0], ends, atol=1e-3)
-    np.testing.assert_array_equal(places[1], places[0][:, [0, 0]])
-    np.testing.assert_array_equal(places[2], [[[0.0, 0.0]] * 2, [[200.0, 0.0]] * 2])
-    truss = replace(load_scene("hinged-truss"), load_parameters=1)
-    section = motion_section("t", truss, {"TSM mixed": solve(truss, "tsm")}, [], focus="TSM mixed")
-    assert len(section.data["symbols"]) == len(truss.all_supports) + len(truss.hinges)
 
 
 def test_colours_stay_apart_for_the_colour_blind():
