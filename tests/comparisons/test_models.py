@@ -75,6 +75,8 @@ NO_UNKNOWNS = r"Beam\(cantilever\)\.elements = 1: every node is held.*take at le
         (BOTH_ENDS, "tsm", Options(element="mixed", elements=1), NO_UNKNOWNS),
         (RUBBED, "tsm", EXACT, TAPERED),
         (FACE, "elastica", Options(), "in contact on its axis only"),
+        (MOVED_CLAMPS[0], "elastica", Options(), r'the clamp at rest, "cantilever\.start" moves'),
+        (replace(KS, supports=(support("end", kind="pinned"),)), "elastica", Options(), 'one support, beam "cantilever" has two'),
         (on(KS, poissons_ratio=None, shear_modulus=1e3), "solid", Options(), "needs a Poisson's ratio between"),
         (on(KS, mesh=(1, 1)), "solid", Options(), "needs at least 2 elements along"),
         (on(KS, solid_mesh_file="nothing.msh"), "solid", Options(), r"^solid: Strip\('cantilever'\)\.mesh_file = 'nothing.msh': cannot be read"),

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from comparisons.cli import main
 from comparisons.exact import rod_under_pin
 from comparisons.models import solve
 from comparisons.models.options import Options
@@ -19,6 +20,7 @@ from comparisons.scene import (
     Scene,
     StageSpec,
     load_scene,
+    to_toml,
 )
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated
 
@@ -128,3 +130,41 @@ def test_what_is_inside_the_end_of_a_beam_is_inadmissible(x, rise, radius, surfa
     found = certify(stated(scene, [bent(scene, 1.0, {"b": line})]), scene, at=[0])
     assert (found.judged[0].verdict is Verdict.INADMISSIBLE) == bool(words), found.line()
     assert words in found.judged[0].reason
+
+
+def weakened(response: Response, kept: list[float], factor: float) -> Response:
+    """Multiply all forces away from the kept load parameters: they balance as before."""
+    part = np.where(np.isin(response.load_parameter, kept), 1.0, factor)
+    contacts = {
+        pair: replace(
+            item,
+            force=part * item.force,
+            vector=None if item.vector is None else part[:, None] * item.vector,
+        )
+        for pair, item in response.contacts.items()
+    }
+    supports = {
+        end: replace(item, force=part[:, None] * item.force, moment=part * item.moment)
+        for end, item in response.supports.items()
+    }
+    return replace(response, contacts=contacts, supports=supports, material_force={})
+
+
+def test_forces_at_load_parameters_that_are_not_judged_do_the_work_that_is_stored():
+    """By default two of fifty load parameters are judged; all others hold nine tenths of their forces."""
+    scene = load_scene("crossed-beams")
+    exact = solve(scene, "tsm", Options(element="exact"))
+    right = certify(exact, scene)
+    assert right.certified
+    found = certify(weakened(exact, [item.load_parameter for item in right.judged], 0.9), scene)
+    assert found.verdict is Verdict.NOT_AN_EQUILIBRIUM
+    assert found.reason.startswith("the work of supports, pins and loads is not the strain energy")
+
+
+def test_an_answer_that_reached_nothing_is_not_judged(tmp_path, capsys):
+    """A round pin meets the end of the beam before the first load parameter."""
+    pin = replace(KS.pins[0], start=(1.002, 0.0), displacement=(-0.01, 0.0), radius=0.001)
+    file = tmp_path / "end.toml"
+    file.write_text(to_toml(replace(KS, pins=(pin,), load_parameters=2)))
+    assert main(["certify", str(file)]) == 3
+    assert "NOT_JUDGED" in capsys.readouterr().out

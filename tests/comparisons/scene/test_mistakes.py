@@ -134,12 +134,10 @@ DEEP = "must be valid TOML: a key has more than 50 parts"
 EXTREME = {
     "a." * 20_000 + "a = 1": DEEP,
     "[" + "'b' . " * 20_000 + "a]": DEEP,
-    "x = {" + '"". ' * 20_000 + "a = 1}": DEEP,
     "x = " + "[" * 20_000 + "]" * 20_000: "must be valid TOML: ",
     "a." * 49 + "a = 1": "beam[0].a = {a = ",
     "# " + "." * 100_000: "",
     "a" * 300_000: "must be valid TOML: ",
-    "'" * 100_000: "must be valid TOML: ",
     '"a"' * 50_000: "must be valid TOML: ",
 }
 """Lines in a table that nothing may read for long."""

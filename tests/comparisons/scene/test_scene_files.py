@@ -90,15 +90,6 @@ def test_what_cannot_be_done_is_one_line(arguments, line, capsys, in_a_folder):
     assert (in_a_folder / "there.toml").read_text() == THERE
 
 
-def test_the_resolved_scene_leaves_out_no_key(capsys):
-    assert main(["check", "heavy-strip", "--json", "x.json"]) == 2
-    assert (
-        capsys.readouterr().err
-        == "crossval: the resolved scene does not state a weight (density), which the scene uses\n"
-    )
-    assert not Path("x.json").exists()
-
-
 def test_the_shipped_schema_is_that_of_the_records(capsys):
     """Written by ``python -m comparisons.scene.json_schema``."""
     assert main(["schema"]) == 0
@@ -190,9 +181,3 @@ def test_a_name_commands_no_terminal(arguments, capsys):
     line = refused([part.format(name) for part in arguments], capsys)
     assert r"a\x1b[31m\n\u202eb\udcff" in line or r"a\x1b[31m \u202eb\udcff" in line
     assert line.isprintable()
-
-
-def test_an_argument_commands_no_terminal(capsys):
-    with pytest.raises(SystemExit):
-        main(["solve", "ks-cantilever", "\x1b[31m"])
-    assert capsys.readouterr().err.endswith("error: unrecognized arguments: \\x1b[31m\n")

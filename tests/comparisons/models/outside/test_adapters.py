@@ -15,7 +15,6 @@ from comparisons.models.options import ModelError, Options
 from comparisons.models.outside import Functions, Program
 from comparisons.response import Response
 from comparisons.scene import LoadSpec, Scene, load_scene
-from tests.problems import PROBLEMS
 
 ROOT = Path(__file__).parents[4]
 FINDINGS = Path(__file__).parents[2] / "findings"
@@ -64,17 +63,6 @@ def in_steps(name: str, steps: int, folder: Path) -> str:
 
 def answered(name: str, scene: Scene, elements: int) -> Response:
     return certified(solve(scene, name, Options(elements=elements)), scene)
-
-
-@needs("opensees")
-@pytest.mark.slow
-def test_opensees_with_friction_has_a_known_error_under_the_pin():
-    """6.1e-3 of the force at the end with 20 elements and 1,000 steps, and 1.3e-3 L of the arc position."""
-    response, exact = answered("opensees", FRICTION, 20), PROBLEMS["ks-friction"].at(1.0)
-    assert response.completed, response.message
-    contact = response.contacts[PAIR]
-    assert contact.force[-1] == pytest.approx(exact[f"force {PAIR}"] * (1.0 + 6.1e-3), rel=1e-3)
-    assert contact.arc_position[-1] == pytest.approx(exact[f"arc {PAIR}"] - 1.3e-3, abs=2e-4)
 
 
 @needs("opensees")
