@@ -77,6 +77,7 @@ ELSEWHERE = {"trade", "manual", "extremes", "league"}
 MORE = (
     "crossval solve double-beam",
     "crossval certify",
+    "crossval check ks-cantilever --out",
     "crossval gate",
     "crossval --version",
     "crossval solve ks-cantilever --model rod",
@@ -135,7 +136,14 @@ def test_every_table_of_results_names_what_measures_it():
     assert [part.splitlines()[0] for part in sections if "|---" in part and not measured.search(part)] == []
 
 
-@pytest.mark.parametrize("command", [line for line in COMMANDS if line.startswith(("check", "solve"))])
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(line, marks=pytest.mark.slow if line.startswith("solve") else ())
+        for line in COMMANDS
+        if line.startswith(("check", "solve"))
+    ],
+)
 def test_the_tutorial_shows_what_its_commands_draw(command, tmp_path):
     (path,) = draw({command: COMMANDS[command]}, tmp_path)
     drawn, kept = (imread(folder / path.name)[..., :3] for folder in (tmp_path, FOLDER))

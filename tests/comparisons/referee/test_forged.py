@@ -41,7 +41,6 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
     "steel": (scene_of("steel"), EXACT),
     "steel solid": (scene_of("steel"), ("--model", "solid")),
     "rubbed": (cantilever(0.3, 20), EXACT),
-    "more rubbed": (cantilever(0.303, 20), EXACT),
     "smooth": (cantilever(0.0, 20), EXACT),
 }
 """Scenes, and the options of the model whose true answers are forged."""
@@ -254,7 +253,6 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "a status": ("ks", claimed(status="NOT_CONVERGED"), "NOT_JUDGED: the answer stopped: NOT_CONVERGED, off by less than 1e-07 % where it was judged"),
     "no reported success": ("ks", claimed(reported_success=False), NOT + "the status is COMPLETED, and reported_success is false"),
     "the referee's own": ("portal", claimed(model="rod"), "NOT_JUDGED: exact equilibria along TSM's path"),
-    "other coefficient of friction": ("rubbed", instead("more rubbed"), NOT + "pin->cantilever slips with F_t = -0.303 F_n, not -0.3 F_n"),
     "slip reversed": ("rubbed", rubs("slip", by(-1)), NOT + "pin->cantilever sticks from load parameter 0.620498, exactly from 0.632501"),
     "drag reversed": ("rubbed", rubs("tangential", by(-1.0)), NOT + "pin->cantilever slips with F_t = 0.3 F_n, not -0.3 F_n"),
     "stick that moves": ("rubbed", pin("arc_position", plus(1e-3), 12), NOT + "pin->cantilever sticks and moves by 0.001 L"),

@@ -51,7 +51,7 @@ def forces_alone(response: Response) -> Response:
 
 
 @pytest.mark.slow_at(*(f"{name}-{mu}-as_it_is" for name in ("ks-cantilever", "ks-face") for mu in (0.1, 0.5)))
-@pytest.mark.slow_at("ks-face-0.3-as_it_is", "ks-face-0.3-without_events", "ks-cantilever-0.3-forces_alone")
+@pytest.mark.slow_at("ks-face-0.3-as_it_is", "ks-face-0.3-without_events", "ks-cantilever-0.3-without_events")
 @pytest.mark.parametrize(
     ("name", "friction", "leave"),
     [

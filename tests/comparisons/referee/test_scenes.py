@@ -46,7 +46,7 @@ TRUE: dict[str, tuple[Scene, str, float | None, tuple[int, ...] | None]] = {
 """A scene, the element that answers, the allowance, and the load parameters that are judged."""
 
 
-@pytest.mark.slow_at("passing", "coarse", "soft")
+@pytest.mark.slow_at("passing", "coarse", "soft", "corner")
 @pytest.mark.parametrize("name", TRUE)
 def test_a_true_answer_is_certified(name):
     scene, element, allowance, at = TRUE[name]
@@ -138,6 +138,7 @@ def test_the_other_side_of_a_column_is_another_branch_also_through_a_touch():
     assert "ends on another branch at 1, 0.67 L away" in found.reason
 
 
+@pytest.mark.slow
 def test_the_path_to_the_other_side_of_a_column_is_not_followed():
     """Both sides are stable, and less than a tenth of the length apart."""
     buckles = np.pi**2 / 4.0  # without stretch and shear
