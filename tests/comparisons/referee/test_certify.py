@@ -23,6 +23,7 @@ from comparisons.scene import (
     to_toml,
 )
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated
+from tests.fuzz.world import drawn
 
 PAIR, BEAM = "pin->cantilever", "cantilever"
 KS = replace(load_scene("ks-cantilever"), load_parameters=40)
@@ -159,6 +160,12 @@ def test_forces_at_load_parameters_that_are_not_judged_do_the_work_that_is_store
     found = certify(weakened(exact, [item.load_parameter for item in right.judged], 0.9), scene)
     assert found.verdict is Verdict.NOT_AN_EQUILIBRIUM
     assert found.reason.startswith("the work of supports, pins and loads is not the strain energy")
+
+
+def test_a_force_that_is_there_at_once_does_its_work_too():
+    """In the first of ten steps, where the trapezoidal rule takes it for one that grows."""
+    scene = drawn(2026112513)
+    assert certify(solve(scene, "tsm", Options(element="exact")), scene, at=range(10)).certified
 
 
 def test_an_answer_that_reached_nothing_is_not_judged(tmp_path, capsys):
