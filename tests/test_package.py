@@ -3,7 +3,6 @@
 import ast
 import importlib
 import re
-import runpy
 import subprocess
 import sys
 import sysconfig
@@ -225,18 +224,3 @@ def test_the_description_is_whole_without_the_repository():
     assert [link for link in links if not link.startswith("https://")] == []
     for kept in (r"(?m)^#+ .*", r"(?s)```.*?```"):
         assert re.findall(kept, text) == re.findall(kept, readme)
-
-
-def test_a_set_up_is_one_line_a_bar_and_what_a_failed_installer_said(tmp_path):
-    waiting = ROOT / ".ci" / "waiting.py"
-    (tmp_path / ".constraints.txt").write_text("a==1\nb==2\n")
-    for code, status, said in (
-        ("print('Collecting a')", 0, ""),
-        ("import sys; sys.exit('boom')", 1, "boom\n"),
-    ):
-        command = (sys.executable, waiting, "installing", ".venv", sys.executable, "-c", code)
-        done = run(*command, folder=tmp_path, status=status)
-        assert (done.stdout, done.stderr) == ("", f"installing\n{said}")
-    part = runpy.run_path(str(waiting))["part"]
-    log = "Collecting a\n  Downloading a.whl\nCollecting b (from a)\n"
-    assert [part("", 0, 4), part(log, 0, 4), part(log, 4, 4), part(log, 9, 4)] == [0.0, 0.25, 1.0, 1.0]

@@ -75,7 +75,9 @@ def test_a_built_in_scene_is_read_as_it_stands(name):
     assert not misread(built_in_scenes()[name])
 
 
-@pytest.mark.parametrize("first", range(0, DRAWN, CHUNK))
+@pytest.mark.parametrize(
+    "first", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(CHUNK, DRAWN, CHUNK))]
+)
 def test_drawn_scenes_are_read_as_they_stand(first):
     for seed in range(first, first + CHUNK):
         assert not misread(to_toml(drawn_special(seed))), f"seed {seed}"

@@ -41,15 +41,14 @@ def test_scenes_and_version(capsys):
     assert release
 
 
-@pytest.mark.parametrize("model", ["tsm --elements 7 --element timoshenko", "elastica"])
-def test_solve_prints_a_summary_and_writes_json_and_vtk(model, scene, capsys):
-    assert run(f"solve my.toml --model {model} --json a.json --vtk vtk") == 0
+def test_solve_prints_a_summary_and_writes_json_and_vtk(scene, capsys):
+    assert run("solve my.toml --model elastica --json a.json --vtk vtk") == 0
     out, err = capsys.readouterr()
     assert "COMPLETED" in out
     assert err == ""
-    assert run(f"solve my.toml --model {model} --json -") == 0
+    assert run("solve my.toml --model elastica --json -") == 0
     for data in (json.loads(capsys.readouterr().out), json.loads(Path("a.json").read_text())):
-        assert (data["model"], data["status"]) == (model.partition(" ")[0], "COMPLETED")
+        assert (data["model"], data["status"]) == ("elastica", "COMPLETED")
         assert data["load_parameter"] == [0.25, 0.5, 0.75, 1.0]
     assert [len(list(Path("vtk").glob(f"*.{kind}"))) for kind in ("pvd", "vtm", "vtu")] == [1, 4, 12]
 
@@ -58,31 +57,23 @@ BAD = {
     "": "COMMAND",
     "solve my.toml --model nosuch": "nosuch",
     "solve my.toml --model tsm --elements 0": "--elements",
-    "solve my.toml --model tsm --elements ten": "--elements",
     "solve my.toml --model tsm --elements 1000001": "elements",
     "solve my.toml --model tsm --element nosuch": "nosuch",
     "solve my.toml --model tsm --element mixed --integration-tolerance 1e-9": "tolerance",
-    "solve my.toml --model tsm --element exact --integration-tolerance sharp": "tolerance",
     "solve my.toml --model tsm --element exact --integration-tolerance 1e-17": "tolerance",
     "solve my.toml --model rod --elements 3": "elements",
-    "solve my.toml --model tsm --mesh 3x3": "mesh",
     "solve my.toml --model solid --mesh 50": "--mesh",
-    "solve my.toml --model solid --mesh 50x0": "--mesh",
-    "solve my.toml --model solid --mesh 1x1": "at least 2 elements along",
     "solve my.toml --accuracy 1e-3 --mesh 5x2": "--mesh: is what --accuracy chooses",
     "solve my.toml --accuracy 1e-3 --model rod": "model = rod: has no resolution to choose",
     "solve my.toml --accuracy 0": "must lie between 0 and 1",
     "solve my.toml --model tsm --quantity force": "--quantity: belongs to --accuracy",
-    "solve my.toml --model tsm --explain": "--explain: belongs to --accuracy",
     "solve nosuch.toml --model tsm": "nosuch.toml",
     "solve my.toml --model tsm --json none/a.json": "none/a.json: cannot be written",
-    "solve my.toml --csv none/a.csv": "none/a.csv: cannot be written",
     "solve my.toml --plot a.gif": "must end in",
     "solve my.toml --model tsm --json .": "cannot be written",
     "solve my.toml --model tsm --vtk my.toml": "cannot be written",
     "compare my.toml --out my.toml": "cannot be written",
-    "compare nosuch.toml": "nosuch.toml",
-    **{f"view my.toml --out out --scale {factor}": "--scale" for factor in ("0", "-1", "many", "inf")},
+    "view my.toml --out out --scale -1": "--scale",
 }
 
 
@@ -144,19 +135,13 @@ def test_the_version_names_what_is_missing_and_the_extra_that_installs_it(monkey
     assert run("--version") == 1
     lines = [line.split(maxsplit=2) for line in capsys.readouterr().out.splitlines()[1:]]
     found = {what: (mark, state) for mark, what, state in lines}
-    assert found["numpy"] == ("ok", version("numpy"))
-    assert found["scipy"] == ("MISSING", "missing")
-    assert found["ccx"] == ("-", "missing, Debian's calculix-ccx: --model calculix, crossval study peers")
-    assert found["OpenGL"] == ("-", "missing: pictures by matplotlib instead of pyvista")
+    assert (found["numpy"], found["scipy"]) == (("ok", version("numpy")), ("MISSING", "missing"))
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
     own = [(name, line) for name in ("view", "io", "cluster", "peers") for line in extras[name]]
     stated = {(re.split(r"[>=\[]", line)[0], name) for name, line in own}
     told = {(what, re.match(r"missing, extra (\w+): ", state)) for what, (_, state) in found.items()}
     assert {(what, extra[1]) for what, extra in told if extra} == stated
-    assert extras["all"] == ["tsm-crossval[view,io,cluster,peers]"]
-    # a plain installation draws by VTK and writes VTU files
-    assert {*extras["view"], *extras["io"]} <= set(project["dependencies"])
 
 
 @pytest.mark.slow

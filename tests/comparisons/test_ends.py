@@ -155,7 +155,7 @@ def met_at(response: Response) -> float:
 @pytest.mark.parametrize(
     "seed", [*range(7), *(pytest.param(k, marks=pytest.mark.slow) for k in range(7, 42))]
 )
-def test_approaches_end_where_the_pin_meets_the_end(seed: int, model: str) -> None:
+def test_approaches_end_where_the_pin_meets_the_end(seed, model):
     kind, scene, expected = approach(seed)
     found = solve(scene, *MODELS[model])
     if expected is None:
@@ -186,20 +186,20 @@ contact = [{{ node = "ball", beam = "b", side = "right", surface = "face" }}]
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("count", [1, 10])
-def test_a_ball_beside_a_tip_meets_its_corner(model: str, count: int) -> None:
+def test_a_ball_beside_a_tip_meets_its_corner(model, count):
     """The tip was 2 mm inside the ball, completed and certified. The corner is (40, -.4)."""
     found = solve(nose(count=count), *MODELS[model])
     assert (found.status, len(found.load_parameter)) == ("END_CONTACT", 0 if count == 1 else 2)
     assert met_at(found) == pytest.approx((4.0 - 0.4 - math.sqrt(2.5**2 - 0.5**2)) / 4.0, abs=WITHIN)
 
 
-def test_a_pin_over_an_end_is_refused() -> None:
+def test_a_pin_over_an_end_is_refused():
     with pytest.raises(InputError, match="must lie clear of the end"):
         nose(start=(42.0, 0.0))
     nose(start=(42.5, 0.0))
 
 
-def test_check_names_a_path_that_comes_to_an_end(tmp_path, capsys) -> None:
+def test_check_names_a_path_that_comes_to_an_end(tmp_path, capsys):
     said = []
     for scene in (nose(), nose(start=(42.6, -4.0), displacement=(0.0, 9.0))):
         (tmp_path / "nose.toml").write_text(to_toml(scene))
@@ -211,7 +211,7 @@ def test_check_names_a_path_that_comes_to_an_end(tmp_path, capsys) -> None:
 
 
 @pytest.mark.parametrize("deep", [0.9, 1.1])
-def test_an_answer_of_others_with_a_pin_over_an_end_fails(deep: float) -> None:
+def test_an_answer_of_others_with_a_pin_over_an_end_fails(deep):
     """The ball comes to the middle of the end face from beyond, up to a depth beside the tolerance of 1e-3 L."""
     clear = nose(start=(45.0, 0.0), displacement=(-2.4, 0.0))
     scene = nose(start=(45.0, 0.0), displacement=(-2.5 - 0.04 * deep, 0.0))

@@ -23,13 +23,11 @@ SCENE, RUBBED = (replace(load_scene(name), load_parameters=3) for name in ("ks-c
 PAGE = (Path(__file__).parents[2] / "docs/how-to/paraview.md").read_text()
 ROWS = re.findall(r"^\| ([^|]+) \|[^|]+\| (`displacement`[^|]+)\|$", PAGE, re.MULTILINE)
 STATED = {name.strip("`"): set(re.findall(r"`(\w+)`", fields)) for name, fields in ROWS}
-"""The fields of the blocks, by the table of the page; the exact rods state motion and index alone."""
-BEAM, ROD = "a beam's name, model `{}", {"displacement", "deformed", "index"}
+"""The fields of the blocks, by the table of the page."""
+BEAM = "a beam's name, model `{}"
 
 
-@pytest.fixture(
-    scope="module", params=[("tsm", Options(elements=4)), ("solid", Options(mesh=(12, 2))), ("rod", None)]
-)
+@pytest.fixture(scope="module", params=[("tsm", Options(elements=4)), ("solid", Options(mesh=(12, 2)))])
 def written(request, tmp_path_factory) -> tuple[Response, Path]:
     """An answer, and the folder of its series."""
     response, folder = solve(RUBBED, *request.param), tmp_path_factory.mktemp("series")
@@ -41,7 +39,7 @@ def test_every_block_reads_back_in_meshio_and_pyvista(written):
     response, folder = written
     found = blocks(response, RUBBED, 0)
     assert list(found) == ["cantilever", CONTACTS, SUPPORTS]
-    assert found["cantilever"].point_data.keys() == STATED.get(BEAM.format(response.model), ROD)
+    assert found["cantilever"].point_data.keys() == STATED[BEAM.format(response.model)]
     assert all(found[name].point_data.keys() == STATED[name] for name in (CONTACTS, SUPPORTS))
     for number, grid in enumerate(found.values()):
         file = folder / f"{response.model}-0001-{number}.vtu"
@@ -84,10 +82,6 @@ def test_springs_and_hinges_are_points_with_their_forces(tmp_path):
     assert data["reaction_moment"][2] == pytest.approx(-100.0 * turned)
     for name in ("flat", "link"):
         assert found[name].point_data["deformed"][0] == pytest.approx(found[HINGES].point_data["deformed"][0])
-    # the undeformed hook is an arc
-    radius = scene.beam("hook").length / 1.6
-    centre = np.array([50.0, -np.sqrt(radius**2 - 50.0**2)])
-    assert np.hypot(*(found["hook"].points[:, :2] - centre).T) == pytest.approx(radius, rel=1e-9)
 
 
 def test_a_load_parameter_has_named_blocks_with_units_and_components(tmp_path):
@@ -122,9 +116,6 @@ def test_forces_between_beams_balance_the_supports():
     on_lower = contacts["contact_force"][1:].sum(axis=0)
     assert contacts["contact_force"][1, 1] < 0.0
     assert on_lower == pytest.approx(-supports["reaction_force"][1], rel=1e-6)
-    touching = found[CONTACTS].points[1] + contacts["displacement"][1]
-    assert found[CONTACTS].points[1] == pytest.approx((1.0, 0.0))
-    assert touching == pytest.approx(contacts["deformed"][1])
     assert contacts["slip"][1] == -1.0
 
 

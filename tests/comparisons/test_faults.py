@@ -105,12 +105,12 @@ def listed(path: Path) -> set[str | None]:
     return {item.get("file") for item in ET.parse(path).iter("DataSet")}  # noqa: S314 - our own
 
 
-@pytest.mark.parametrize("times", [2, pytest.param(8, marks=pytest.mark.slow)])
-def test_files_are_whole_or_absent_when_interrupted(times: int, tmp_path: Path) -> None:
-    """Interrupt and kill in turn, at random points of as many equal parts of the time of some writes."""
+@pytest.mark.parametrize("times", [1, pytest.param(8, marks=pytest.mark.slow)])
+def test_files_are_whole_or_absent_when_interrupted(times, tmp_path):
+    """Kill and interrupt in turn, at random points of as many equal parts of the time of some writes."""
     draw = random.Random(times)  # noqa: S311 - no secret
     for number in range(times):
-        how = (signal.SIGINT, signal.SIGKILL)[number % 2]
+        how = (signal.SIGKILL, signal.SIGINT)[number % 2]
         place = tmp_path / str(number)
         place.mkdir()
         interrupted_while_writing(place, how, 0.3 * (number + draw.random()) / times)
@@ -119,7 +119,7 @@ def test_files_are_whole_or_absent_when_interrupted(times: int, tmp_path: Path) 
             assert {path.name for path in place.glob(".*")} == {WRITTEN}
 
 
-def test_interrupt_is_one_line(tmp_path: Path) -> None:
+def test_interrupt_is_one_line(tmp_path):
     with begun(COMMAND, "compare", "ks-cantilever", "--out", str(tmp_path / "out")) as child:
         assert child.stderr is not None
         assert child.stderr.readline().startswith("[1/")
@@ -131,7 +131,7 @@ def test_interrupt_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_two_runs_into_one_folder(tmp_path: Path) -> None:
+def test_two_runs_into_one_folder(tmp_path):
     """Of different lengths: the files are those of the one that wrote last, whole."""
     text = (Path(sys.modules["comparisons"].__path__[0]) / "scene/scenes/ks-cantilever.toml").read_text()
     children = []
@@ -161,9 +161,7 @@ FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {siz
     ("options", "size", "file"),
     [(["--json", "a.json"], 2 * KIB, "a.json"), (["--vtk", "v"], KIB, "v/tsm-0001-0.vtu")],
 )
-def test_no_room_for_a_file(
-    options: list[str], size: int, file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_room_for_a_file(options, size, file, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "v").mkdir()
     kept = {"tsm-pin.vtu" if "--vtk" in options else file}
@@ -181,7 +179,7 @@ def test_no_room_for_a_file(
 @pytest.mark.slow_at("arguments1-", "arguments1-1")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("arguments", [["scenes"], [*SOLVE, "--json", "-"]])
-def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> None:
+def test_no_room_on_standard_output(arguments, unbuffered):
     with Path("/dev/full").open("w") as full:
         end = crossval(*arguments, stdout=full.fileno(), PYTHONUNBUFFERED=unbuffered)
     assert end == (2, "crossval: output: No space left on device\n")
@@ -196,29 +194,24 @@ def test_no_room_on_standard_output(arguments: list[str], unbuffered: str) -> No
         (">&- 2>&-", (2, "", "")),
     ],
 )
-def test_closed_streams(closed: str, end: tuple[int, str, str], tmp_path: Path) -> None:
+def test_closed_streams(closed, end, tmp_path):
     """Nothing is computed for nobody; and no file gets the number of the closed stream."""
-    shell = [
-        "/bin/sh",
-        "-c",
-        f'exec "$@" {closed}',
-        "sh",
-        sys.executable,
-        "-c",
-        COMMAND,
-        *SOLVE,
-        "--json",
-        "a.json",
-    ]
+    shell = ["/bin/sh", "-c", f'exec "$@" {closed}', "sh", sys.executable, "-c", COMMAND]
     found = subprocess.run(
-        shell, cwd=tmp_path, capture_output=True, text=True, env=HERE, check=False, timeout=300
+        [*shell, *SOLVE, "--json", "a.json"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env=HERE,
+        check=False,
+        timeout=300,
     )
     assert (found.returncode, found.stdout[:2], found.stderr) == end
     assert (tmp_path / "a.json").exists() is (end[0] == 0)
 
 
 @pytest.mark.parametrize("options", [["--json", "/proc/a.json"], ["--vtk", "/proc/vtk"]])
-def test_no_permission_to_write(options: list[str]) -> None:
+def test_no_permission_to_write(options):
     """Not even the superuser writes there."""
     status, err = crossval(*SOLVE, *options)
     assert (status, err.count("\n")) == (2, 1)
@@ -231,8 +224,8 @@ NO_CLUSTER = ["study", "s.toml", "--out", "out", "--cluster", "tcp://127.0.0.1:1
 
 
 @pytest.mark.slow_at("skfem")
-@pytest.mark.parametrize("library", ["numpy", "scipy", "skfem", "distributed"])
-def test_a_missing_library(library: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("library", ["numpy", "skfem", "distributed"])
+def test_a_missing_library(library, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text('[study]\nname = "s"\nscene = "ks-cantilever"\n[[run]]\nmodel = "rod"\n')
     arguments = {"skfem": [*SOLVE[:-1], "solid"], "distributed": NO_CLUSTER}.get(library, SOLVE)
@@ -256,7 +249,7 @@ print(render_panels([beam_panel(solve(scene, "tsm"), scene, [1], "beams")], "str
 
 
 @pytest.mark.slow
-def test_no_opengl(tmp_path: Path) -> None:
+def test_no_opengl(tmp_path):
     """The system's OpenGL libraries are hidden behind files that are none."""
     hidden = tmp_path / "lib"
     hidden.mkdir()

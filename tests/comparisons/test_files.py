@@ -82,7 +82,6 @@ HERE = "of a user"
 """What a command must leave alone."""
 INTO_A_FILE = """check s.toml --json FILE
 check s.toml --out FILE.png
-solve s.toml --json FILE
 solve s.toml --csv FILE
 solve s.toml --plot FILE.svg
 certify s.toml --json FILE
@@ -109,6 +108,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return text
 
 
+@pytest.mark.slow_at(*(line for line in INTO_A_FILE.splitlines() if re.match("solve .*--plot|manual", line)))
 @pytest.mark.parametrize("line", INTO_A_FILE.splitlines())
 def test_no_file_of_a_user_is_replaced(line, scene, capsys):
     """The scene itself among them; and the same command replaces what it wrote, until that is edited."""

@@ -2,7 +2,6 @@
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -39,14 +38,14 @@ def whole(text: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", MANY)
-def test_calls_grow_with_the_number_of_beams(kind: str) -> None:
+def test_calls_grow_with_the_number_of_beams(kind):
     """From 50 over 100 to 200: the second rise is twice the first, of quadratic work four times."""
     whole(MANY[kind](8))
     few, some, many = (calls(lambda n=n: whole(MANY[kind](n))) for n in (50, 98, 200))  # type: ignore[misc]
     assert (many - some) / 102 < 1.15 * (some - few) / 48
 
 
-def test_nobody_counts_the_pairs_of_beams_by_comparing_them(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nobody_counts_the_pairs_of_beams_by_comparing_them(monkeypatch):
     """Comparing records is not a call that is counted above."""
     compared = 0
 
@@ -61,7 +60,7 @@ def test_nobody_counts_the_pairs_of_beams_by_comparing_them(monkeypatch: pytest.
     assert compared <= 60
 
 
-def test_a_long_chain_is_bent_in_few_iterations() -> None:
+def test_a_long_chain_is_bent_in_few_iterations():
     """Steps are measured by the chain and not by one of its beams; the elastica under ``P = .6 EI/L^2``."""
     response = solve(read_scene(chain(300), "many.toml"), "tsm")
     assert response.completed
@@ -70,7 +69,7 @@ def test_a_long_chain_is_bent_in_few_iterations() -> None:
 
 
 @pytest.mark.slow
-def test_many_beams_are_solved_from_the_command_line(tmp_path: Path) -> None:
+def test_many_beams_are_solved_from_the_command_line(tmp_path):
     """Six hundred in a frame, the kind with most joints; `make bench` measures thousands of every kind."""
     file = tmp_path / "many.toml"
     file.write_text(MANY["frame"](600))

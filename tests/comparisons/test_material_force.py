@@ -1,7 +1,5 @@
 """Material force: zero of frictionless answers, a model's error of direction, and every seeded fault of a contact."""
 
-import math
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -16,8 +14,8 @@ from comparisons.models.options import ModelError, Options
 from comparisons.response import Response
 
 # the coefficient of friction that a clamp shows is in no answer
-from comparisons.response.material import friction_coefficient, frictions_found, material_forces
-from comparisons.scene import BeamSpec, LoadSpec, Scene, SupportSpec, load_scene
+from comparisons.response.material import frictions_found, material_forces
+from comparisons.scene import LoadSpec, Scene, SupportSpec, load_scene
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=10)
 CANTILEVER, CLAMP, PAIR = "cantilever", "cantilever.start", "pin->cantilever"
@@ -39,12 +37,12 @@ def friction(response: Response, scene: Scene = KS) -> float:
     return difference(response, none, scene, "friction")
 
 
-def test_the_exact_answers_have_no_friction(stated: Callable[..., None]) -> None:
+def test_the_exact_answers_have_no_friction(stated):
     for name, given in {"rod": ("rod",), "elastica": ("elastica",), "exact": ("tsm", EXACT)}.items():
         stated(f"friction.{name}", friction(answer(*given)), bound=True)
 
 
-def test_the_friction_of_the_elements(stated: Callable[..., None]) -> None:
+def test_the_friction_of_the_elements(stated):
     stated("friction.mixed", friction(answer("tsm", Options(element="mixed", elements=10))))
     for elements in (10, 20, 50):
         paper = answer("tsm", Options(element="timoshenko", elements=elements))
@@ -53,9 +51,7 @@ def test_the_friction_of_the_elements(stated: Callable[..., None]) -> None:
 
 @pytest.mark.slow_at("mesh1", "mesh2")
 @pytest.mark.parametrize("mesh", [(25, 1), (50, 2), (100, 4)])
-def test_the_friction_of_the_solid_by_its_j_integral(
-    mesh: tuple[int, int], stated: Callable[..., None]
-) -> None:
+def test_the_friction_of_the_solid_by_its_j_integral(mesh, stated):
     solid = answer("solid", Options(mesh=mesh))
     stated(f"friction.solid-{mesh[0]}x{mesh[1]}", friction(solid))
     if mesh == (50, 2):
@@ -66,7 +62,7 @@ def test_the_friction_of_the_solid_by_its_j_integral(
 
 
 @pytest.mark.parametrize("clamp", ["start", "end"])
-def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
+def test_a_naturally_curved_beam_has_no_friction(clamp):
     """Its H has the part of the natural curvature: without it the friction is more than one percent."""
     beam = replace(KS.beams[0], turn=0.8)
     if clamp == "end":
@@ -80,29 +76,6 @@ def test_a_naturally_curved_beam_has_no_friction(clamp: str) -> None:
     assert abs(beam.curvature * support.moment[-1]) > 0.01 * response.contacts[PAIR].force[-1]
 
 
-@pytest.mark.parametrize("coefficient", [-0.5, 0.0, 0.05, 2.0])
-@pytest.mark.parametrize("lever", [0.0, 0.05])
-def test_the_coefficient_of_friction_found(coefficient: float, lever: float) -> None:
-    """From H at the clamp of a rod that stretches and shears strongly, under forces at every angle, with the couple of a face."""
-    size = {"width": 0.1, "height": 0.1, "youngs_modulus": 1.0, "poissons_ratio": 0.3}
-    beam = BeamSpec(name="b", start=(0.0, 0.0), end=(1.0, 0.0), **size)
-    d1, d2 = np.array([math.cos(0.3), math.sin(0.3)]), np.array([-math.sin(0.3), math.cos(0.3)])
-    for push in 10.0 ** np.arange(-6.0, 0.0) * 0.1 * beam.EA:
-        angle = 0.3
-        for _ in range(200):
-            lean = math.pi / 2.0 + angle - math.atan(coefficient)
-            force = push * np.array([math.cos(lean), math.sin(lean)])
-            N, Q = force @ d1, force @ d2
-            g = ((1.0 + N / beam.EA) * d1 + Q / beam.GA * d2 + d1) / 2.0
-            angle = math.atan2(g[1], g[0])
-        tangential = force @ g / np.hypot(*g)
-        assert tangential / math.sqrt(push**2 - tangential**2) == pytest.approx(coefficient, abs=1e-12)
-        H = (tangential * lever) ** 2 / 2 / beam.EI + N + N**2 / 2 / beam.EA + Q**2 / 2 / beam.GA
-        found = friction_coefficient(np.array([push, 0.0]), np.array([H, 0.0]), beam, lever=lever)
-        assert found[0] == pytest.approx(coefficient, rel=1e-9, abs=1e-9)
-        assert np.isnan(found[1])
-
-
 OTHERS = {
     "tip load": {"loads": (LoadSpec(beam=CANTILEVER, end="end", force=(0.0, 1e-4)),)},
     "second support": {"supports": (SupportSpec(beam=CANTILEVER, end="end", kind="roller", free="x"),)},
@@ -111,13 +84,13 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("kind", [*OTHERS, "own end touches"])
-def test_where_there_is_no_material_force(kind: str) -> None:
+def test_where_there_is_no_material_force(kind):
     scene = load_scene("double-beam") if kind == "own end touches" else replace(KS, **OTHERS[kind])
     few = solve(replace(scene, load_parameters=2), "tsm", Options(elements=4))
     assert set(few.material_force) == ({"lower"} if kind == "own end touches" else set())
 
 
-def test_the_error_of_the_friction() -> None:
+def test_the_error_of_the_friction():
     """Against the exact rod it is the friction; a response without a material force has an infinite one."""
     rod, response = answer("rod"), answer("tsm", Options(element="timoshenko", elements=10))
     assert difference(response, rod, KS, "friction") == pytest.approx(friction(response), rel=1e-9)
@@ -125,7 +98,7 @@ def test_the_error_of_the_friction() -> None:
     assert difference(response, replace(rod, material_force={}), KS, "friction") == np.inf
 
 
-def test_a_bound_on_a_friction_that_is_not_there_is_refused() -> None:
+def test_a_bound_on_a_friction_that_is_not_there_is_refused():
     scene = load_scene("two-pins")
     with pytest.raises(ModelError, match="one clamp alone"):
         gate(scene, "tsm", Options(), {"friction": 1e-3})
@@ -137,7 +110,7 @@ def test_a_bound_on_a_friction_that_is_not_there_is_refused() -> None:
     ]
 
 
-def test_a_certificate_does_not_replace_the_material_force() -> None:
+def test_a_certificate_does_not_replace_the_material_force():
     """The paper's element is certified within a coarse allowance, with a friction of two hundredths."""
     response = certified(answer("tsm", Options(element="timoshenko", elements=10)), KS)
     assert response.certificate is not None
@@ -148,7 +121,7 @@ def test_a_certificate_does_not_replace_the_material_force() -> None:
 @pytest.mark.slow_at("axis-0.1", "axis-0.5", "face-0.1", "face-0.5")
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize("surface", ["axis", "face"])
-def test_the_clamp_shows_the_friction_of_the_contact(friction: float, surface: str) -> None:
+def test_the_clamp_shows_the_friction_of_the_contact(friction, surface):
     (pin,), (contact,) = KS.pins, KS.contacts
     pin = replace(pin, start=(1.0, 0.0 if surface == "axis" else -0.01))
     scene = replace(KS, pins=(pin,), contacts=(replace(contact, surface=surface, friction=friction),))

@@ -36,7 +36,7 @@ def literals(path: Path) -> Iterator[tuple[int, str]]:
             yield node.lineno, str(node.value)
 
 
-def test_names_of_models_and_elements_stand_in_their_registries_only() -> None:
+def test_names_of_models_and_elements_stand_in_their_registries_only():
     found: dict[str, list[tuple[int, str]]] = {}
     for package in ("tsm", "fem_reference", "comparisons"):
         for path in sorted((ROOT / package).rglob("*.py")):

@@ -28,7 +28,7 @@ def registered(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(tsm.ELEMENTS, KIND.name, KIND)
 
 
-def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise() -> None:
+def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise():
     stiff = replace(KS.beams[0], shear_modulus=1e9 * KS.beams[0].youngs_modulus, poissons_ratio=None)
     rigid = replace(KS, beams=(stiff,), load_parameters=4)
     answer = solve_to(rigid, 1e-5, element=KIND.name)
@@ -38,7 +38,7 @@ def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise() -> None:
     assert np.abs(force - exact).max() <= 1e-5 * exact.max()
 
 
-def test_extremes_have_it_with_the_allowance_of_its_order() -> None:
+def test_extremes_have_it_with_the_allowance_of_its_order():
     cells = matrix(quick=True)
     own, mixed = ({cell.axis for cell in cells if cell.row == kind.name} for kind in (KIND, MIXED))
     assert own == mixed
@@ -50,7 +50,7 @@ def test_extremes_have_it_with_the_allowance_of_its_order() -> None:
     assert judgement.decisive.allowed < 1e-3
 
 
-def test_figures_and_labels_have_it() -> None:
+def test_figures_and_labels_have_it():
     options = Options(element=KIND.name, elements=10)
     assert TSM.run_label(options) == "TSM new, 10 elements"
     assert Case(scene=KS, model=TSM.name, options=options).label == "tsm new 10"

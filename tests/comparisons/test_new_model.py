@@ -108,7 +108,7 @@ def crossval(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("way", ["registered", "offered"])
-def test_commands_have_it(way: str, request: pytest.FixtureRequest) -> None:
+def test_commands_have_it(way, request):
     place = request.getfixturevalue(way)
     for arguments, line in {
         ("check", "ks-cantilever"): "chain: yes",
@@ -122,13 +122,13 @@ def test_commands_have_it(way: str, request: pytest.FixtureRequest) -> None:
         assert line in found.stdout
 
 
-def test_comparison_cost_extremes_and_pictures_have_it(registered: Path) -> None:
+def test_comparison_cost_extremes_and_pictures_have_it(registered):
     found = python(registered, "-c", ASKED)
     assert found.stdout.split() == ["1", "1", "True", "#AA3377"], found.stderr
 
 
 @pytest.mark.slow
-def test_functions_are_a_model(offered: Path) -> None:
+def test_functions_are_a_model(offered):
     """A stiff strip that does not bend is refused by the referee; a stop has its name, and output goes aside."""
     solved = crossval(offered, "solve", "roll-up", "--model", "stiff", "--elements", "4", "--quiet")
     assert solved.returncode == 3, solved.stderr
@@ -140,14 +140,14 @@ def test_functions_are_a_model(offered: Path) -> None:
     assert (refused.returncode, refused.stderr) == (2, "crossval: stiff: one beam only\n")
 
 
-def test_an_exception_of_a_function_is_a_status(offered: Path) -> None:
+def test_an_exception_of_a_function_is_a_status(offered):
     (offered / "functions.py").write_text(FUNCTIONS.format(stopped="ZeroDivisionError('by hand')"))
     solved = crossval(offered, "solve", "ks-cantilever", "--model", "stiff", "--quiet")
     assert solved.returncode == 3, solved.stderr
     assert "CRASHED: ZeroDivisionError: by hand; 0 of 50" in solved.stderr
 
 
-def test_check_lists_every_model_and_an_entry_point_without_one_is_named(offered: Path) -> None:
+def test_check_lists_every_model_and_an_entry_point_without_one_is_named(offered):
     (offered / "own.toml").write_text('[program]\nname = "own"\ncommand = ["no-such-program"]\n')
     found = crossval(
         offered, "check", "double-beam", "--with", "own.toml", "--with", "opensees", "--json", "scene.json", "--out", "a.svg"

@@ -28,7 +28,6 @@ class Terminal(io.StringIO):
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shown, "REDRAW", 0.0)
     monkeypatch.setattr(shown, "PATIENCE", 0.0)
-    monkeypatch.setenv("COLUMNS", "200")
 
 
 @pytest.mark.parametrize("options", [Options(elements=10), Options(mesh=(16, 1))], ids=["tsm", "solid"])
@@ -47,25 +46,13 @@ def test_every_load_parameter_is_told_with_its_contacts(options):
 
 def test_a_bar_on_a_terminal_fits_into_it(monkeypatch):
     whole = f"solid [{15 * '#'}{15 * '.'}] t = 0.5000, 7 iterations, pin->beam on element 3 of 10"
-    for columns, first in ((200, whole), (40, whole[:39])):
-        monkeypatch.setenv("COLUMNS", str(columns))
-        stream = Terminal()
-        with shown.watching("solid", stream=stream) as watch:
-            watch(Reached(0.5, 7, ("pin->beam on element 3 of 10",)))
-            watch(Reached(1.0, 5, ()))
-        last = f"solid [{30 * '#'}] t = 1.0000, 12 iterations"[: columns - 1]
-        assert stream.pictures == ["", first, last, ""]
-
-
-@pytest.mark.parametrize("patience", [0.0, 1e9])
-def test_a_stage_is_a_line_and_a_bar_once_it_takes_long(patience, monkeypatch):
-    monkeypatch.setattr(shown, "PATIENCE", patience)
+    monkeypatch.setenv("COLUMNS", "40")
     stream = Terminal()
-    with shown.staging("drawing 4 pictures", stream=stream) as count:
-        count(1, 4)
-        count(4, 4)
-    bars = [f"[{7 * '#'}{23 * '.'}] 1 of 4", f"[{30 * '#'}] 4 of 4"]
-    assert stream.pictures == ["drawing 4 pictures\n", *(bars if patience == 0.0 else []), ""]
+    with shown.watching("solid", stream=stream) as watch:
+        watch(Reached(0.5, 7, ("pin->beam on element 3 of 10",)))
+        watch(Reached(1.0, 5, ()))
+    last = f"solid [{30 * '#'}] t = 1.0000, 12 iterations"[:39]
+    assert stream.pictures == ["", whole[:39], last, ""]
 
 
 @pytest.mark.parametrize("quiet", [False, True])

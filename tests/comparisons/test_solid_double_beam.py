@@ -28,7 +28,7 @@ def on_faces() -> Scene:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("surface", ["axis", "face"])
-def test_forces_and_jumps_are_those_of_the_beams(surface: str, stated) -> None:
+def test_forces_and_jumps_are_those_of_the_beams(surface, stated):
     """Forces except beside a jump, and jumps."""
     scene = AXIS if surface == "axis" else on_faces()
     solid, beams = solve(scene, "solid"), solve(scene, "tsm", Options(elements=20))
@@ -49,7 +49,7 @@ def test_forces_and_jumps_are_those_of_the_beams(surface: str, stated) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("penalty", [5e6, 1e9])
-def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one(penalty: float, stated) -> None:
+def test_on_axes_the_pin_presses_both_strips_before_it_leaves_the_upper_one(penalty, stated):
     """Where pin, upper tip and lower axis meet in one point the lower strip takes the tip's force over from the tip.
 
     The tip stays clenched, its force falls to zero, and only then, at .5386 instead of .5371, does the pin leave the upper

@@ -46,7 +46,7 @@ def check(errors: list[float | None], stated) -> None:
 @pytest.mark.slow_at("-45.0-12.0", "-90.0-0.3", "-90.0-12.0", "150.0-12.0", "150.0-2.0")
 @pytest.mark.parametrize("force", [0.3, 2.0, 12.0])
 @pytest.mark.parametrize("direction", [-90.0, 0.0, -45.0, 150.0])
-def test_a_load_at_the_tip(force: float, direction: float, stated) -> None:
+def test_a_load_at_the_tip(force, direction, stated):
     x, y = force * math.cos(math.radians(direction)), force * math.sin(math.radians(direction))
     load = f'load = [{{ beam = "b", end = "end", force = [{x!r}, {y!r}] }}]'
     errors = [error(load, force / ratio) for ratio in SHEAR]
@@ -55,7 +55,7 @@ def test_a_load_at_the_tip(force: float, direction: float, stated) -> None:
 
 
 @pytest.mark.parametrize(("depth", "refused"), [(0.05, False), (0.2, True)])
-def test_a_pin(depth: float, refused: bool, stated) -> None:
+def test_a_pin(depth, refused, stated):
     """A small depth strains little, however soft the beam; the force follows from GA."""
     pin = f'pin = [{{ name = "p", start = [0.5, 0], displacement = [0, {-depth!r}] }}]\ncontact = [{{ node = "p", beam = "b", side = "left" }}]'
     errors = [error(pin, stiffness) for stiffness in np.geomspace(300.0, 0.1, 12).tolist()]

@@ -81,19 +81,13 @@ def test_every_mark_has_a_test():
     text = "".join(page.read_text() for page in pages())
     assert len(MARK.findall(text)) > 150
     assert unmeasured(text) == []
-
-
-def test_an_invented_mark_is_told():
-    invented = ["bench.invented", "errors.invented", "invented", "ks.mixed-7", "solid.thin-1"]
-    assert unmeasured("".join(f"<!--{name}-->1 " for name in invented)) == invented
-    assert unmeasured("<!--invented x2-->1 2") == ["invented"]
+    assert unmeasured("<!--errors.invented-->1 <!--invented x2-->1 2") == ["errors.invented", "invented"]
 
 
 def test_a_number_is_held_to_its_last_digit_and_a_bound_from_both_sides():
     rounded, bound = (Stated(text, percent=False, start=0, end=len(text)) for text in ("1.30e-2", "1e-12"))
     for one, rule, held, broken in (
         (rounded, {}, (0.01296, 0.01304), (0.01294, 0.01306, float("nan"))),
-        (rounded, {"relative": 0.2}, (0.0105,), (0.0103, 0.0157)),
         (bound, {"least": 1 / LOOSE}, (1e-12, 3.4e-13), (1.01e-12, 3.3e-13)),
     ):
         assert all(holds(one, value, **rule) for value in held)
@@ -155,9 +149,5 @@ def test_every_number_has_a_mark(page):
 
 def test_a_number_without_mark_is_found():
     head = "| case 1 | measured | allowed |\n|---|---|---|\n"
-    assert list(without_mark(f"{head}| a 1 | <!--b-->1 | 3 |\n| c | all | 3 |\n")) == []
-    assert list(without_mark(f"{head}| a | <!--b x2-->1 / 2 | 3 |\n")) == []
-    cells = (f"{head}| a | 1 / <!--b-->2 | 3 |\n", f"{head}| a | <!--b-->1 / 2 | 3 |\n")
-    for page in (*cells, "The error is 1e-5.", "It is 3 % with 20 elements."):
+    for page in (f"{head}| a | 1 / <!--b-->2 | 3 |\n", "It is 3 % with 20 elements."):
         assert len(list(without_mark(page))) == 1, page
-    assert list(without_mark("With 5, 10 and 20 elements at t = .5, h^2, `x = 3` and [a](b-3.md).")) == []

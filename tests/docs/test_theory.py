@@ -41,13 +41,6 @@ def test_every_equation_names_its_proof_and_becomes_mathml(page):
         assert "\\" not in re.sub(r"<annotation.*?</annotation>", "", made), formula
 
 
-def test_an_equation_without_proof_is_found():
-    equation = "```{math}\n:label: a\nx = 1\n```\n"
-    assert proofs(f"# Title\n{equation}{{test}}`t`") == {"a": ["t"]}
-    with pytest.raises(AssertionError, match="a"):
-        proofs(f"# Title\n{equation}\n# Next\n{{test}}`t`")
-
-
 def test_every_test_named_exists():
     named = {test for text in PAGES.values() for test in TEST.findall(text)}
     assert len(named) > 80

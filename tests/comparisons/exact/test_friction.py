@@ -61,22 +61,12 @@ def test_elastica_on_the_ks_path(friction, stick, slip, F, s, moment):
     assert H / normal == pytest.approx([-friction, friction], abs=1e-10)
 
 
-@pytest.mark.slow_at("surface2-None-None")
-@pytest.mark.parametrize(
-    ("surface", "stick", "slip"),
-    [
-        (Surface(), 0.6204977, 0.6832873),
-        (Surface(radius=0.01), None, None),
-        (Surface(offset=0.01, radius=0.1), None, None),
-    ],
-)
-def test_rod_on_the_ks_path(surface, stick, slip):
+@pytest.mark.slow_at("surface1")
+@pytest.mark.parametrize("surface", [Surface(radius=0.01), Surface(offset=0.01, radius=0.1)])
+def test_rod_on_the_ks_path(surface):
     """A stick that rolls on a round pin loses no work either."""
     pins = ks_pins([0.0, 0.5, 1.0], surface.offset + surface.radius)
-    path = checked(rod_with_friction(pins, friction=0.3, **KS, surface=surface), 0.3)
-    assert states(path) == KS_STATES
-    if stick:
-        assert [event.load_parameter for event in path.events] == pytest.approx([0.0, stick, slip], abs=5e-8)
+    assert states(checked(rod_with_friction(pins, friction=0.3, **KS, surface=surface), 0.3)) == KS_STATES
 
 
 @pytest.mark.slow_at("-1-surface0", "-1-surface2", "1-surface0", "1-surface1", "1-surface2")
@@ -127,24 +117,19 @@ def test_without_friction_the_rod_is_the_frictionless_one(offset):
 
 UP = [(0.8, -0.1), (0.8, 0.3), (0.8, -0.2)]
 AGAIN = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1)]
+PAST = [(0.709, -0.01), (0.781, 0.236), (-0.6, 0.259)]
 JAM = [(0.681, -0.019), (0.291, 0.559), (0.735, 0.173)]
 
 
+@pytest.mark.slow_at("points6-0.3-rod6-elastica6")
 @pytest.mark.parametrize(
     ("points", "friction", "rod", "elastica"),
     [
         (UP, 0.3, [STICK, TO_TIP, STICK, TO_CLAMP, OPEN], [TO_TIP, STICK, TO_CLAMP, OPEN]),
         ([(1.0, -0.1), (1.0, 0.1)], 0.3, [STICK, TO_TIP, SLIPPED], [TO_TIP, SLIPPED]),
-        ([(1.0, -0.1), (1.0, 0.1)], 0.0, [TO_TIP, SLIPPED], [TO_TIP, SLIPPED]),
         ([(1.0, 0.0), (0.7, 0.2), (0.85, 0.1)], 0.3, [TO_CLAMP, STICK, TO_TIP], [TO_CLAMP, STICK, TO_TIP]),
-        ([(1.0, 0.0), (0.7, 0.2), (0.4, 0.4)], 0.3, [TO_CLAMP], [TO_CLAMP]),
         (JAM, 1.086, [TO_CLAMP, STICK, TO_TIP, STICK, JAMMED], [TO_CLAMP, STICK, TO_TIP, STICK, JAMMED]),
-        (
-            [(0.709, -0.01), (0.781, 0.236), (-0.6, 0.259)],
-            0.277,
-            None,
-            [TO_TIP, STICK, TO_CLAMP, STICK, TO_TIP, LOST],
-        ),
+        (PAST, 0.277, None, [TO_TIP, STICK, TO_CLAMP, STICK, TO_TIP, LOST]),
         ([(1.1, -0.1), (1.1, 0.1)], 0.3, [], []),
         (AGAIN, 0.3, [STICK, TO_TIP, SLIPPED, STICK, TO_TIP], [TO_TIP, SLIPPED, TO_TIP]),
     ],
@@ -177,13 +162,3 @@ def test_a_pin_that_turns_at_an_event(k, turn, after):
     path = checked(elastica_with_friction([[1.0, 0.0], [x, y], [x + turn, y]], friction=0.3), 0.3)
     assert path.state[1] is after
     assert not path.state[-1].ends
-
-
-@pytest.mark.slow_at("-1e-11", "-1e-15", "1e-07", "1e-09")
-@pytest.mark.parametrize("shift", [0.0, 2e-16, -1e-15, 1e-13, -1e-11, 1e-9, 1e-7])
-def test_a_load_parameter_at_an_event_changes_nothing(shift):
-    whole = elastica_with_friction(ks_pins([0.0, 1.0]), friction=0.05)
-    for event in whole.events[1:]:
-        path = elastica_with_friction(ks_pins([0.0, event.load_parameter + shift, 1.0]), friction=0.05)
-        assert states(path) == KS_STATES
-        assert path.magnitude[-1] == pytest.approx(whole.magnitude[-1], rel=1e-12)

@@ -1,7 +1,5 @@
 """The elastica and the Reissner rod under a pin: integration from the clamp, limits, energy, events, input."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -131,7 +129,6 @@ UP = [(0.8, -0.1), (0.8, 0.7), (0.8, 0.6), (0.8, -0.1), (0.8, 0.1), (0.8, 0.7)]
         ([(1.0, -0.1), (1.0, 0.1)], 0.0, "o s"),
         ([(1.1, -0.1), (1.1, 0.1), (0.5, 0.1), (-0.1, 0.1), (-0.1, -0.1)], 0.0, "o o o o o"),
         ([(1.2, -0.01), (0.8, -0.01), (0.8, 0.1)], 0.01, "o o c"),
-        ([(0.8, -0.5), (0.8, -0.01), (0.8, 0.1)], 0.01, "o c c"),
         ([*ks_pins([0.0, 0.5, 1.0]), (-0.3, 0.3), (-0.3, 0.2)], 0.0, "c c c l l"),
     ],
 )
@@ -152,13 +149,6 @@ def test_a_contact_opens_closes_slips_off_and_is_lost(pins, offset, outcomes):
             assert path.magnitude[k] == pytest.approx(direct.magnitude[1], rel=1e-12, abs=1e-15 * KS["EI"])
 
 
-def test_the_first_slip_off_is_located_on_the_whole_path():
-    direct, way = rod_under_pin(UP[:2], **KS).slip_off * 0.8, sum(abs(b[1] - a[1]) for a, b in pairwise(UP))
-    assert rod_under_pin(UP, **KS).slip_off * way == pytest.approx(direct, rel=1e-12)
-    assert 1.0 - 2e-8 < rod_under_pin([UP[0], (0.8, direct - 0.1 - 1e-9)], **KS).arc_position[-1] < 1.0
-    assert rod_under_pin([(1.0, -0.1), (1.0, 0.1)], **KS).slip_off == pytest.approx(0.5, abs=1e-12)
-
-
 @pytest.mark.slow
 def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
     """It passes the clamp .05 % of the length above: strains grow without bound, and steps shrink without end."""
@@ -173,15 +163,11 @@ def test_a_pin_that_all_but_slides_into_the_clamp_is_lost_within_bounds():
         (rod_under_pin, {"EA": 0.0}, "EA = 0.0: must be positive"),
         (rod_under_pin, {"GA": np.nan}, "GA = nan: must be positive"),
         (rod_under_pin, {"EI": np.inf}, "EI = inf: must be positive and finite"),
-        (rod_under_pin, {"length": -1.0}, "length = -1.0: must be positive and finite"),
         (rod_under_pin, {"offset": -0.1}, "offset = -0.1: must be finite and not negative"),
         (rod_under_pin, {"points": [[0.8, np.nan]]}, "points"),
-        (rod_under_pin, {"points": [0.8, 0.1]}, "points"),
         (rod_under_pin, {"points": [[0.8, 0.1]]}, "must start below the rod"),
         (rod_with_friction, {"friction": -0.1}, "friction = -0.1: must be finite and not negative"),
         (rod_with_friction, {"EA": 0.0}, "EA = 0.0: must be positive"),
-        (rod_with_friction, {"length": np.nan}, "length = nan: must be positive and finite"),
-        (rod_with_friction, {"points": [0.8, 0.1]}, "points"),
         (rod_with_friction, {"surface": Surface(offset=0.1)}, "must not start inside the rod"),
         (Surface, {"radius": -1.0}, r"radius = -1\.0: must be finite and not negative"),
         (elastica_under_pin, {"x": np.nan}, "x = nan: must be finite"),

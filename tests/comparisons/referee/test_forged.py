@@ -41,7 +41,6 @@ SOURCES: dict[str, tuple[Scene, tuple[str, ...]]] = {
     "steel": (scene_of("steel"), EXACT),
     "steel solid": (scene_of("steel"), ("--model", "solid")),
     "rubbed": (cantilever(0.3, 20), EXACT),
-    "more rubbed": (cantilever(0.303, 20), EXACT),
     "smooth": (cantilever(0.0, 20), EXACT),
 }
 """Scenes, and the options of the model whose true answers are forged."""
@@ -223,20 +222,14 @@ WRONG, NOT = "NOT_AN_EQUILIBRIUM: ", "INADMISSIBLE: "
 BALANCE = "NOT_AN_EQUILIBRIUM: the support reactions do not balance contact forces and loads"
 FORGED: dict[str, tuple[str, Forgery, str]] = {
     "nothing moves": ("steel", moved(0.0), WRONG + "displacement off by 25 % (cantilever), allowed 5 %"),
-    "nothing moves, by a program": ("steel", both(moved(0.0), PROGRAM), WRONG + "displacement off by 25 %"),
     "nothing moves, of a solid": ("steel solid", moved(0.0), WRONG + "displacement off by 25 % (cantilever), allowed 6.58 %"),
-    "nothing acts": ("steel", both(moved(0.0), held(0.0)), WRONG + "displacement off by 25 %"),
-    "displacements times -1, of a solid": ("steel solid", moved(-1.0), WRONG + "displacement off by 50 %"),
-    "displacements times 1.2, by a program": ("steel", both(moved(1.2), PROGRAM), WRONG + "displacement off by 5 % (cantilever), allowed 5 %"),
     "reactions times 3": ("steel", held(3.0), WRONG + "reaction off by 50 % (moment of cantilever.start)"),
     "forces times 3 at all but one": ("ks", both(pushed(3.0, BUT_ONE), held(3.0, BUT_ONE)), WRONG + "force off by 2e+02 % (pin->cantilever)"),
     "forces times 3 at one alone": ("mixed", both(pushed(3.0, ONE), held(3.0, ONE)), WRONG + "force off by 2e+02 %"),
     "two states exchanged": ("ks", exchanged(4, 7), WRONG + "supports and contacts are off by 0.36 L (pin->cantilever) at load parameter 0.5"),
-    "states of the load parameter before": ("ks", reordered(0, *range(STEPS - 1)), WRONG + "supports and contacts are off by 0.12 L"),
     "half an answer": ("ks", reordered(*range(STEPS // 2)), "load_parameter: has 5 of 10 load parameters, and the status is COMPLETED"),
     "contact force times 1.009": ("ks", pushed(1.009), BALANCE),
     "contact force times 1.009, outside claimed": ("ks", both(pushed(1.009), OUTSIDE), BALANCE),
-    "contact force times 1.009, of a solid": ("solid", pushed(1.009), BALANCE),
     "contact force times 1.06, by a program": ("ks", both(pushed(1.06), held(1.06), PROGRAM, OUTSIDE), WRONG + "force off by 6 % (pin->cantilever), allowed 5 %"),
     "all arc positions .3": ("ks", pin("arc_position", [0.3] * STEPS), WRONG + "supports and contacts are off by 0.6 L"),
     "tip moved by 7": ("ks", put("tips", BEAM, to=plus(7.0)), WRONG + "tip off by 9.9e+02 %"),
@@ -249,13 +242,10 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "closed without an event": ("ks", pin("force", 0.0, 4), WRONG + "tip off by 66 %"),
     "index 7": ("ks", put("index", 6, to=7), WRONG + "index 7 is stated, the equilibrium has 0 at load parameter 0.7"),
     "a gap of -.1 L at a closed contact": ("ks", pin("gap", -0.1, 6), WRONG + "gap off by 10 % (pin->cantilever)"),
-    "a gap of .1 L, of a solid": ("solid", pin("gap", 0.1, 6), WRONG + "gap off by 10 % (pin->cantilever), allowed 7 %"),
     "a gap of 30 at an open contact": ("again", put("contacts", PAIR, "gap", 0, to=30.0), WRONG + "gap off by 28 %"),
     "an arc position beyond the end": ("ks", pin("arc_position", 1.1, 6), WRONG + "the arc position of pin->cantilever is not on its beam"),
     "an invented release": ("ks", events(lambda own: own.append(event("release", 0.505))), NOT + "release of pin->cantilever at load parameter 0.505: arc position off by 0.11"),
     "an event of another pair": ("ks", events(lambda own: own.append(event("touch", 0.5, pair="pin->other"))), NOT + "no contact of the scene has the event touch"),
-    "an event after the end": ("ks", events(lambda own: own.append(event("release", 1.5))), NOT + "no contact of the scene has the event release"),
-    "an event of an unknown kind": ("ks", events(lambda own: own.append(event("weld", 0.5))), NOT + "no contact of the scene has the event weld"),
     "a deleted event": ("again", events(lambda own: own.pop()), NOT + "pin->cantilever closes without an event up to load parameter 0.65"),
     "an event at another place": ("again", shifted("touch", arc_position=-30.0), NOT + "touch of pin->cantilever at load parameter 0.636364: arc position off by 0.3"),
     "an event with another force": ("again", shifted("release", force=1.0), NOT + "release of pin->cantilever at load parameter 0.454545: contact force off"),
@@ -263,31 +253,21 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
     "a status": ("ks", claimed(status="NOT_CONVERGED"), "NOT_JUDGED: the answer stopped: NOT_CONVERGED, off by less than 1e-07 % where it was judged"),
     "no reported success": ("ks", claimed(reported_success=False), NOT + "the status is COMPLETED, and reported_success is false"),
     "the referee's own": ("portal", claimed(model="rod"), "NOT_JUDGED: exact equilibria along TSM's path"),
-    "other coefficient of friction": ("rubbed", instead("more rubbed"), NOT + "pin->cantilever slips with F_t = -0.303 F_n, not -0.3 F_n"),
     "slip reversed": ("rubbed", rubs("slip", by(-1)), NOT + "pin->cantilever sticks from load parameter 0.620498, exactly from 0.632501"),
     "drag reversed": ("rubbed", rubs("tangential", by(-1.0)), NOT + "pin->cantilever slips with F_t = 0.3 F_n, not -0.3 F_n"),
     "stick that moves": ("rubbed", pin("arc_position", plus(1e-3), 12), NOT + "pin->cantilever sticks and moves by 0.001 L"),
     "stick outside the cone": ("rubbed", both(rubs("slip", [0] * 20), rubs("tangential", by(np.sin(STEEP) / np.sin(CONE))), rubs("normal", by(np.cos(STEEP) / np.cos(CONE))), claimed(events=None)), NOT + "pin->cantilever sticks with a force outside its cone"),
-    "no friction": ("rubbed", instead("smooth"), WRONG + "force off by 35 %"),
-    "dissipation that falls": ("rubbed", rubs("dissipated", lambda own: [*own[:-1], 0.9 * own[-2]]), NOT + "the dissipation of pin->cantilever falls"),
-    "work": ("rubbed", put("work", to=by(1.01)), NOT + "the work is not strain energy and dissipation at load parameter 0.6, off by 0.0099"),
     "dissipation": ("rubbed", both(rubs("dissipated", by(1.5)), claimed(work=None)), NOT + "the dissipation of pin->cantilever up to load parameter 0.6 is off by 0.0054 of the work"),
     "stick is not stated": ("rubbed", events(lambda own: own.pop(0)), NOT + "pin->cantilever sticks without an event up to load parameter 0.65"),
     "stick is stated too early": ("rubbed", shifted("stick", load_parameter=-0.015), NOT + "pin->cantilever sticks from load parameter 0.605498, exactly from 0.620498"),
     "slip is stated too late": ("rubbed", shifted("slip", load_parameter=0.015), NOT + "pin->cantilever slips from load parameter 0.698287, exactly from 0.683287"),
-    "stick is stated elsewhere": ("rubbed", shifted("stick", load_parameter=-0.1), NOT + "pin->cantilever slips after an event of kind stick"),
     "no axes": ("ks", lambda data: data.pop("axes"), "axes = (missing): must be a table"),
     "empty axes": ("ks", claimed(axes={}), "axes: must have cantilever, has none"),
-    "a renamed beam": ("ks", lambda data: data["axes"].update(column=data["axes"].pop(BEAM)), "axes: must have cantilever, has column"),
     "a short list": ("ks", pin("force", [1.0]), "force = [1.0]: must be a list of 10 numbers, one for each load parameter, has 1"),
     "other load parameters": ("ks", put("load_parameter", to=by(0.999)), "load_parameter: must be those of the scene"),
-    "texts": ("ks", pin("force", "1.5", 0), "must be a list of 10 numbers"),
     "a truth value": ("ks", put("tips", BEAM, 3, 0, to=True), "must be a list of 10 x 2 numbers"),
     "no number": ("ks", clamp("moment", None, 7), "supports.cantilever.start.moment[7] = nan: must be a finite number"),
-    "no gap at a closed contact": ("ks", pin("gap", None, 6), "gap[6] = nan: must be a finite number"),
     "a huge whole number": ("ks", claimed(cutbacks=10**40), "must be a whole number"),
-    "a huge place": ("ks", pin("slip_off", 10**400), "slip_off = 1"),
-    "half a whole number": ("ks", claimed(index=[0.5] * STEPS), "index = [0.5"),
     "a falling arc": ("ks", lambda data: data["axes"][BEAM]["arc_length"].reverse(), "must be two or more increasing numbers"),
     "a misspelt key": ("ks", lambda data: data.update(evnts=data.pop("events")), "unknown key, did you mean events?"),
     "another scene": ("ks", claimed(scene="ks-friction"), "scene = ks-friction: the scene was ks-cantilever"),
@@ -295,22 +275,19 @@ FORGED: dict[str, tuple[str, Forgery, str]] = {
 """The source, the forgery, and words of the line."""
 TEXTS: dict[str, tuple[Callable[[str], str], str]] = {
     "half a file": (lambda text: text[: len(text) // 2], "must be valid JSON: "),
-    "an empty file": (lambda _: "", "must be valid JSON: "),
     "brackets": (lambda _: "[" * 100_000, "must be valid JSON: "),
     "lists in lists": (lambda _: '{"status": ' + "[" * 900 + "]" * 900 + "}", "must be"),
     "a list": (lambda _: "[1, 2]", "file = [1, 2]: must be a table"),
-    "an escape": (lambda _: "\x1b[31m", "must be valid JSON: "),
     "17 MB": (lambda text: " " * 17_000_000 + text, "has more than 16 MB"),
     "a key twice": (lambda text: text.rstrip()[:-1] + ', "cutbacks": 0}', "cutbacks = 0: must stand once in its table"),
     "infinite": (lambda text: text.replace("0.1", "1e400", 1), "load_parameter[0] = inf: must be a finite number"),
-    "not a number": (lambda text: text.replace("0.1", "NaN", 1), "load_parameter[0] = nan: must be a finite number"),
     "5000 digits": (lambda text: text.replace("0.1", "1" * 5000, 1), "must be valid JSON: "),
 }  # fmt: skip
 FEW = ("--few", "--allowance", "0.01")
 
 
 @pytest.mark.parametrize("forgery", FORGED)
-def test_a_forged_file_is_refused(forgery: str, judged: Certify) -> None:
+def test_a_forged_file_is_refused(forgery, judged):
     name, forge, words = FORGED[forgery]
     data = json.loads(truth(name if name in SOURCES else "ks"))
     forge(data)
@@ -320,7 +297,7 @@ def test_a_forged_file_is_refused(forgery: str, judged: Certify) -> None:
 
 
 @pytest.mark.parametrize("damage", TEXTS)
-def test_a_damaged_file_is_one_line(damage: str, judged: Certify) -> None:
+def test_a_damaged_file_is_one_line(damage, judged):
     change, words = TEXTS[damage]
     text = change(truth("ks"))
     assert text != truth("ks")
@@ -332,7 +309,7 @@ def test_a_damaged_file_is_one_line(damage: str, judged: Certify) -> None:
 @pytest.mark.parametrize(
     "name", ["ks", "mixed", "solid", "again", "portal", "steel", "steel solid", "rubbed"]
 )
-def test_the_true_file_is_certified(name: str, judged: Certify) -> None:
+def test_the_true_file_is_certified(name, judged):
     """Whatever it claims to be."""
     status, line = judged(name, truth(name), *(FEW if name == "rubbed" else ()))
     assert (status, line.split(" within")[0]) == (0, "CERTIFIED"), line
@@ -341,7 +318,7 @@ def test_the_true_file_is_certified(name: str, judged: Certify) -> None:
         assert judged(name, json.dumps(data))[0] == 0
 
 
-def test_a_stored_response_is_judged_as_the_response_itself(tmp_path: Path, judged: Certify) -> None:
+def test_a_stored_response_is_judged_as_the_response_itself(tmp_path, judged):
     scene, out = SOURCES["mixed"][0], tmp_path / "certificate.json"
     assert judged("mixed", truth("mixed"), "--few", "--json", str(out))[0] == 0
     read = json.loads(out.read_text(encoding="utf-8"))
@@ -355,9 +332,7 @@ def test_a_stored_response_is_judged_as_the_response_itself(tmp_path: Path, judg
     assert arc == pytest.approx(whole.judged[-1].exact.contacts[PAIR].arc_position, rel=1e-13)
 
 
-def test_options_that_do_not_belong_together_are_refused(
-    judged: Certify, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_options_that_do_not_belong_together_are_refused(judged, capsys):
     status, line = judged("ks", truth("ks"), "--elements", "3")
     assert status == 2
     assert "--elements: belongs to a scene" in line

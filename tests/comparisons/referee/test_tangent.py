@@ -17,8 +17,8 @@ from comparisons.referee.stability import _directions
 from comparisons.referee.state import _tangents
 from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec
 from tests.comparisons.referee.test_specimens import (
-    ALONE,
     GRAVITY,
+    HEAVY_TAPER,
     INSIDE,
     PART,
     SPRING,
@@ -64,7 +64,7 @@ LAYOUTS = {
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_the_hessian_is_the_derivative_of_the_gradient(name: str) -> None:
+def test_the_hessian_is_the_derivative_of_the_gradient(name):
     """At drawn unknowns, off equilibrium, with the unknowns inside the elements condensed."""
     layout = LAYOUTS[name]
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 2) for _ in layout.parts])
@@ -90,7 +90,7 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name: str) -> None:
     assert symmetric == (not layout.rubs)
 
 
-def test_the_direction_of_a_face_follows_the_variations_of_the_axis() -> None:
+def test_the_direction_of_a_face_follows_the_variations_of_the_axis():
     """The angle phi is no unknown of its own where the index is counted: it changes as ``nu . (r'_- + r'_+)/2 = -offset'`` says."""
     exact = nearest(on_its_face())
     solution = exact.solution
@@ -111,9 +111,9 @@ def test_the_direction_of_a_face_follows_the_variations_of_the_axis() -> None:
         assert directions[touch.angle, kept.index(k)] == pytest.approx(difference, rel=1e-6, abs=1e-9)
 
 
-def test_nothing_moves_in_a_stage_that_changes_nothing() -> None:
+def test_nothing_moves_in_a_stage_that_changes_nothing():
     """The round-off of an equilibrium does not count as a rate: over a short step it would lead the path elsewhere."""
     rest = StageSpec(load_parameters=1, load=(LoadSpec(beam="a", end="start", force=(0.0, 1.0)),))
-    idle = Scene(name="idle", load_parameters=2, stages=(rest,), **ALONE["heavy taper"])
+    idle = Scene(name="idle", load_parameters=2, stages=(rest,), **HEAVY_TAPER)
     for rate in tangent(idle, found(idle, undeformed(idle, 1.5)).solution, 1e-7):
         assert not np.any(rate)

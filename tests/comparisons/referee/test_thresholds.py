@@ -190,8 +190,9 @@ CASES: dict[str, tuple[float, Callable[[float], str], str]] = {
 """Value, what is said of an answer at a size, and a part of the sentence."""
 
 
+@pytest.mark.slow_at("rubbing.FALL", "rubbing.ENERGY")
 @pytest.mark.parametrize("name", CASES)
-def test_a_threshold_lies_where_it_is_stated(name: str, stated: Callable[..., None]) -> None:
+def test_a_threshold_lies_where_it_is_stated(name, stated):
     value, said, words = CASES[name]
     if name in ("verify.INSIDE", "verify.STRAIN", "verify.MOTION"):
         stated(f"verify.{name[7:]}", value)
@@ -199,7 +200,7 @@ def test_a_threshold_lies_where_it_is_stated(name: str, stated: Callable[..., No
     assert words in said(1.1 * value)
 
 
-def test_a_coarse_axis_excuses_no_more_than_its_chords() -> None:
+def test_a_coarse_axis_excuses_no_more_than_its_chords():
     """The arc position of a contact is off by more than `judge.PLACE`: by less than the bound of 16 chords of an arc, .00195, or by more."""
     response, scene = on_the_arc(force=1e-8)
     arc = np.linspace(0.0, 1.0, 17)

@@ -37,7 +37,7 @@ def rod(name: str) -> Response:
     return answer(load_scene(name), "rod")
 
 
-def test_the_table_has_every_scene_and_every_model(stated) -> None:
+def test_the_table_has_every_scene_and_every_model(stated):
     assert PROBLEMS.keys() == set(NAMES)
     for name, problem in PROBLEMS.items():
         assert not problem.errors.keys() & problem.others.keys()
@@ -48,14 +48,12 @@ def test_the_table_has_every_scene_and_every_model(stated) -> None:
 
 @pytest.mark.slow_at(
     *(f"{name}-{element}-2" for name in DEAR for element in ELEMENTS),
-    *(f"{name}-{element}-{count}" for name in NAMES for element in ELEMENTS for count in (1, 200)),
+    *(f"{name}-{element}-1" for name in NAMES for element in ELEMENTS),
 )
-@pytest.mark.parametrize("count", [2, 1, 200])
+@pytest.mark.parametrize("count", [2, 1])
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("name", NAMES)
-def test_any_number_of_load_parameters_has_the_answer_of_the_table(
-    name: str, element: str, count: int
-) -> None:
+def test_any_number_of_load_parameters_has_the_answer_of_the_table(name, element, count):
     scene, problem = replace(load_scene(name), load_parameters=count), PROBLEMS[name]
     response = answer(scene, element)
     if count == 2:
@@ -67,7 +65,7 @@ def test_any_number_of_load_parameters_has_the_answer_of_the_table(
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_model_states_it_or_says_why_in_one_line(name: str) -> None:
+def test_every_model_states_it_or_says_why_in_one_line(name):
     scene, others = load_scene(name), PROBLEMS[name].others
     for run, (model, options) in RUNS.items():
         said = MODELS[model].refusal(scene)
@@ -85,7 +83,7 @@ def test_every_model_states_it_or_says_why_in_one_line(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("run", RUNS)
 @pytest.mark.parametrize("name", NAMES)
-def test_every_model_has_the_answer_of_the_table_or_stops_by_name(name: str, run: str) -> None:
+def test_every_model_has_the_answer_of_the_table_or_stops_by_name(name, run):
     """Certified at the end, and by exact and mixed elements at every load parameter."""
     scene, problem, (model, options) = load_scene(name), PROBLEMS[name], RUNS[run]
     other = problem.others.get(run, "COMPLETED")
@@ -135,7 +133,7 @@ SOURCES: dict[str, Callable[[float], Mapping[str, Any]]] = {
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_closed_forms_have_the_digits_of_the_table(name: str) -> None:
+def test_closed_forms_have_the_digits_of_the_table(name):
     for t in PROBLEMS[name].answers:
         row = PROBLEMS[name].at(t)
         for quantity, found in SOURCES[name](t).items():
@@ -144,7 +142,7 @@ def test_closed_forms_have_the_digits_of_the_table(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["beam-on-springs", "hinged-truss", "straightened-arc"])
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_a_path_is_that_of_the_closed_form(name: str, element: str) -> None:
+def test_a_path_is_that_of_the_closed_form(name, element):
     response = answer(load_scene(name), element)
     for k, t in enumerate(response.load_parameter):
         for quantity, exact in SOURCES[name](t).items():
@@ -152,12 +150,10 @@ def test_a_path_is_that_of_the_closed_form(name: str, element: str) -> None:
             assert np.abs(value(response, quantity, k) - exact).max() <= (1e-12 if element == "exact" else 1e-9) * size, quantity  # fmt: skip
 
 
-@pytest.mark.slow_at("1.063-0.422-0.881", "1.884-0.803-0.123")
-@pytest.mark.parametrize(
-    ("ratio", "x", "y"), [(1.063, 0.422, 0.881), (1.518, 0.792, 0.349), (1.884, 0.803, 0.123)]
-)
-def test_clamped_column(ratio: float, x: float, y: float) -> None:
-    """Timoshenko and Gere (1961), table 2-4: P/P_1 and the head's place with the head turned by 40, 100 and 120 degrees.
+@pytest.mark.slow_at("1.884-0.803-0.123")
+@pytest.mark.parametrize(("ratio", "x", "y"), [(1.518, 0.792, 0.349), (1.884, 0.803, 0.123)])
+def test_clamped_column(ratio, x, y):
+    """Timoshenko and Gere (1961), table 2-4: P/P_1 and the head's place with the head turned by 100 and 120 degrees.
 
     The imperfection is made a hundredth of what it is: the table is the perfect column's.
     """
@@ -168,7 +164,7 @@ def test_clamped_column(ratio: float, x: float, y: float) -> None:
     assert head == pytest.approx([x, y], abs=2e-3)
 
 
-def test_portal_frame_under_a_small_load() -> None:
+def test_portal_frame_under_a_small_load():
     """Kleinlogel: moments of the feet .3 H h, vertical reactions .2667 H; the rest is the stretch of columns and girder."""
     scene = load_scene("portal-frame")
     response = answer(replace(scene, loads=(replace(scene.loads[0], force=(0.1, 0.0)),)))
@@ -177,7 +173,7 @@ def test_portal_frame_under_a_small_load() -> None:
     assert [left.force[-1, 1], right.force[-1, 1]] == pytest.approx([-0.1 * 4 / 15, 0.1 * 4 / 15], rel=1e-3)
 
 
-def test_crossed_beams_with_an_upright_strut() -> None:
+def test_crossed_beams_with_an_upright_strut():
     """Before it buckles, a strut that does not lean moves down by the deflection of a beam that is loaded in its middle, and is shortened."""
     scene, down = load_scene("crossed-beams"), 2.0
     lower, upper = scene.beams

@@ -47,7 +47,7 @@ WRITTEN = {**built_in_scenes(), **USES, "rest": Path(__file__).with_name("every_
 
 
 @pytest.mark.parametrize("key", SPECIAL)
-def test_every_model_states_a_key_or_refuses_it_in_one_line(key: str) -> None:
+def test_every_model_states_a_key_or_refuses_it_in_one_line(key):
     scene = read_scene(USES[key], "s")
     for name in (*MODELS, "calculix", "exudyn", "felupe", "opensees"):
         model = find(name)
@@ -65,7 +65,7 @@ def test_every_model_states_a_key_or_refuses_it_in_one_line(key: str) -> None:
 
 
 @pytest.mark.parametrize("name", WRITTEN)
-def test_a_scene_is_written_and_read(name: str) -> None:
+def test_a_scene_is_written_and_read(name):
     scene = read_scene(WRITTEN[name], "s")
     copy = read_scene(to_toml(scene), "copy")
     assert (copy, hash(copy)) == (scene, hash(scene))
@@ -85,7 +85,7 @@ def listed(schema: dict[str, Any], path: str = "") -> Iterator[str]:
         yield from (f"{path}{key}", *listed(rule, f"{path}{key}."))
 
 
-def test_every_key_of_the_schema_is_written_and_read_by_a_scene_above() -> None:
+def test_every_key_of_the_schema_is_written_and_read_by_a_scene_above():
     texts = [to_toml(read_scene(text, "s")) for text in WRITTEN.values()]
     assert {key for text in texts for key in written(tomllib.loads(text))} == set(listed(SCHEMA))
 
@@ -113,12 +113,8 @@ FRAME = (
 SPRING = at("spring", "b.end", "stiffness = [1.0, 0.0]")
 
 
-@pytest.mark.parametrize(
-    ("hinges", "more"), [((), ""), (("a.end",), ""), (("b.end",), ""), (("a.end", "b.end"), SPRING)]
-)
-def test_a_frame_of_three_hinges_stands_and_one_of_four_with_a_spring(
-    hinges: tuple[str, ...], more: str
-) -> None:
+@pytest.mark.parametrize(("hinges", "more"), [(("a.end",), ""), (("a.end", "b.end"), SPRING)])
+def test_a_frame_of_three_hinges_stands_and_one_of_four_with_a_spring(hinges, more):
     text = FRAME + "".join(at("hinge", node) for node in hinges)
     assert [hinge.node for hinge in read_scene(text + more, "s").hinges] == list(hinges)
     if more:
@@ -126,7 +122,7 @@ def test_a_frame_of_three_hinges_stands_and_one_of_four_with_a_spring(
             read_scene(text, "s")
 
 
-def test_beams_that_meet_one_after_the_other_are_one_structure() -> None:
+def test_beams_that_meet_one_after_the_other_are_one_structure():
     """Held by one clamp."""
     beams = ends("a", "[0, 0]", "[1, 0]") + ends("c", "[2, 0]", "[3, 0]") + ends("b", "[1, 0]", "[2, 0]")
     load = at("load", "a.start", "moment = 1.0")
@@ -144,7 +140,7 @@ def test_beams_that_meet_one_after_the_other_are_one_structure() -> None:
         ('["start"]', at("support", "b.end", MOVED), "end"),
     ],
 )
-def test_the_tip_is_the_less_held_end(clamped: str, extra: str, tip: str) -> None:
+def test_the_tip_is_the_less_held_end(clamped, extra, tip):
     assert read_scene(HEAD + ends("b", "[0, 0]", "[1, 0]", clamped) + extra, "s").tip("b") == tip
 
 
@@ -152,7 +148,7 @@ KS = built_in_scenes()["ks-cantilever"]
 START = "start = [1.0, 0.0]\ndisplacement"
 
 
-def test_a_pin_on_the_axis_may_be_off_by_round_off_and_one_beyond_the_tip_has_no_side() -> None:
+def test_a_pin_on_the_axis_may_be_off_by_round_off_and_one_beyond_the_tip_has_no_side():
     near = product((math.nextafter(1.0, 0.0), 1.0, math.nextafter(1.0, 2.0)), (5e-324, math.ulp(1.0), 0.0))
     assert KS.count(START) == 1
     for place in (*near, (1.1, 0.1)):
@@ -160,8 +156,8 @@ def test_a_pin_on_the_axis_may_be_off_by_round_off_and_one_beyond_the_tip_has_no
         assert scene.pins[0].points[0] == place
 
 
-@pytest.mark.parametrize("turn", [1e-9, -0.3, 2.0, -5.0])
-def test_a_pin_inside_an_arc_is_on_the_wrong_side_by_its_distance(turn: float) -> None:
+@pytest.mark.parametrize("turn", [1e-9, -5.0])
+def test_a_pin_inside_an_arc_is_on_the_wrong_side_by_its_distance(turn):
     given = USES["turn"].replace("turn = -1.0", f"turn = {turn}")
     beam = BeamSpec(**tomllib.loads(given)["beam"][0])
     (x, y), (tx, ty) = beam.place(0.3), beam.tangent(0.3)
@@ -170,7 +166,7 @@ def test_a_pin_inside_an_arc_is_on_the_wrong_side_by_its_distance(turn: float) -
         read_scene(given.replace("start = [0.7, -0.1]", inside), "s")
 
 
-def test_a_syntax_error_keeps_its_line() -> None:
+def test_a_syntax_error_keeps_its_line():
     line = next(i for i, content in enumerate(KS.splitlines(), 1) if content.startswith("height"))
     with pytest.raises(SceneError, match=rf"^my\.toml: .*line {line}\b.*$"):
         read_scene(KS.replace("height = 0.02", "height = = 0.02"), "my.toml")

@@ -18,7 +18,6 @@ from comparisons.show.findings import BUDGET, findings  # sentences on data that
 from comparisons.show.table import Row, table_csv
 
 KS = replace(load_scene("ks-cantilever"), load_parameters=5)
-HALF = {"load_parameter": np.array([0.2, 0.4])}
 
 
 def beams(element: str, elements: int) -> Run:
@@ -37,12 +36,12 @@ def rows() -> list[Row]:
     return [_row(run, responses, KS) for run in CHOSEN]
 
 
-def budget(name: str = "contact_force a->b", **parts: float) -> Budget:
+def budget(**parts: float) -> Budget:
     """Difference at the third load parameter, of the parts given, of one pair of two."""
     at = np.array([0.0, 0.0, 1.0, 0.5])
     values = {part: parts.get(part.replace(" ", "_"), 0.0) * at for part in PARTS}
     small = {part: 0.1 * value for part, value in values.items()}
-    both = {name: values} if "moment" in name else {"contact_force c->d": small, name: values}
+    both = {"contact_force c->d": small, "contact_force a->b": values}
     return Budget(
         scene=KS.name,
         total={one: np.sum(list(own.values()), axis=0) for one, own in both.items()},
@@ -71,7 +70,12 @@ OFF = "TSM timoshenko is off by at most 1.6 % (support moment) with 10 elements 
 THEORY = "Theory expects most of it from this cause: "
 DIFFER = "In the error budget, beams and solid differ most in the "
 APART = "solid and the exact rod disagree on whether a contact is closed."
-STOPPED = {"completed": False, "status": "CUTBACK_FLOOR", "message": "no step", **HALF}
+STOPPED = {
+    "completed": False,
+    "status": "CUTBACK_FLOOR",
+    "message": "no step",
+    "load_parameter": np.array([0.2, 0.4]),
+}
 LEFT_OUT = {"elastica": "two pins", "mine": "two pins", "solid Q2": "no height", BUDGET: "no solid"}
 
 
@@ -83,7 +87,6 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
     )
     solid = re.search(r"The solid Q2 is off by .*?(a bent strip, softer|cause: shear)", plain)[0]
     off = with_error(with_error(rows, 0, moment=0.016), 1, moment=0.004, force=0.001)
-    half = [replace(row, response=replace(row.response, **HALF)) for row in rows]
     stable = [replace(row, response=replace(row.response, index=np.zeros(5, dtype=int))) for row in rows]
     unstable, partly = (
         changed(stable, 2, index=np.array(index)) for index in ([0, 0, 1, 0, 0], [0, -1, -1, -1, 0])
@@ -101,19 +104,13 @@ def test_every_sentence_is_said_of_its_data_and_of_no_other(rows):
     law = budget(material_law=0.003, solid_mesh=-0.0005, penalty=0.00001)
     for found, said in (
         (plain, "5 runs of TSM, solid and elastica are compared with the exact rod on ks-cantilever at 5 load parameters, up to 1."),
-        (told([rows[0], rows[-1]]), "1 run of TSM is compared with the exact rod"),
-        (told(half), "load parameters, up to 0.4."),
         (told(off), f"{OFF}4 % with 20 elements; the error falls with the power 2.0 of the length of the elements. {THEORY}second order of the element."),
-        (told(with_error(off, 1, moment=0.0001, force=0.002)), f"{OFF}2 % (contact force) with 20 elements; the error falls with the power 3.0"),
         (told(with_error(off, 1, tip=0.5)), f"(tip) with 20 elements. {THEORY}second order"),
-        (told([replace(row, cause="") for row in off]), "of the length of the elements. TSM exact agrees with the exact rod to "),
         (told(with_error(rows, 2, force=1e-3)), f"TSM exact is off by at most 0.1 % (contact force) with 1 element. {THEORY}accuracy"),
         (plain, "TSM exact agrees with the exact rod to "),
         (plain, "from this cause: stretch and shear. Stability"),
         (told(rows, law), f"{DIFFER}contact force a->b at load parameter 0.75: by 0.25 %, made of 0.3 % material law and -0.05 % solid mesh."),
-        (told(rows, budget(load_steps=0.5)), "by 50 %, made of 50 % load steps."),
         (told(rows, budget(solid_mesh=1e-11)), "In the error budget, beams and solid agree to 1e-11."),
-        (told(rows, budget("clamp_moment", solid_mesh=0.01)), f"{DIFFER}clamp moment at load parameter 0.75: by 1 %"),
         (told(with_error(rows, 3, arc=inf)), APART),
         (told(with_error(rows, 3, arc=inf)), solid),
         (told(changed(rows, 1, **STOPPED)), "TSM timoshenko, 20 elements did not complete (CUTBACK_FLOOR: no step); its errors are those up to load parameter 0.4."),

@@ -16,7 +16,8 @@ import pytest
 from comparisons.cli import main
 from comparisons.scene import load_scene, to_toml
 
-KS = replace(load_scene("ks-cantilever"), load_parameters=5)
+KS = load_scene("ks-cantilever")
+KS = replace(KS, load_parameters=5, beams=(replace(KS.beams[0], mesh=(16, 1)),))
 
 
 class Compared(NamedTuple):

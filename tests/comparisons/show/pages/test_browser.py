@@ -10,8 +10,8 @@ from matplotlib.image import imread
 
 from comparisons.models import solve
 from comparisons.scene import SupportSpec, read_scene
-from comparisons.show.pages import Section, motion_section, page, tracks
-from tests.comparisons.show.pages.conftest import KS, Browser
+from comparisons.show.pages import Section, motion_section, page
+from tests.comparisons.show.pages.conftest import Browser
 from tests.comparisons.show.specimen import SPECIMEN
 
 pytestmark = pytest.mark.slow
@@ -131,18 +131,6 @@ def test_light_dark_and_paper(browser, compared, tmp_path):
     assert 3 <= paper.count(b"/Type /Page\n") <= 12
 
 
-def test_a_section_may_bring_a_script_and_data_of_its_own(browser, tmp_path):
-    own = 'const own = document.querySelector("#{0} p"); own.textContent = DATA["{0}"].sum.join("+");'
-    sections = [
-        Section(title=title, html="<p>-</p>", data={"sum": [number, 1]}, script=own.format(title))
-        for title, number in (("first", 2), ("second", 3))
-    ]
-    found = told(
-        browser, written(tmp_path, *sections), 'told.texts = all("section p").map((p) => p.textContent);'
-    )
-    assert found["texts"] == ["2+1", "3+1"]
-
-
 def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     """A round pin is a circle of its radius in the scale of the drawing; an undeformed arc has many points; supports move."""
     scene = read_scene(SPECIMEN, "specimen")
@@ -160,12 +148,3 @@ def test_true_pins_supports_and_arcs_are_drawn(browser, tmp_path):
     assert found["arc"] == 25
     assert symbol != found["second"][1]
     assert disc != found["second"][0]
-
-
-def test_a_run_that_stopped_leaves_no_error(browser, tmp_path):
-    rod, beams = solve(KS, "rod"), solve(KS, "tsm")
-    mixed, exact = (replace(beams, load_parameter=beams.load_parameter[:k]) for k in (2, 0))
-    responses = {"TSM mixed": mixed, "TSM exact": exact, "exact rod": rod}
-    section = motion_section("Stopped", KS, responses, tracks(responses, "exact rod", KS), focus="TSM mixed")
-    script = 'const count = () => [0, 1, 2].map((n) => all(`.shapes [data-run="${n}"]`).length); told.end = count(); slide(1); told.second = count();'
-    assert told(browser, written(tmp_path, section), script) == {"end": [0, 0, 1], "second": [1, 0, 1]}

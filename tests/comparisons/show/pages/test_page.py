@@ -4,7 +4,6 @@ import csv
 import json
 import re
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +12,9 @@ import pytest
 
 from comparisons.compare import RUNS
 from comparisons.errors import error_histories, errors
-from comparisons.models import MODELS, TSM, solve
-from comparisons.response import SLIPS
-from comparisons.scene import load_scene, read_scene
-from comparisons.show.pages import Section, motion_section, page, states_section, table, tracks
+from comparisons.models import MODELS, solve
+from comparisons.scene import read_scene
+from comparisons.show.pages import Section, motion_section, page, table, tracks
 from tests.comparisons.show.pages.conftest import KS
 from tests.comparisons.show.pages.markup import block, check_alone
 
@@ -33,6 +31,7 @@ def summarised(folder: Path) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]
     return summary, {run["label"]: run for run in summary["runs"]}
 
 
+@pytest.mark.slow
 def test_a_comparison_writes_every_file_and_names_it(compared):
     folder = compared.folder
     there = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
@@ -45,11 +44,9 @@ def test_a_comparison_writes_every_file_and_names_it(compared):
         assert f"[{number}/{len(RUNS)}] {label}: " in compared.progress
         assert f"\n{label} " in compared.printed
     assert compared.progress.endswith("measuring the error budget\ndrawing and writing files\n")
-    families = [TSM.family(KS, run.options) for run in RUNS if run.model == TSM.name]
-    # the sentences of the findings group neighbours
-    assert len([a for a, b in pairwise(families) if a != b]) == len(set(families)) - 1
 
 
+@pytest.mark.slow
 def test_summary_table_and_page_have_the_same_numbers(compared):
     folder = compared.folder
     summary, runs = summarised(folder)
@@ -77,23 +74,12 @@ def test_summary_table_and_page_have_the_same_numbers(compared):
         tips = [lines[0][-1] for lines in line["lines"]]
         assert np.allclose(tips, runs[line["label"]]["tips"]["cantilever"], rtol=0.0, atol=1e-5)
         assert {len(lines[0]) for lines in line["lines"]} == {61}
-    assert len({(run["colour"], run["dash"], run["width"]) for run in data["runs"]}) == len(runs)
-    assert len({run["dash"] for run in data["runs"]}) == len(runs) - 1, "the solid is the wide one"
 
 
+@pytest.mark.slow
 def test_a_page_is_alone_and_begins_with_the_findings(compared):
     html, (_, runs) = (compared.folder / "report.html").read_text(), summarised(compared.folder)
     check_alone(html, compared.folder)
-    titles = (
-        "Errors",
-        "Shapes and histories",
-        "Error budget",
-        "Stress",
-        "Input",
-        "Versions and machine",
-        "Files",
-    )
-    assert [title for title in titles if f">{title}</h2>" not in html] == []
     assert html.count('href="tsm/tsm.pvd"') == html.count('href="solid/solid.pvd"') == 1
     (data,) = block(html).values()
     for pattern in data["vtu"].values():
@@ -132,39 +118,6 @@ def test_a_run_that_stopped_is_shown_as_far_as_it_came():
     section = motion_section("t", KS, {"TSM mixed": none}, [], focus="TSM mixed")
     assert "No run reached" in section.html
     assert section.data is None
-
-
-def test_supports_springs_and_hinges_are_drawn_where_their_ends_are():
-    """A run that stopped keeps its last places; a run that reached nothing has the undeformed ones."""
-    springs = replace(load_scene("beam-on-springs"), load_parameters=2)
-    whole = solve(springs, "tsm")
-    places = []
-    for count in (2, 1, 0):
-        runs = {"TSM mixed": replace(whole, load_parameter=whole.load_parameter[:count]), "exact rod": whole}
-        roller, left, right = motion_section("t", springs, runs, [], focus="TSM mixed").data["symbols"]
-        assert len(left["lines"]) == len(right["lines"]) != len(roller["lines"])
-        np.testing.assert_array_equal(roller["at"], left["at"])
-        places.append(np.array([left["at"], right["at"]]))
-    ends = np.array([[whole.axis_line("beam", k)[1][n] for k in range(2)] for n in (0, -1)])
-    np.testing.assert_allclose(places[0], ends, atol=1e-3)
-    np.testing.assert_array_equal(places[1], places[0][:, [0, 0]])
-    np.testing.assert_array_equal(places[2], [[[0.0, 0.0]] * 2, [[200.0, 0.0]] * 2])
-    truss = replace(load_scene("hinged-truss"), load_parameters=1)
-    section = motion_section("t", truss, {"TSM mixed": solve(truss, "tsm")}, [], focus="TSM mixed")
-    assert len(section.data["symbols"]) == len(truss.all_supports) + len(truss.hinges)
-
-
-def test_bands_of_stick_and_slip_differ_without_colour():
-    """The slip to the start is hatched."""
-    scene = replace(load_scene("ks-friction"), load_parameters=4)
-    section = states_section({"TSM mixed": solve(scene, "tsm")})
-    legend, drawn = section.html.split('aria-label="contact states over')
-    named = re.findall(r"(<path [^>]*/>)?</svg>([^<]*)</span>", legend)
-    bands = re.findall(r"<title>(.*?) from .*?</title><rect [^>]*/>(<path [^>]*/>)?</g>", drawn)
-    assert {name for path, name in named if path} == {state for state, path in bands if path} == {SLIPS[-1]}
-    assert f"{SLIPS[-1]} from 0 to " in drawn
-    assert {SLIPS[1], SLIPS[-1]} <= {state for state, _ in bands}
-    assert max(float(width) for width in re.findall(r'width="([\d.]+)" height="16"', drawn)) <= 600.0
 
 
 def test_colours_stay_apart_for_the_colour_blind():
