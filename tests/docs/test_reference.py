@@ -29,7 +29,7 @@ NUMERICS = {
 @pytest.fixture(scope="module")
 def tables() -> dict[str, dict[str, dict]]:
     """The tables of a scene file and their keys, as the schema has them."""
-    found = json.loads(run_line("crossval schema"))["properties"]
+    found = json.loads(run_line("crossval scenes --schema"))["properties"]
     lists = {f"[[{name}]]": one["items"] for name, one in found.items() if name != "scene"}
     return {header: one["properties"] for header, one in {"[scene]": found["scene"], **lists}.items()}
 

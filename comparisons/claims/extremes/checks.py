@@ -70,7 +70,8 @@ class Against:
             )
         answer = in_units_of(beam, case.scene.beams[0], own)
         partner = in_units_of(beam, beam, other)
-        error = max(difference(answer, partner, self.case.scene, quantity) for quantity in COMPARED)
+        found = [difference(answer, partner, self.case.scene, quantity) for quantity in COMPARED]
+        error = float(np.fmax.reduce(found, initial=0.0))
         return Finding(name=self.name, error=error, allowed=allowed.error, why=allowed.why)
 
 

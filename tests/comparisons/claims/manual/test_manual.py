@@ -65,7 +65,7 @@ ANSWERS = (
 
 def cards(folder, *names):
     """Return the cards that the command writes, and the check by their schema."""
-    assert main(["manual", "--cards", str(folder), "--only", *names]) == 0
+    assert main(["run", "manual", "--cards", str(folder), "--only", *names]) == 0
     schema = Draft202012Validator(json.loads((folder / "card.schema.json").read_text()))
     return [json.loads((folder / f"{name}.json").read_text()) for name in names], schema
 
@@ -183,7 +183,7 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
     }
     monkeypatch.setattr(manual_problems, "PROBLEMS", problems)
     junit, folder = tmp_path / "junit.xml", tmp_path / "m"
-    assert main(["manual", "--out", str(folder), "--junit", str(junit), "--quiet"]) == 1
+    assert main(["run", "manual", "--out", str(folder), "--junit", str(junit), "--quiet"]) == 1
     out, err = capsys.readouterr()
     failures = [failure for *_, failure in JUDGED]
     assert "2 cases, 10 answers, 5 beyond their tolerance" in out
