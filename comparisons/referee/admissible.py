@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.distance import bending_force
-from comparisons.referee.faces import face_slope, touching_distance
+from comparisons.referee.rod import face_slope, touching_distance
 from comparisons.referee.start import PULL
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene

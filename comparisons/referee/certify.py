@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,16 +13,17 @@ from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.distance import LEAST, least_force
 from comparisons.referee.events import misstated
 from comparisons.referee.follow import departures
-from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
 from comparisons.referee.passing import changes, passages
-from comparisons.referee.rubbing import rubs_wrongly_on_the_way
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.response.axis import SampledAxes
 from comparisons.response.material import material_forces
 from comparisons.scene import Scene
 from comparisons.scene.keys import REFEREE, unstated
+
+if TYPE_CHECKING:
+    from comparisons.referee.friction import History
 
 ALLOWED = 5e-2
 """Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
@@ -70,6 +72,8 @@ def certify(
     unsound = tuple(_unsound(response, scene, allowed)) or tuple(unpaid(response, scene, energies, allowed))
     path = () if unsound else tuple(_path(response, scene, found, allowed))
     if history is not None:
+        from comparisons.referee.friction import rubs_wrongly_on_the_way
+
         path += tuple(rubs_wrongly_on_the_way(history, numbers, states, allowed))
     verdict, reason = _worst(states, unsound, path)
     if verdict is Verdict.CERTIFIED:
@@ -90,7 +94,7 @@ def certify(
 
 
 def _judged(
-    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: History | None
+    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: "History | None"
 ) -> Iterator[Judgement]:
     """Yield the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
     before, near = -2, None
@@ -106,7 +110,7 @@ def _on_the_path(
     numbers: Sequence[int],
     states: Sequence[Judgement],
     allowed: float,
-    history: History | None,
+    history: "History | None",
 ) -> Iterator[Judgement]:
     """Yield the judgements; a refused state is judged again with the largest sizes of all judged load parameters.
 
@@ -207,12 +211,14 @@ def _sound(
     return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}{loaded}"
 
 
-def _history(response: Response, scene: Scene) -> History | None:
+def _history(response: Response, scene: Scene) -> "History | None":
     """Return the states of friction in an answer; None without friction, and for an answer that is not one to the scene."""
     if not any(spec.friction for spec in scene.contacts):
         return None
     if any(next(impossible(response, scene, k), "") for k in range(len(response.load_parameter))):
         return None
+    from comparisons.referee.friction import History
+
     return History(response, scene)
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.loads import dead_loads
+from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
 from comparisons.referee.start import SHORTEST, AnswerState
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import BeamSpec, ContactSpec, Scene
@@ -126,7 +126,7 @@ def distance(
     Forces, moments and displacements are relative to the largest at this load parameter, or to `largest` if that is larger.
     """
     axes = {beam.name: exact.shape(beam.name, answer.axes[beam.name][0]).position for beam in scene.beams}
-    ways = [axes[beam.name] - _undeformed(beam, answer.axes[beam.name][0]) for beam in scene.beams]
+    ways = [axes[beam.name] - axis_at_rest(beam, answer.axes[beam.name][0]) for beam in scene.beams]
     scales = (*_forces(scene, exact), max(float(np.hypot(*way.T).max()) for way in ways))
     size, moment, moved = map(max, scales, largest)
     found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH)}
@@ -281,13 +281,6 @@ def _forces(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     size = max(LEAST * least_force(scene), *forces, *(value / length for value in moments), 0.0)
     considerable = max(moments, default=0.0) > 1e-3 * size * length
     return size, max(size * length * LEAST, *moments) if considerable else size * length
-
-
-def _undeformed(beam: BeamSpec, arcs: Array) -> Array:
-    """Undeformed positions of points of a beam's axis."""
-    if beam.turn:
-        return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
-    return np.asarray(np.array(beam.start) + np.outer(arcs, beam.direction))
 
 
 def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:

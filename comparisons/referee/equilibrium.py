@@ -1,20 +1,20 @@
 """The search for the exact equilibrium of a scene's rods near an answer."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import AMPLITUDE, DEGREE, GAUSS, VALUES, shapes
-from comparisons.referee.elements import Mesh, mesh_of, properties, rotations
+from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
 from comparisons.referee.equations import System, assemble
-from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.layout import Layout
+from comparisons.referee.numbering import lay_out
 from comparisons.referee.start import SHORTEST, AnswerState, Rotations, first_guess
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 _RESOLVED = 3e-14
 """Largest amplitude of the last two bubbles of a resolved element [rad]."""
@@ -32,9 +32,10 @@ _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 DENSE = 300
 """Number of unknowns up to which matrices are solved as full ones."""
-_NONE = np.zeros(0, dtype=np.int64)
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
+_LOW, _ALL = np.linalg.pinv(VALUES[:, 2:6]), np.linalg.pinv(VALUES[:, 2:])
+"""From values at the Gauss points to the lowest bubbles, and to all."""
 
 
 class SearchStatus(Enum):
@@ -48,38 +49,19 @@ class SearchStatus(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solution:
-    """Result of Newton's method in the units of `Layout`.
-
-    Attributes
-    ----------
-    status : SearchStatus
-        Outcome of the search.
-    reason : str
-        Reason of a search without success.
-    layout, mesh
-        Layout and mesh of the unknowns.
-    z, bubbles : ndarray
-        Unknowns of layout and mesh, and coefficients of the bubbles (e, p - 1).
-    system : System
-        The last equations.
-    iterations : int
-        Total number of Newton iterations.
-    correction : float
-        The last correction relative to the unknowns.
-    tail : float
-        Largest amplitude of the last two bubbles of an element.
-    """
+    """Result of Newton's method in the units of `layout`, with the last equations and the last correction over the unknowns."""
 
     status: SearchStatus
     reason: str
+    """Reason of a search without success."""
     layout: Layout
     mesh: Mesh
     z: Array
     bubbles: Array
+    """Coefficients (e, p - 1) of the bubbles."""
     system: System | None = field(repr=False)
     iterations: int
     correction: float
-    tail: float
 
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
@@ -90,39 +72,25 @@ def solve(scene: Scene, answer: AnswerState) -> Solution:
     if reason:
         mesh = mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts])
         return Solution(
-            status=SearchStatus.NOT_JUDGED,
-            reason=reason,
-            layout=layout,
-            mesh=mesh,
-            z=z,
-            bubbles=np.zeros((0, DEGREE - 1)),
-            system=None,
-            iterations=0,
-            correction=np.inf,
-            tail=np.inf,
-        )
+            status=SearchStatus.NOT_JUDGED, reason=reason, layout=layout, mesh=mesh, z=z,
+            bubbles=np.zeros((0, DEGREE - 1)), system=None, iterations=0, correction=np.inf,
+        )  # fmt: skip
     mesh = mesh_of(layout, _first_grids(layout, z))
     start = _fitted(layout, mesh, z, turns)
     best = correct(layout, mesh, *start, _ITERATIONS)
-    arcs, forces = _stated(layout)
-    for held in (arcs, np.union1d(arcs, forces)):
-        if _is_near(layout, z, best):
+    # arc positions of contacts and forces of parts are more accurate in an answer than rotations
+    for held in (layout.arcs, np.union1d(layout.arcs, layout.forces)):
+        if _is_near(z, best):
             break
         other = correct(layout, mesh, *_rotations_corrected(layout, mesh, *start, held), _ITERATIONS)
-        if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(layout, z, other):
+        if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(z, other):
             best = other
     return best
 
 
-def _stated(layout: Layout) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Unknowns that are more accurate in an answer than rotations: arc positions of contacts, and forces of parts."""
-    arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
-    return arcs, np.unique([k for part in layout.parts for k in (part.force, part.force + 1)])
-
-
-def _is_near(layout: Layout, z: Array, solution: Solution) -> bool:
+def _is_near(z: Array, solution: Solution) -> bool:
     """Whether an equilibrium was found with nearly the forces and arc positions of the answer."""
-    arcs, forces = _stated(layout)
+    arcs, forces = solution.layout.arcs, solution.layout.forces
     size = float(np.abs(z[forces]).max(initial=0.0))
     apart = np.abs(solution.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
@@ -134,48 +102,34 @@ def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
 
     At most `iterations` Newton iterations are made on each mesh.
     """
-    spent, reason = 0, ""
+    spent = 0
     for _ in range(_ROUNDS):
-        newton = _newton(layout, mesh, z, bubbles, iterations)
-        spent += newton.iterations
-        tails = _tails(newton.bubbles)
-        coarse = tails > _RESOLVED
+        found = _newton(layout, mesh, z, bubbles, iterations)
+        spent += found.iterations
+        coarse = tails(found.bubbles) > _RESOLVED
+        if found.status is not SearchStatus.FOUND or not coarse.any():
+            return replace(found, iterations=spent)
         grids = _refined(mesh, coarse)
-        done = not newton.converged or not coarse.any()
-        if done or max(map(len, grids)) > _MOST_ELEMENTS:
+        if max(map(len, grids)) > _MOST_ELEMENTS:
             break
-        z, bubbles, mesh = _transferred(layout, mesh, newton.z, newton.bubbles, grids)
-    status = SearchStatus.NOT_RESOLVED if newton.converged and not done else SearchStatus.FOUND
-    status, reason = (status, "") if newton.converged else (SearchStatus.NO_EQUILIBRIUM, newton.reason)
-    return Solution(
-        status=status,
-        reason=reason,
-        layout=layout,
-        mesh=mesh,
-        z=newton.z,
-        bubbles=newton.bubbles,
-        system=newton.system,
-        iterations=spent,
-        correction=newton.correction,
-        tail=float(tails.max()),
-    )
+        z, bubbles, mesh = _transferred(layout, mesh, found.z, found.bubbles, grids)
+    return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
 
 
 def _rotations_corrected(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: NDArray[np.int64]
+    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: Ints
 ) -> tuple[Array, Array]:
     """Correct the rotations while the unknowns `held` keep the values of the answer.
 
     Otherwise the first correction of inaccurate rotations could move a contact beyond an end. With a tension near GA EA/(EA - GA)
     the rotations are so sensitive that the first correction could lead to another equilibrium.
     """
-    rods = properties(layout, mesh)
     for _ in range(_HOLDING):
-        system = assemble(layout, mesh, rods, z, bubbles)
+        system = assemble(layout, mesh, z, bubbles)
         change = _step(system, held)
         if change is None:
             break
-        inside = _inside(system, change)
+        inside = _inside(system, mesh, change)
         turn = max(float(np.abs(change[layout.unknowns :]).max(initial=0.0)), float(np.abs(inside).max()))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300))
         z, bubbles = z + part * change, bubbles + part * inside
@@ -190,7 +144,7 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part in layout.parts:
-        if layout.extent(z, part) <= SHORTEST:
+        if part.extent(z) <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -202,10 +156,10 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
     grids = []
     for part in layout.parts:
-        n = float(np.hypot(*z[part.force : part.force + 2]))
+        n = float(np.hypot(*part.constant(z)))
         EI, stretch, shear = part.rod.greatest
         rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 50))
+        count = int(np.clip(np.ceil(part.extent(z) * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
@@ -216,90 +170,76 @@ def _fitted(layout: Layout, mesh: Mesh, z: Array, turns: list[Rotations]) -> tup
     bubbles = np.zeros((len(mesh.part), DEGREE - 1))
     for e, number in enumerate(mesh.part):
         part = layout.parts[number]
-        first, extent = layout.arc(z, part.first, part), layout.extent(z, part)
-        start, size = first + mesh.start[e] * extent, mesh.share[e] * extent
+        start = part.ends(z)[0] + mesh.start[e] * part.extent(z)
+        places = start + mesh.share[e] * part.extent(z) * np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
+        there = turns[part.beam].angle(places)
         if mesh.vertices[mesh.first[e]] >= len(z):
-            whole[mesh.vertices[mesh.first[e]]] = turns[part.beam].angle(start)
-        ends = [turns[part.beam].angle(start), turns[part.beam].angle(start + size)]
-        there = turns[part.beam].angle(start + size * (GAUSS + 1.0) / 2.0)
-        bubbles[e, :4] = _LOW @ (there - VALUES[:, :2] @ ends)
+            whole[mesh.vertices[mesh.first[e]]] = there[-2]
+        bubbles[e, :4] = _LOW @ (there[:-2] - VALUES[:, :2] @ there[-2:])
     return whole, bubbles
 
 
-_LOW = np.linalg.pinv(VALUES[:, 2:6])
-
-
-class _Newton(NamedTuple):
-    z: Array
-    bubbles: Array
-    system: System | None
-    converged: bool
-    reason: str
-    iterations: int
-    correction: float
-
-
-def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
+def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
     """Iterate until the corrections are round-off."""
-    rods, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
+    last, size, error = np.inf, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
-    arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
-    forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)])
-    turning = np.ones(mesh.unknowns, dtype=bool)
-    for k in [*arcs, *forces, *(k for item in layout.stations for k in item.place.unknown if k >= 0)]:
-        turning[k] = False
-    reason = SearchStatus.NO_EQUILIBRIUM.value
-    for iteration in range(1, iterations + 1):
-        if min(layout.extent(z, item) for item in layout.parts) <= 0.0:
-            return _Newton(z, bubbles, None, False, _AT_ONE_PLACE, iteration, np.inf)
-        system = assemble(layout, mesh, rods, z, bubbles)
+    forces, turning, moving = layout.forces, np.ones(mesh.unknowns, bool), np.zeros(mesh.unknowns, bool)
+    moving[layout.arcs] = True
+    moving[[k for item in layout.stations for k in item.place.unknown if k >= 0]] = True
+    turning[forces] = turning[moving] = False
+    status, reason, system = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value, None
+    for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
+        system, error = None, np.inf
+        if np.diff(layout.extents(z)).min() <= 0.0:
+            reason = _AT_ONE_PLACE
+            break
+        system = assemble(layout, mesh, z, bubbles)
         change = _step(system)
         if change is None:
-            return _Newton(z, bubbles, system, False, "the equations are singular", iteration, np.inf)
-        inside = _inside(system, change)
+            reason = "the equations are singular"
+            break
+        inside = _inside(system, mesh, change)
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = float(np.abs(change[~turning & ~np.isin(np.arange(mesh.unknowns), forces)]).max(initial=0.0))
-        scale = float(np.abs(z[forces]).max()) + 1e-6
-        forced = float(np.abs(change[forces]).max())
+        moved = float(np.abs(change[moving]).max(initial=0.0))
+        scale, forced = float(np.abs(z[forces]).max()) + 1e-6, float(np.abs(change[forces]).max())
         size, error = max(turn, moved, forced / (scale + least)), max(turn, moved, forced / scale)
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, z, change))
         z, bubbles = z + part * change, bubbles + part * inside
         if not np.isfinite(size):
-            return _Newton(z, bubbles, system, False, reason, iteration, error)
+            break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            return _Newton(z, bubbles, assemble(layout, mesh, rods, z, bubbles), True, "", iteration, error)
+            status, reason, system = SearchStatus.FOUND, "", assemble(layout, mesh, z, bubbles)
+            break
         last = size if part == 1.0 else np.inf
-    return _Newton(z, bubbles, system, False, reason, iterations, error)
+    return Solution(
+        status=status, reason=reason, layout=layout, mesh=mesh, z=z, bubbles=bubbles, system=system,
+        iterations=iteration, correction=error,
+    )  # fmt: skip
 
 
 def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
     """Return the first Newton correction; zero if the equations are singular."""
-    system = assemble(layout, mesh, properties(layout, mesh), z, bubbles)
+    system = assemble(layout, mesh, z, bubbles)
     change = _step(system)
-    return (np.zeros_like(z), np.zeros_like(bubbles)) if change is None else (change, _inside(system, change))
+    if change is None:
+        return np.zeros_like(z), np.zeros_like(bubbles)
+    return change, _inside(system, mesh, change)
 
 
-def _inside(system: System, change: Array) -> Array:
+def _inside(system: System, mesh: Mesh, change: Array) -> Array:
     """Change of the bubbles that belongs to a change of the other unknowns."""
-    return np.asarray(
-        -(system.shift + np.einsum("eij,ej->ei", system.lever, _element_changes(system, change)))
-    )
+    moved = np.append(change, 0.0)[mesh.local]
+    return np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
 
 
-def _element_changes(system: System, change: Array) -> Array:
-    """Changes (e, 5 or 6) of the unknowns of every element."""
-    local = system.sign * np.append(change, 0.0)[system.local]
-    return np.column_stack([local[:, :4], local[:, 4] + local[:, 5], local[:, 6:]])
-
-
-def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:
+def _step(system: System, held: Ints | None = None) -> Array | None:
     """Newton correction with the unknowns `held` fixed; None if singular.
 
     Rows and columns are scaled, since EI, EA and forces differ by orders of magnitude.
     """
     hessian, gradient = system.hessian, system.gradient
-    if len(held):
+    if held is not None and len(held):
         hessian, gradient = hessian.copy(), gradient.copy()
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
@@ -333,16 +273,12 @@ def scales(row: NDArray[np.int64], column: NDArray[np.int64], entry: Array) -> A
 
 def _damping(layout: Layout, z: Array, change: Array) -> float:
     """Largest fraction of a change that leaves a third of the length of every part."""
-    part = 1.0
-    for item in layout.parts:
-        before = layout.extent(z, item)
-        less = before - layout.extent(z + change, item)
-        if less > 2.0 / 3.0 * before:
-            part = min(part, 2.0 / 3.0 * before / less)
-    return part
+    before = np.diff(layout.extents(z))
+    less = before - np.diff(layout.extents(z + change))
+    return float(np.min(2.0 / 3.0 * before / np.maximum(less, 2.0 / 3.0 * before)))
 
 
-def _tails(bubbles: Array) -> Array:
+def tails(bubbles: Array) -> Array:
     """Largest amplitude of the last two bubbles of every element."""
     return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))
 
@@ -381,6 +317,3 @@ def _transferred(
         if finer.vertices[finer.first[e]] >= layout.unknowns:
             whole[finer.vertices[finer.first[e]]] = ends[0]
     return whole, inside, finer
-
-
-_ALL = np.linalg.pinv(VALUES[:, 2:])

@@ -7,11 +7,11 @@ import numpy as np
 from comparisons.referee.distance import LEAST, gap_off, least_force
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.march import reach
-from comparisons.referee.phases import PASSES
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
 
+PASSES = "pass-through"
 OPENS, CLOSES = ("release", "slip-off"), ("touch",)
 KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
 """Kinds of contact events."""

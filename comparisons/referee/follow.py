@@ -7,11 +7,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import DEGREE, shapes
-from comparisons.referee.elements import Mesh, mesh_for, mesh_of, rotations
+from comparisons.referee.elements import DEGREE, Mesh, mesh_for, mesh_of, rotations, shapes
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
-from comparisons.referee.layout import Layout, lay_out
+from comparisons.referee.layout import Layout
 from comparisons.referee.march import closed_pairs, corners, tangent
+from comparisons.referee.numbering import lay_out
 from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium, described
@@ -255,8 +255,7 @@ def _state(solution: Solution) -> Array:
 
 def _shape(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
-    forces = [k for part in layout.parts for k in (part.force, part.force + 1)]
-    rest, parts = np.delete(z[: layout.unknowns], forces), range(len(layout.parts))
+    rest, parts = np.delete(z[: layout.unknowns], layout.forces), range(len(layout.parts))
     places = np.tile(_PLACES, len(parts))
     own = [np.flatnonzero(mesh.part == k) for k in parts]
     inside = np.concatenate(

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +11,15 @@ from comparisons.referee.admissible import inadmissible
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, bending_force, distance
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.history import History, UnknownFrictionError
+from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.march import closed_pairs, reach
-from comparisons.referee.rubbing import rubs_wrongly, unlawful, wanders
 from comparisons.referee.start import PULL, AnswerState, answer_state, idle_at_an_end
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
+
+if TYPE_CHECKING:
+    from comparisons.referee.friction import History
 
 PLACE = 1e-3
 """Largest violation of constraints by an answer's axis, over the length; a larger one means another load parameter."""
@@ -36,7 +39,7 @@ def judged(
     k: int,
     allowed: float,
     *,
-    history: History | None = None,
+    history: "History | None" = None,
     exact: Equilibrium | None = None,
     near: Solution | None = None,
     largest: Scales = (0.0, 0.0, 0.0),
@@ -62,6 +65,8 @@ def judged(
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
+        from comparisons.referee.friction import rubs_wrongly, unlawful, wanders
+
         misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
         if misstated:
             return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
@@ -181,19 +186,17 @@ def _nearest(
 def _complete(
     answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
 ) -> AnswerState:
-    """Add all that the answer states, contact forces without direction by the exact direction, and tangential forces not stated."""
-    forces, drags = dict(answer.forces), dict(answer.drags)
+    """Add all that the answer states, contact forces without direction by the exact direction."""
+    forces = dict(answer.forces)
     for pair, force in answer.forces.items():
         if pair not in exact.contacts:
             # open at an end, with a force that is round-off
             forces[pair] = tuple(np.nan_to_num(force).tolist())
-            drags.setdefault(pair, 0.0)
             continue
         if math.isnan(force[0]):
             x, y = exact.contacts[pair].force / max(float(np.hypot(*exact.contacts[pair].force)), 1e-300)
             size = float(response.contacts[pair].force[k])
             forces[pair] = (size * float(x), size * float(y))
-        drags.setdefault(pair, exact.contacts[pair].drag)
     gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
     sections = (
         {}
@@ -203,7 +206,6 @@ def _complete(
     return replace(
         answer,
         forces=forces,
-        drags=drags,
         gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
         springs={
             end: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))

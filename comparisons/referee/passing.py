@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, solve
-from comparisons.referee.faces import face_slope, touching_distance
 from comparisons.referee.follow import at_rest, events_between, on_the_way
+from comparisons.referee.rod import face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import described
 from comparisons.response import ContactHistory, Response

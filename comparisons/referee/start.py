@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.friction import Grip
-from comparisons.referee.layout import Layout, Part
-from comparisons.referee.stations import NONE, Position
+from comparisons.referee.grip import Grip
+from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -44,8 +43,6 @@ class AnswerState:
         Position of the free or less restrained end of every beam.
     grips : dict of Grip
         How friction holds the closed pairs; pairs without a grip have no friction.
-    drags : dict of float
-        Tangential force of the closed pairs whose friction the answer states.
     gaps : dict of float
         Gap of the pairs for which one is stated.
     springs : dict of (float, float, float)
@@ -63,11 +60,15 @@ class AnswerState:
     reactions: dict[str, tuple[float, float, float]]
     tips: dict[str, tuple[float, float]]
     grips: dict[str, Grip] = field(default_factory=dict)
-    drags: dict[str, float] = field(default_factory=dict)
     gaps: dict[str, float] = field(default_factory=dict)
     springs: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
     local: float = 0.0
+
+    def end(self, node: str) -> Array:
+        """Return the position of a beam's end such as ``upper.end``."""
+        beam, end = node.split(".")
+        return np.asarray(self.axes[beam][1][0 if end == "start" else -1])
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
@@ -96,11 +97,6 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
             for node, item in response.supports.items()
         },
         tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
-        drags={
-            pair: float(item.friction.tangential[k])
-            for pair, item in pushing.items()
-            if item.friction is not None
-        },
     )
 
 
@@ -144,7 +140,7 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
         for number in (part.first, part.last):
             station = layout.stations[number]
             if station.rotation_unknown != NONE:
-                z[station.rotation_unknown] = turns[part.beam].angle(layout.arc(z, number, part))
+                z[station.rotation_unknown] = turns[part.beam].angle(part.ends(z)[number == part.last])
     return z, turns
 
 
@@ -198,21 +194,19 @@ def _end_stations(layout: Layout, beam: int) -> list[tuple[int, float]]:
 
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the displacements of the stations and the normals of the contacts."""
-    scene = layout.scene
-    origin = np.array(scene.beams[0].start)
+    beams = layout.scene.beams
+    origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
-        if station.touch == NONE:
-            seen = (_stated_place(layout, answer, number) - origin) / layout.length - np.array(
-                station.place.reference
-            )
-            _set_displacement(z, station.place, seen)
-        else:
-            touch = layout.touches[station.touch]
-            if touch.angle != NONE:
-                beam = [item.name for item in scene.beams].index(touch.spec.beam)
-                x, y = scene.beams[beam].direction
-                undeformed = math.atan2(y, x) + layout.rod(beam).angle(float(z[touch.arc]))
-                z[touch.angle] = undeformed + float(turns[beam].angle(z[touch.arc])) + math.asin(touch.slope)
+        touch, unknown = station.touch, np.array(station.place.unknown)
+        if touch is None:
+            seen = (_stated_place(layout, answer, number) - origin) / layout.length
+            moved = seen - np.array(station.place.reference)
+            z[unknown[unknown != NONE]] = moved[unknown != NONE]
+        elif touch.angle != NONE:
+            beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
+            x, y = beams[beam].direction
+            undeformed = math.atan2(y, x) + layout.rod(beam).angle(arc)
+            z[touch.angle] = undeformed + float(turns[beam].angle(arc)) + math.asin(touch.slope)
 
 
 def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
@@ -222,43 +216,32 @@ def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
         part = next(item for item in layout.parts if item.first == number)
         arc, line = answer.axes[layout.scene.beams[part.beam].name]
         return np.array([np.interp(station.arc * layout.length, arc, way) for way in line.T])
-    name, end = (station.joint or station.ends)[0].split(".")
-    return np.asarray(answer.axes[name][1][0 if end == "start" else -1])
-
-
-def _set_displacement(z: Array, place: Position, moved: Array) -> None:
-    for component, number in enumerate(place.unknown):
-        if number != NONE:
-            z[number] = moved[component]
+    return answer.end((station.joint or station.ends)[0])
 
 
 def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
-    column = {part.force: 2 * k for k, part in enumerate(layout.parts)}
-    size = 2 * len(layout.parts)
     acting, known = _acting(layout, answer, z)
     joined = {hinge.end: hinge.joint for hinge in layout.hinges}
-    rows, right = [], []
-    for k, item in enumerate(layout.stations):
-        if k in joined:
-            continue
-        row = np.zeros((2, size))
-        for part in layout.parts:
-            here = slice(column[part.force], column[part.force] + 2)
-            first, last = joined.get(part.first, part.first), joined.get(part.last, part.last)
-            row[:, here] += ((last == k) * 1.0 - (first == k) * 1.0) * part.axes
-        stated = [k in known or item.touch != NONE or number != NONE for number in item.place.unknown]
-        rows += [row[component] for component in range(2) if stated[component]]
-        right += [acting[k, component] for component in range(2) if stated[component]]
-    for part in layout.parts:
-        lever, value = _moments(layout, part, answer, turns, z)
-        full = np.zeros(size)
-        full[column[part.force] : column[part.force] + 2] = _CLOSED_LOOP * lever
-        rows.append(full)
-        right.append(_CLOSED_LOOP * value)
-    forces = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
-    for part in layout.parts:
-        z[part.force : part.force + 2] = forces[column[part.force] : column[part.force] + 2]
+    balance = np.zeros((len(layout.stations), 2, len(layout.parts), 2))
+    for n, part in enumerate(layout.parts):
+        for number, sign in ((part.first, -1.0), (part.last, 1.0)):
+            balance[joined.get(number, number), :, n] += sign * part.rod.axes
+    stated = [
+        [
+            k not in joined and (k in known or item.touch is not None or free != NONE)
+            for free in item.place.unknown
+        ]
+        for k, item in enumerate(layout.stations)
+    ]
+    moments, values = np.zeros((len(layout.parts), len(layout.parts), 2)), np.zeros(len(layout.parts))
+    for n, part in enumerate(layout.parts):
+        moments[n, n], values[n] = _moments(layout, part, answer, turns, z)
+    rows = np.concatenate([balance[np.array(stated)], _CLOSED_LOOP * moments]).reshape(
+        -1, 2 * len(layout.parts)
+    )
+    right = np.concatenate([acting[np.array(stated)], _CLOSED_LOOP * values])
+    z[layout.forces] = np.linalg.lstsq(rows, right, rcond=None)[0]
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
@@ -276,9 +259,9 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
     for end, (x, y, _) in answer.reactions.items():
         acting[where[end]] += np.array([x, y]) / layout.force
     for k, item in enumerate(layout.stations):
-        if item.touch == NONE:
+        if item.touch is None:
             continue
-        spec = layout.touches[item.touch].spec
+        spec = item.touch.spec
         force = np.nan_to_num(np.array(answer.forces[spec.pair])) / layout.force
         acting[k] += force
         if "." in spec.node:
@@ -290,8 +273,8 @@ def _moments(
     layout: Layout, part: Part, answer: AnswerState, turns: list[Rotations], z: Array
 ) -> tuple[Array, float]:
     """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
-    a, b = layout.arc(z, part.first, part), layout.arc(z, part.last, part)
-    chord = part.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
+    a, b = part.ends(z)
+    chord = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
     turn, step = turns[part.beam], (b - a) / 8.0
     m_a, m_b = (
         part.rod.flexibility(x).EI * float(turn.angle(x + step) - turn.angle(x)) / step if step > 0.0 else 0.0
@@ -303,9 +286,9 @@ def _moments(
     arc, line = answer.axes[layout.scene.beams[part.beam].name]
     s = np.linspace(a, b, _LOADED)
     way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
-    x, y = part.axes.T @ way
-    W = part.rod.resultant(part.piece, (s[:-1] + s[1:]) / 2.0)
-    return lever, m_a - m_b + float(x @ W[:, 1] - y @ W[:, 0])
+    x, y = part.rod.axes.T @ way
+    p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
+    return lever, m_a - m_b + float(y @ p - x @ q)
 
 
 def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: int, z: Array) -> Rotations:
@@ -319,11 +302,13 @@ def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: in
     if not len(way):
         return turn
     for part in layout.parts:
-        _, stretch, shear = part.rod.flexibility(turn.arc)
-        if part.beam != number or not np.any(shear):
+        if part.beam != number or not np.any(part.rod.greatest.shear):
             continue
-        inside = (turn.arc >= layout.arc(z, part.first, part)) & (turn.arc <= layout.arc(z, part.last, part))
-        n = part.local(z[part.force : part.force + 2], turn.arc) @ (1.0, 1.0j)
+        _, stretch, shear = part.rod.flexibility(turn.arc)
+        first, last = part.ends(z)
+        inside = (turn.arc >= first) & (turn.arc <= last)
+        x, y = part.rod.force(part.piece, part.constant(z), turn.arc)
+        n = (x + 1.0j * y) * np.exp(-1.0j * part.rod.angle(turn.arc))
         along = way - shear * n
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)

@@ -8,9 +8,10 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.friction import Grip
-from comparisons.referee.history import History, UnknownFrictionError
-from comparisons.referee.march import corners, rates, reach, slip_rate
+from comparisons.referee.friction.history import History
+from comparisons.referee.friction.slip import rates, slip_rate
+from comparisons.referee.grip import Grip, UnknownFrictionError
+from comparisons.referee.march import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
         for number in range(before + 1, history.numbers[pair][k] + 1):
             if own[number].slip != own[number - 1].slip:
                 begin = history.begin(pair, number)
-                found[begin.load_parameter] = begin.solution
+                found[begin.layout.load_parameter] = begin
     return found
 
 

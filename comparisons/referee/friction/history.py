@@ -5,17 +5,19 @@ A slip has no memory. A stick holds the place at which it began: where the refer
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
-from comparisons.referee.faces import face_slope, touching_distance
-from comparisons.referee.friction import LOOSE, Grip, Hold
-from comparisons.referee.march import closed_pairs, corners, place, rates, reach, slip_rate, speed
-from comparisons.referee.phases import OPEN, PASSES, SAME, UNKNOWN, Phase, phases, states
-from comparisons.referee.rolling import roll
+from comparisons.referee.events import PASSES
+from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.friction.rolling import roll
+from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
+from comparisons.referee.march import closed_pairs, corners, reach
+from comparisons.referee.rod import face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import Response
@@ -34,22 +36,6 @@ _CLOSE = 1e-13
 """Change of a load parameter at which a root is found."""
 _ZERO = 1e-12
 """Dimensionless margin that is zero."""
-
-
-class UnknownFrictionError(ValueError):
-    """The friction of an answer at a load parameter cannot be computed; `wrong` if the answer is to blame."""
-
-    def __init__(self, reason: str, *, wrong: bool = False) -> None:
-        super().__init__(reason)
-        self.wrong = wrong
-
-
-@dataclass(frozen=True, kw_only=True)
-class Begin:
-    """Where a phase begins by the referee's own equations: load parameter, and the equilibrium there in the state before."""
-
-    load_parameter: float
-    solution: Solution
 
 
 class History:
@@ -74,7 +60,7 @@ class History:
             self.phases[spec.pair], self.numbers[spec.pair] = phases(response, spec, column)
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
-        self._begins: dict[tuple[str, int], Begin] = {}
+        self._begins: dict[tuple[str, int], Solution] = {}
         self._holds: dict[tuple[str, int], Hold] = {}
         self._reached: dict[tuple[str, int], Hold] = {}
         self._followed: set[tuple[str, int, float]] = set()
@@ -90,7 +76,7 @@ class History:
         Raises
         ------
         UnknownFrictionError
-            If no equilibrium is found where a stick begins.
+            If no equilibrium is found where a stick begins; so do the following methods.
         """
         held = {}
         for pair, spec in self.specs.items():
@@ -99,32 +85,12 @@ class History:
                 held[pair] = self.grip(spec, number, float(self.response.load_parameter[k]))
         return held
 
-    def around(self, t: float) -> dict[str, Grip]:
-        """Return how friction holds the closed contacts at load parameter t; contacts that change there, as before.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If no equilibrium is found where a stick begins.
-        """
-        return self._around(None, t)
-
     def closed(self, t: float) -> set[str]:
         """Return the contacts that are closed at load parameter t, those that touch there included."""
-        return {
-            pair
-            for pair, own in self.phases.items()
-            if [phase for phase in own if phase.begin <= t + SAME][-1].slip != OPEN
-        }
+        return {pair for pair, own in self.phases.items() if own[self._number(pair, t)].slip != OPEN}
 
-    def begin(self, pair: str, number: int) -> Begin:
-        """Return where a phase of a contact begins; not for the first phase, nor for a slip-off, where a part has no length.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If no beginning is found.
-        """
+    def begin(self, pair: str, number: int) -> Solution:
+        """Return the equilibrium where a phase of a contact begins, in the state before it; not for the first phase, nor for a slip-off."""
         if (pair, number) not in self._begins:
             if (pair, number) in self._sought:
                 raise UnknownFrictionError(
@@ -138,13 +104,7 @@ class History:
         return self._begins[pair, number]
 
     def grip(self, spec: ContactSpec, number: int, until: float) -> Grip:
-        """Return how friction holds a contact in a closed phase, up to a load parameter in it.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If no equilibrium is found where a stick begins, or in it, or a slip has no known sign.
-        """
+        """Return how friction holds a contact in a closed phase, up to a load parameter in it."""
         slip = self.phases[spec.pair][number].slip
         if slip == UNKNOWN:
             slip = self._sign(spec, number)
@@ -152,10 +112,9 @@ class History:
             return Grip(friction=spec.friction, slip=slip)
         own = spec.pair, number
         if own not in self._holds:
-            if number == 0:
-                begin = at_rest(self.scene, spec)
-            else:
-                solution = self.begin(*own).solution
+            begin = at_rest(self.scene, spec)
+            if number:
+                solution = self.begin(*own)
                 begin = place(solution, solution.layout.touch(spec.pair))
             self._holds[own] = self._reached[own] = begin
         if spec.surface == "face" or self.scene.radius(spec):
@@ -169,14 +128,14 @@ class History:
         if (*own, first) in self._followed:
             return
         middle = (first + last) / 2.0
-        grips = self._around(None, middle, until=first)
+        grips = self.around(middle, until=first)
         sticking = {pair: (pair, self._number(pair, middle)) for pair, grip in grips.items() if not grip.slip}
         begins = {pair: self._reached[item] for pair, item in sticking.items()}
         begin = max(item.load_parameter for item in begins.values())
         if begin >= last:
             return
         closed = self.closed(middle)
-        began = [self._begins[item].solution for item in sticking.values() if item in self._begins]
+        began = [self._begins[item] for item in sticking.values() if item in self._begins]
         began = [item for item in began if closed_pairs(item).keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
         near = (
@@ -195,15 +154,15 @@ class History:
         """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
         own = self.phases[spec.pair]
         if number and own[number - 1].slip == 0:
-            solution = self.begin(spec.pair, number).solution
+            solution = self.begin(spec.pair, number)
             return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
         if number + 1 < len(own) and own[number + 1].slip == 0:
-            return self.begin(spec.pair, number + 1).solution.layout.grips[spec.pair].slip
+            return self.begin(spec.pair, number + 1).layout.grips[spec.pair].slip
         raise UnknownFrictionError(
             f"{spec.pair} slips between two load parameters, and its sign is not stated"
         )
 
-    def _found(self, spec: ContactSpec, number: int) -> Begin:
+    def _found(self, spec: ContactSpec, number: int) -> Solution:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
         before, phase = self.phases[spec.pair][number - 1 : number + 1]
         if before.slip == OPEN:
@@ -227,12 +186,14 @@ class History:
         # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
         return min(found, key=lambda item: item[0])[1]
 
-    def _unlike(self, spec: ContactSpec, number: int, own: Grip, begin: Begin) -> tuple[bool, float, float]:
+    def _unlike(
+        self, spec: ContactSpec, number: int, own: Grip, begin: Solution
+    ) -> tuple[bool, float, float]:
         """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
         phase = self.phases[spec.pair][number]
-        off = abs(closed_pairs(begin.solution)[spec.pair] - self.stated_arc(spec.pair, number))
+        off = abs(closed_pairs(begin)[spec.pair] - self.stated_arc(spec.pair, number))
         slipped = self._slipped(spec, number, own, begin)
-        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.load_parameter - phase.begin)
+        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.layout.load_parameter - phase.begin)
 
     def stated_arc(self, pair: str, number: int) -> float:
         """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
@@ -244,22 +205,22 @@ class History:
         ]
         return arcs[-1] if arcs else math.nan
 
-    def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Begin) -> bool:
+    def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Solution) -> bool:
         """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
         before = self.phases[spec.pair][number - 1].begin
-        t = begin.load_parameter - _BEFORE * (begin.load_parameter - before)
-        if self.closed(t) != closed_pairs(begin.solution).keys():
+        t = begin.layout.load_parameter - _BEFORE * (begin.layout.load_parameter - before)
+        if self.closed(t) != closed_pairs(begin).keys():
             return True
-        state = {**self._around(spec, t), spec.pair: own}
-        now = reach(self.scene, begin.solution, t, state)
+        state = {**self.around(t, spec), spec.pair: own}
+        now = reach(self.scene, begin, t, state)
         if now.status is not SearchStatus.FOUND:
             return False
         return own.slip * slip_rate(now, now.layout.touch(spec.pair), rates(self.scene, now)) > 0.0
 
-    def _root(self, spec: ContactSpec, number: int, own: Grip) -> Begin:
+    def _root(self, spec: ContactSpec, number: int, own: Grip) -> Solution:
         """Find the load parameter at which the state `own` of a contact ends."""
         phase = self.phases[spec.pair][number]
-        around = self._around(spec, phase.begin)
+        around = self.around(phase.begin, spec)
         state = {**around, spec.pair: own}
         now = self._start(spec, number, state)
 
@@ -272,18 +233,17 @@ class History:
                 )
             return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
 
+        # each way evaluates the margin at the root last
         if self._jumps(spec, phase.begin):
             margin(phase.begin)
-            return Begin(load_parameter=phase.begin, solution=now)
-        if math.isfinite(phase.stated):
-            begin = _secant(margin, phase)
-        elif own.friction and own.slip and self._jumps(spec, phase.low) and margin(phase.low) < 0.0:
-            begin = (
-                phase.low
-            )  # the slip rate changes its sign by a jump, and the margin has the rate behind it
-        else:
-            begin = _bisected(margin, phase, spec.pair)
-        return Begin(load_parameter=begin, solution=now)
+        elif math.isfinite(phase.stated):
+            _secant(margin, phase)
+        elif not (
+            # the slip rate changes its sign by a jump, and the margin has the rate behind it
+            own.friction and own.slip and self._jumps(spec, phase.low) and margin(phase.low) < 0.0
+        ):
+            _bisected(margin, phase, spec.pair)
+        return now
 
     def _start(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
         """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
@@ -296,7 +256,7 @@ class History:
             if number < 2:
                 raise
         if number > 1 and (found is None or found.status is not SearchStatus.FOUND):
-            began = self.begin(spec.pair, number - 1).solution
+            began = self.begin(spec.pair, number - 1)
             found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
         if found is None or found.status is not SearchStatus.FOUND:
             raise UnknownFrictionError(
@@ -313,8 +273,13 @@ class History:
         """Number of the phase of a contact at a load parameter; the later one where it changes."""
         return max((n for n, phase in enumerate(self.phases[pair]) if phase.begin <= t + SAME), default=0)
 
-    def _around(self, spec: ContactSpec | None, t: float, until: float | None = None) -> dict[str, Grip]:
-        """How friction holds the other closed contacts up to load parameter t; `LOOSE` if they touch there. Sticks are followed `until` there."""
+    def around(
+        self, t: float, spec: ContactSpec | None = None, until: float | None = None
+    ) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts but one at load parameter t; those that change there, as before.
+
+        A contact that touches there is `LOOSE`. Sticks are followed `until` a load parameter, by default t.
+        """
         held, until = {}, t if until is None else until
         for pair, other in self.specs.items():
             if other is spec or not other.friction:
@@ -406,17 +371,17 @@ def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens:
     return (own.friction * contact.push - abs(contact.drag)) / now.layout.force
 
 
-def _secant(margin: Callable[[float], float], phase: Phase) -> float:
-    """Root of a margin near a stated load parameter; the margin is evaluated there last."""
+def _secant(margin: Callable[[float], float], phase: Phase) -> None:
+    """Find the root of a margin near a stated load parameter; the margin is evaluated there last."""
     low, high = max(0.0, 2.0 * phase.low - phase.high), 2.0 * phase.high - phase.low
     first, value = phase.stated, margin(phase.stated)
     if abs(value) <= _ZERO:
-        return first
+        return
     second = first + _FIRST * (phase.high - phase.low)
     for _ in range(_ITERATIONS):
         other = margin(second)
         if abs(other) <= _ZERO or abs(second - first) <= _CLOSE or other == value:
-            return second
+            return
         ahead = second - other * (second - first) / (other - value)
         if not low <= ahead <= high:
             break
@@ -424,17 +389,14 @@ def _secant(margin: Callable[[float], float], phase: Phase) -> float:
     raise UnknownFrictionError(f"no change of a contact was found near load parameter {phase.stated:.6g}")
 
 
-def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> float:
-    """Root of a margin between two load parameters."""
+def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> None:
+    """Find the root of a margin between two load parameters; the margin is evaluated there last."""
     from scipy.optimize import brentq
 
     low, high = max(phase.low, 1e-3 * phase.high), phase.high
-    at_low, at_high = margin(low), margin(high)
-    if at_low * at_high > 0.0:
+    if margin(low) * margin(high) > 0.0:
         raise UnknownFrictionError(
             f"{pair} {_does(phase)} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
             wrong=True,
         )
-    found = float(brentq(margin, low, high, xtol=_CLOSE))
-    margin(found)
-    return found
+    margin(float(brentq(margin, low, high, xtol=_CLOSE)))

@@ -16,8 +16,9 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.friction import Grip, Hold
-from comparisons.referee.march import place, reach
+from comparisons.referee.friction.slip import place
+from comparisons.referee.grip import Grip, Hold
+from comparisons.referee.march import reach
 from comparisons.scene import Scene
 
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0

@@ -7,11 +7,14 @@ import numpy as np
 
 from comparisons.referee.certificate import Judgement
 from comparisons.referee.distance import LEAST, least_force
-from comparisons.referee.energy import dissipated
-from comparisons.referee.history import History, UnknownFrictionError, at_rest
+from comparisons.referee.events import PASSES
+from comparisons.referee.friction.dissipation import dissipated
+from comparisons.referee.friction.history import History, at_rest
+from comparisons.referee.friction.phases import OPEN, UNKNOWN
+from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.march import corners, place, rates, slip_rate, speed
-from comparisons.referee.phases import OPEN, PASSES, UNKNOWN
+from comparisons.referee.march import corners
 from comparisons.referee.state import Equilibrium
 from comparisons.response import FrictionHistory, Response
 from comparisons.scene import ContactSpec, Scene
@@ -249,7 +252,7 @@ def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[
         if UNKNOWN in (phase.slip, history.phases[spec.pair][n - 1].slip):
             continue
         try:
-            begin = history.begin(spec.pair, n).load_parameter
+            begin = history.begin(spec.pair, n).layout.load_parameter
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.events import PASSES
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 Ints = NDArray[np.int64]
 
-PASSES = "pass-through"
 OPEN, UNKNOWN = 9, 8
 """Numbers of an open contact and of a slip whose sign an answer does not state, next to the signs -1, 0 and 1 of the slip rate."""
 _EDGE = 0.05
