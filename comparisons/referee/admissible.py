@@ -6,9 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.distance import bending_force
 from comparisons.referee.rod import face_slope, touching_distance
-from comparisons.referee.start import PULL
+from comparisons.referee.start import pull_allowed
 from comparisons.referee.state import Equilibrium
 from comparisons.scene import ContactSpec, Scene
 
@@ -27,7 +26,7 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
         beam = scene.beam(spec.beam)
         contact = exact.contacts.get(spec.pair)
         if contact is not None:
-            if contact.push < -PULL * bending_force(scene.beam(spec.beam)):
+            if contact.push < -pull_allowed(beam):
                 yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
             if not 0.0 <= contact.arc_position <= beam.length:
                 yield f"{spec.pair} is closed beyond the end of its beam"
@@ -42,7 +41,7 @@ def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
 
 def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
     """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
-    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), _node(scene, exact, spec)
+    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), exact.place(spec.node)
     for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
         half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
         if any(
@@ -64,7 +63,7 @@ def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[floa
     shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
     beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
     """
-    beam, node = scene.beam(spec.beam), _node(scene, exact, spec)
+    beam, node = scene.beam(spec.beam), exact.place(spec.node)
     offset, side = touching_distance(scene, spec, 0.0), 1.0 if spec.side == "left" else -1.0
     if offset == 0.0:
         return np.inf, np.nan
@@ -92,13 +91,6 @@ def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
     """Angle between the directions of the axis before and behind a contact."""
     a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
     return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
-
-
-def _node(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Array:
-    """Position of a pair's node in the exact equilibrium."""
-    if "." in spec.node:
-        return exact.ends[spec.node]
-    return np.array(scene.pin(spec.node).position(exact.load_parameter))
 
 
 def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from comparisons.referee.distance import LEAST, gap_off, least_force
+from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.equilibrium import SearchStatus
 from comparisons.referee.march import reach
 from comparisons.referee.state import Equilibrium, described
@@ -19,6 +19,12 @@ CRITICAL = ("limit-point", "bifurcation")
 """Kinds of events without a contact."""
 ENDING = ("line-contact", "end-contact")
 """Kinds of events at which a contact ends the solution."""
+
+
+def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
+    """Return the events at which a contact, or any one, changes; at a pass-through none does."""
+    events = [event for event in response.events or () if event.kind != PASSES]
+    return [event for event in events if pair in ("", event.pair)]
 
 
 def misstated(
@@ -66,11 +72,7 @@ def _alone(response: Response, event: ContactEvent, k: int) -> bool:
     if not 0 <= k < len(response.load_parameter):
         return False
     low, high = sorted((event.load_parameter, float(response.load_parameter[k])))
-    return not any(
-        low <= one.load_parameter <= high
-        for one in response.events or ()
-        if one is not event and one.kind != PASSES
-    )
+    return not any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event)
 
 
 def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
@@ -107,9 +109,6 @@ def _wrong(scene: Scene, spec: ContactSpec, event: ContactEvent, there: Equilibr
     off = abs(contact.arc_position - event.arc_position) / length
     if not off <= allowed:
         return f"arc position off by {off:.2g}"
-    largest = max(
-        LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in there.contacts.values())
-    )
     force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
-    off = abs(force - event.force) / largest
+    off = abs(force - event.force) / largest_force(scene, there)
     return "" if off <= allowed else f"contact force off by {off:.2g}"

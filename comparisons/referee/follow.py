@@ -1,7 +1,6 @@
 """Whether two equilibria are on one branch: the path is followed between them in steps too short to jump to another branch."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from comparisons.referee.elements import DEGREE, Mesh, mesh_for, mesh_of, rotations, shapes
 from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
+from comparisons.referee.events import changes_of
 from comparisons.referee.layout import Layout
 from comparisons.referee.march import closed_pairs, corners, tangent
 from comparisons.referee.numbering import lay_out
@@ -49,22 +49,8 @@ _POINTS = 201
 """Points of an axis from which an equilibrium with other contacts is sought."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Way:
-    """The end of a followed path, and why it does not lead on."""
-
-    end: Solution
-    stopped: bool = False
-
-    @property
-    def t(self) -> float:
-        return self.end.layout.load_parameter
-
-
-def departures(
-    response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Equilibrium | None]
-) -> Iterator[str]:
-    """Yield reasons why the equilibria at the load parameters `numbers` of an answer are not on the path from the undeformed state.
+def departures(response: Response, scene: Scene, states: Mapping[int, Equilibrium]) -> Iterator[str]:
+    """Yield reasons why the equilibria at load parameters of an answer, by number, are not on the path from the undeformed state.
 
     The path is followed to every equilibrium from the one before, the first one from rest, with the contacts that the events close and
     open in between. It is not followed where a contact slips off, where friction changes its direction, or where two contacts pass
@@ -75,24 +61,21 @@ def departures(
         for k in range(len(response.load_parameter))
     ]
     now, begin = at_rest(scene), -1
-    for k, there in zip(numbers, states, strict=True):
-        if there is None:
-            continue
+    for k, there in states.items():
         if now.status is SearchStatus.FOUND:
             events = events_between(response, now.layout.load_parameter, there.load_parameter)
             same = all(closed[i] == closed_pairs(now).keys() for i in range(max(begin, 0), k + 1))
             ways = [now] if same and not events else on_the_way(scene, now, events)
             for way in (item for item in ways[-1:] if _alike(item, there.solution)):
                 # beyond an event that is stated within an allowance only, a path that is not found tells nothing
-                if way is now or not _followed(scene, way, there.load_parameter, there.solution).stopped:
+                if way is now or not _followed(scene, way, there.load_parameter, there.solution)[1]:
                     yield from filter(None, [departs(scene, way, there.solution)])
         now, begin = there.solution, k
 
 
 def events_between(response: Response, after: float, until: float) -> list[ContactEvent]:
     """Events at which contacts open, close, stick or slip."""
-    events = [event for event in response.events or () if event.kind != "pass-through"]
-    return [event for event in events if after <= event.load_parameter <= until]
+    return [event for event in changes_of(response) if after <= event.load_parameter <= until]
 
 
 def on_the_way(
@@ -107,11 +90,10 @@ def on_the_way(
     found: list[Solution] = []
     marks = [(t, None) for t in stops] + [(event.load_parameter, event) for event in events]
     for t, event in sorted(marks, key=lambda mark: mark[0]):
-        way = _followed(scene, now, t)
-        if way.stopped:
-            return []
-        now = _switched(scene, way.end, event) if event else way.end
-        if now.status is not SearchStatus.FOUND:
+        now, stopped = _followed(scene, now, t)
+        if event and not stopped:
+            now = _switched(scene, now, event)
+        if stopped or now.status is not SearchStatus.FOUND:
             return []
         found.append(now)
     return found
@@ -162,25 +144,27 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     Where the path ends at a bifurcation, all stable branches that lead back to it are right.
     """
     start, end = first.layout.load_parameter, last.layout.load_parameter
-    way = _followed(scene, first, end, last)
-    if not way.stopped:
-        off = _apart(_state(way.end), _state(last))
+    there, stopped = _followed(scene, first, end, last)
+    if not stopped:
+        off = _apart(_state(there), _state(last))
+        if off < _SAME:
+            return ""
         return (
-            ""
-            if off < _SAME
-            else f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
+            f"the path from load parameter {start:.6g} ends on another branch at {end:.6g}, {off:.2g} L away"
         )
-    back = _followed(scene, last, start)
-    apart = abs(back.t - way.t) if back.stopped else np.inf
-    if apart < _MEET * (end - start) and _apart(_state(way.end), _state(back.end)) < _MEETING:
+    back, stopped = _followed(scene, last, start)
+    t, met = (item.layout.load_parameter for item in (there, back))
+    if stopped and abs(met - t) < _MEET * (end - start) and _apart(_state(there), _state(back)) < _MEETING:
         return ""
     index = index_of(first)
     kind = "" if index < 0 else f" of index {index}"
-    return f"no continuous path{kind} leads on beyond load parameter {way.t:.6g}"
+    return f"no continuous path{kind} leads on beyond load parameter {t:.6g}"
 
 
-def _followed(scene: Scene, first: Solution, end: float, last: Solution | None = None) -> _Way:
-    """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path.
+def _followed(
+    scene: Scene, first: Solution, end: float, last: Solution | None = None
+) -> tuple[Solution, bool]:
+    """Follow the path from `first` to a load parameter, ahead or back, and to the equilibrium `last` there if it is on the path; say if it stopped.
 
     A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the
     determinant. Displacements and rotations along all parts are compared, so that nothing depends on the elements.
@@ -196,7 +180,7 @@ def _followed(scene: Scene, first: Solution, end: float, last: Solution | None =
         rate = rate or tangent(scene, now, sign * _LITTLE * left)
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
-            return _Way(end=now, stopped=True)
+            return now, True
         layout = lay_out(scene, t, closed, grips)
         mesh, z, bubbles = (
             mesh_for(layout, now.mesh),
@@ -213,8 +197,8 @@ def _followed(scene: Scene, first: Solution, end: float, last: Solution | None =
         if off < _NEAR:
             now, rate = there, None if t == stop else behind
         elif step < _SMALLEST * max(abs(here - start), _SMALLEST * ways):
-            return _Way(end=now, stopped=True)
-    return _Way(end=now)
+            return now, True
+    return now, False
 
 
 def _unexplained(

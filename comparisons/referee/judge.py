@@ -9,11 +9,11 @@ import numpy as np
 
 from comparisons.referee.admissible import inadmissible
 from comparisons.referee.certificate import Judgement, Verdict
-from comparisons.referee.distance import Distance, Scales, bending_force, distance
+from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.march import closed_pairs, reach
-from comparisons.referee.start import PULL, AnswerState, answer_state, idle_at_an_end
+from comparisons.referee.start import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
@@ -40,8 +40,7 @@ def judged(
     allowed: float,
     *,
     history: "History | None" = None,
-    exact: Equilibrium | None = None,
-    near: Solution | None = None,
+    given: Equilibrium | Solution | None = None,
     largest: Scales = (0.0, 0.0, 0.0),
 ) -> Judgement:
     """Judge one load parameter.
@@ -52,10 +51,8 @@ def judged(
         The answer, its scene, the number of the load parameter, and the largest difference allowed.
     history : History, optional
         The states of friction in the answer; None for a scene without friction.
-    exact : Equilibrium, optional
-        The exact equilibrium near the answer, if it is known.
-    near : Solution, optional
-        An exact equilibrium at the load parameter before, from which the one here is sought first.
+    given : Equilibrium or Solution, optional
+        The exact equilibrium near the answer, or one at the load parameter before, from which the one here is sought first.
     largest : (float, float, float)
         Largest force, moment and displacement of other load parameters; differences are relative to these where they are larger.
     """
@@ -75,7 +72,7 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact, differences = _nearest(response, scene, answer, k, exact or near, min(allowed, CLOSE), largest)
+    exact, differences = _nearest(response, scene, answer, k, given, min(allowed, CLOSE), largest)
     if differences is None:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
@@ -143,7 +140,7 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
     force, arc = float(contact.force[k]), float(contact.arc_position[k])
     if not math.isfinite(force):
         yield f"the force of {spec.pair} is not finite"
-    elif force < -PULL * bending_force(scene.beam(spec.beam)):
+    elif force < -pull_allowed(scene.beam(spec.beam)):
         yield f"the contact force of {spec.pair} pulls"
     elif force != 0.0 and idle_at_an_end(contact, scene, spec, k):
         return
@@ -186,31 +183,26 @@ def _nearest(
 def _complete(
     answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
 ) -> AnswerState:
-    """Add all that the answer states, contact forces without direction by the exact direction."""
+    """Add all that the answer states, and the exact direction of contact forces without direction."""
     forces = dict(answer.forces)
     for pair, force in answer.forces.items():
-        if pair not in exact.contacts:
-            # open at an end, with a force that is round-off
-            forces[pair] = tuple(np.nan_to_num(force).tolist())
-            continue
         if math.isnan(force[0]):
-            x, y = exact.contacts[pair].force / max(float(np.hypot(*exact.contacts[pair].force)), 1e-300)
-            size = float(response.contacts[pair].force[k])
+            # a contact that is open at an end has a force that is round-off
+            x, y = exact.contacts[pair].force if pair in exact.contacts else np.zeros(2)
+            size = float(response.contacts[pair].force[k]) / max(math.hypot(x, y), 1e-300)
             forces[pair] = (size * float(x), size * float(y))
     gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
-    sections = (
+    stated = (
         {}
         if response.sections is None
         else {beam.name: response.sections(beam.name, k) for beam in scene.beams}
     )
+    springs = response.springs.items()
     return replace(
         answer,
         forces=forces,
         gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
-        springs={
-            end: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
-            for end, item in response.springs.items()
-        },
-        sections={name: (at.arc, at.N, at.V, at.M) for name, at in sections.items()},
+        springs={end: (*item.force[k].tolist(), float(item.moment[k])) for end, item in springs},
+        sections={name: (at.arc, at.N, at.V, at.M) for name, at in stated.items()},
         local=LOCAL if response.continuum else 0.0,
     )

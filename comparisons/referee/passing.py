@@ -1,15 +1,15 @@
 """Checks between the load parameters of an answer: no node passes through a beam, and contacts change at events only."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, solve
 from comparisons.referee.follow import at_rest, events_between, on_the_way
-from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import described
 from comparisons.response import ContactHistory, Response
@@ -27,8 +27,7 @@ _AROUND = 0.2
 """Distance from touching an end, over the node's path, within which a node may have passed around the end."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Moment:
+class _Moment(NamedTuple):
     """A load parameter, with the axis of a beam and the place of a node."""
 
     t: float
@@ -55,13 +54,8 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
         if np.isfinite(contact.slip_off) and spec.pair not in slipped:
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
-        events = np.array(
-            [
-                event.load_parameter
-                for event in response.events
-                if event.pair == spec.pair and event.kind not in _CLOSED
-            ]
-        )
+        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
+        events = np.array([event.load_parameter for event in own])
         for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
             if not np.any((events >= times[k]) & (events <= times[k + 1])):
                 what = "closes" if closed[k] else "opens"
@@ -115,9 +109,9 @@ def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> li
     events = events_between(response, way[0].t, end.t)
     found = on_the_way(scene, now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
     for solution in found:
-        exact, t = described(scene, solution), solution.layout.load_parameter
-        node = exact.ends[spec.node] if "." in spec.node else np.array(scene.pin(spec.node).position(t))
-        way.append(_Moment(t=t, line=exact.shape(spec.beam, arcs).position, node=node))
+        exact = described(scene, solution)
+        line = exact.shape(spec.beam, arcs).position
+        way.append(_Moment(exact.load_parameter, line, exact.place(spec.node)))
     apart = np.hypot(*(way[-1].line - end.line).T).max()
     return way if found and apart <= _SAME * scene.beam(spec.beam).length else []
 
@@ -139,6 +133,7 @@ def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment,
     if apart.max() > float(np.max(_reach(line, scene, spec))):
         return False
     leaves = _whereabouts(line_after, nodes[-1], scene, spec) == "beyond"
+    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
     through = False
     for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
         moved = (1.0 - u) * line + u * line_after
@@ -146,36 +141,28 @@ def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment,
         if before == "before" and where != "before":
             through = where == "behind" or _cuts(moved, start, node, scene, spec)
             short = np.hypot(*(node - moved[[0, -1]]).T) - np.max(_reach(moved, scene, spec))
-            through = through and not (leaves and _near_an_end(line, line_after, nodes, short))
+            # so near to an end that the node may have passed around the end
+            through = through and not (leaves and bool((short <= _AROUND * way).any()))
         through = through and where != "before"
     return through
 
 
-def _near_an_end(line: Array, line_after: Array, nodes: Array, short: Array) -> bool:
-    """Whether a node crosses the axis so near to an end that it may have passed around the end; `short` are its distances from touching them."""
-    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
-    return bool((short <= _AROUND * way).any())
-
-
 def _moment(response: Response, scene: Scene, spec: ContactSpec, k: int) -> _Moment:
     """A beam and a node at load parameter k; undeformed for k = -1."""
-    t = float(response.load_parameter[k]) if k >= 0 else 0.0
-    return _Moment(
-        t=t,
-        line=_line(response, scene, spec.beam, k),
-        node=_node(response, scene, spec.node, k, t),
-    )
+    t, line = float(response.load_parameter[k]) if k >= 0 else 0.0, _line(response, scene, spec.beam, k)
+    if "." not in spec.node:
+        return _Moment(t, line, np.array(scene.pin(spec.node).position(t)))
+    beam, end = spec.node.split(".")
+    if k >= 0 and end == scene.tip(beam):
+        return _Moment(t, line, np.asarray(response.tips[beam][k]))
+    return _Moment(t, line, np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1]))
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
     """Axis of a beam at load parameter k; undeformed for k = -1 and if nothing acts on the beam."""
     if k >= 0 and not _at_rest(response, scene, beam, k):
         return response.axis_line(beam, k)[1]
-    arc, _ = response.axis_line(beam, 0)
-    spec = scene.beam(beam)
-    if spec.turn:
-        return np.array([spec.place(float(s) / spec.length) for s in arc])
-    return np.asarray(np.array(spec.start) + np.outer(arc, spec.direction))
+    return axis_at_rest(scene.beam(beam), response.axis_line(beam, 0)[0])
 
 
 def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
@@ -191,35 +178,21 @@ def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
     return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)
 
 
-def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Array:
-    """Position of a node at load parameter k, or of a pin at t."""
-    if "." not in node:
-        return np.array(scene.pin(node).position(t))
-    beam, end = node.split(".")
-    if k >= 0 and end == scene.tip(beam):
-        return np.asarray(response.tips[beam][k])
-    return np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1])
-
-
 def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
     """Whether the segment from start to end crosses the curve of touching nodes from the pair's side."""
     near = 1e-6 * scene.beam(spec.beam).length
     side = 1.0 if spec.side == "left" else -1.0
-    pieces, way = np.diff(line, axis=0), end - start
+    pieces, way, offset = np.diff(line, axis=0), end - start, _reach(line[:-1], scene, spec)
     lengths = np.hypot(*pieces.T)
-    offset = _reach(line[:-1], scene, spec)
     before, after = (side * _cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
-    left = (
-        np.reshape(side * offset, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
-    )
+    left = np.reshape(side * offset / lengths, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]])
     first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
     return bool(((before > near) & (after < -near) & (first != last)).any())
 
 
 def _cross(a: Array, b: Array) -> Array:
     """Cross product of plane vectors (..., 2)."""
-    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return product
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
@@ -232,8 +205,9 @@ def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> s
     along = float(tangent @ away)
     if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
         return "beyond"
-    distance = tangent[0] * away[1] - tangent[1] * away[0]
-    gap = (distance if spec.side == "left" else -distance) - _offset(line, scene, spec, nearest, along)
+    distance = float(_cross(tangent, away)) * (1.0 if spec.side == "left" else -1.0)
+    reach = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
+    gap = distance - float(reach) - face_slope(scene, spec) * along
     return "behind" if gap < -near else "before"
 
 
@@ -244,9 +218,3 @@ def _reach(line: Array, scene: Scene, spec: ContactSpec) -> Array | float:
         return scene.offset(spec)
     arcs = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
     return touching_distance(scene, spec, 0.0) + steep * arcs
-
-
-def _offset(line: Array, scene: Scene, spec: ContactSpec, nearest: int, along: float) -> float:
-    """Distance at which a node touches ahead of a point of an axis."""
-    there = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
-    return float(there) + face_slope(scene, spec) * along

@@ -160,14 +160,16 @@ def _resultants(
     `densities` are loads from one arc position to another, each with the coefficients (k, 2) of q.
     """
     places = np.array(sorted({0.0, length, *breaks, *(s for a, b, _ in densities for s in (a, b))}))
-    size = max((len(q) for _, _, q in densities), default=0)
+    if not densities:
+        return places, np.zeros((len(places) - 1, 1, 2))
+    size = max(len(q) for _, _, q in densities)
     table, before = np.zeros((len(places) - 1, size + 1, 2)), np.zeros(2)
     for W, a, b in zip(table, places[:-1], places[1:], strict=True):
-        q = np.zeros((max(size, 1), 2))
+        q = np.zeros((size, 2))
         for first, last, density in densities:
             if first <= a and b <= last:
                 q[: len(density)] += density
-        W[:] = polyint(q, lbnd=a)[: size + 1]
+        W[:] = polyint(q, lbnd=a)
         W[0] += before
         before = polyval(b, W)
     return places, table

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from comparisons.referee.grip import Grip
 from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.response import ContactHistory, Response
-from comparisons.scene import ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
@@ -100,11 +100,16 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     )
 
 
+def pull_allowed(beam: BeamSpec) -> float:
+    """Largest tensile contact force on a beam that is round-off."""
+    return PULL * beam.EI / beam.length**2
+
+
 def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: int) -> bool:
     """Whether a contact is at an end of its beam with a force that is round-off."""
     beam, arc = scene.beam(spec.beam), float(contact.arc_position[k])
     inside = min(arc, beam.length - arc) / max(item.length for item in scene.beams)
-    return abs(float(contact.force[k])) <= PULL * beam.EI / beam.length**2 and abs(inside) <= SHORTEST
+    return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

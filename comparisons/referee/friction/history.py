@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
-from comparisons.referee.events import PASSES
+from comparisons.referee.events import changes_of
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.rolling import roll
 from comparisons.referee.friction.slip import place, rates, slip_rate, speed
@@ -20,7 +20,7 @@ from comparisons.referee.march import closed_pairs, corners, reach
 from comparisons.referee.rod import face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
-from comparisons.response import Response
+from comparisons.response import ContactEvent, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 from comparisons.scene.consistency import signed_gap
 
@@ -195,15 +195,14 @@ class History:
         slipped = self._slipped(spec, number, own, begin)
         return not slipped, 0.0 if math.isnan(off) else off, abs(begin.layout.load_parameter - phase.begin)
 
+    def events_at(self, pair: str, number: int) -> list[ContactEvent]:
+        """Return the events at which the answer states that a phase of a contact begins."""
+        stated = self.phases[pair][number].stated
+        return [event for event in changes_of(self.response, pair) if event.load_parameter == stated]
+
     def stated_arc(self, pair: str, number: int) -> float:
         """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
-        stated = self.phases[pair][number].stated
-        arcs = [
-            event.arc_position
-            for event in self.response.events or ()
-            if event.pair == pair and event.load_parameter == stated and event.kind != PASSES
-        ]
-        return arcs[-1] if arcs else math.nan
+        return next((event.arc_position for event in reversed(self.events_at(pair, number))), math.nan)
 
     def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Solution) -> bool:
         """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
@@ -229,7 +228,7 @@ class History:
             now = reach(self.scene, now, t, state)
             if now.status is not SearchStatus.FOUND:
                 raise UnknownFrictionError(
-                    f"no equilibrium was found where {spec.pair} {_does(phase)} at {t:.6g}"
+                    f"no equilibrium was found where {spec.pair} {phase.does} at {t:.6g}"
                 )
             return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
 
@@ -259,9 +258,7 @@ class History:
             began = self.begin(spec.pair, number - 1)
             found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
         if found is None or found.status is not SearchStatus.FOUND:
-            raise UnknownFrictionError(
-                f"no equilibrium was found where {spec.pair} {_does(phase)} at {t:.6g}"
-            )
+            raise UnknownFrictionError(f"no equilibrium was found where {spec.pair} {phase.does} at {t:.6g}")
         return found
 
     def _jumps(self, spec: ContactSpec, t: float) -> bool:
@@ -322,10 +319,6 @@ class History:
         raise UnknownFrictionError(
             f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
         )
-
-
-def _does(phase: Phase) -> str:
-    return {0: "sticks", OPEN: "opens"}.get(phase.slip, "slips")
 
 
 def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
@@ -396,7 +389,7 @@ def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> None
     low, high = max(phase.low, 1e-3 * phase.high), phase.high
     if margin(low) * margin(high) > 0.0:
         raise UnknownFrictionError(
-            f"{pair} {_does(phase)} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
+            f"{pair} {phase.does} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
             wrong=True,
         )
     margin(float(brentq(margin, low, high, xtol=_CLOSE)))

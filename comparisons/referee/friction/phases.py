@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.events import PASSES
+from comparisons.referee.events import changes_of
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
@@ -23,22 +23,19 @@ SAME = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class Phase:
-    """A phase of a contact.
-
-    Attributes
-    ----------
-    low, high : float
-        Load parameters between which it begins.
-    stated : float
-        Where it begins by the answer's events; nan without an event.
-    slip : int
-        Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact.
-    """
+    """A phase of a contact, which begins between the load parameters `low` and `high`."""
 
     low: float
     high: float
     stated: float
+    """Where it begins by the answer's events; nan without an event."""
     slip: int
+    """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
+
+    @property
+    def does(self) -> str:
+        """What the contact does in it."""
+        return {0: "sticks", OPEN: "opens"}.get(self.slip, "slips")
 
     @property
     def begin(self) -> float:
@@ -90,7 +87,7 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
     between two load parameters. At an event an answer may state the state before or behind it.
     """
     times = np.concatenate([[0.0], response.load_parameter])
-    events = [event for event in response.events or () if event.pair == spec.pair and event.kind != PASSES]
+    events = changes_of(response, spec.pair)
     found: list[Phase] = []
     numbers: list[int] = []
     for k, now in enumerate(map(int, column)):
