@@ -55,9 +55,9 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
     found: dict[float, Solution | None] = {}
     for pair, own in history.phases.items():
         before = history.numbers[pair][k - 1] if k else 0
-        for number in range(before + 1, history.numbers[pair][k] + 1):
-            if own[number].slip != own[number - 1].slip:
-                begin = history.begin(pair, number)
+        for phase in own[before + 1 : history.numbers[pair][k] + 1]:
+            if phase.before is not None and phase.slip != phase.before.slip:
+                begin = history.begin(phase)
                 found[begin.layout.load_parameter] = begin
     return found
 

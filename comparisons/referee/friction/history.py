@@ -51,7 +51,6 @@ class History:
 
     def __init__(self, response: Response, scene: Scene) -> None:
         self.response, self.scene = response, scene
-        self.specs = {spec.pair: spec for spec in scene.contacts}
         self.phases: dict[str, tuple[Phase, ...]] = {}
         self.numbers: dict[str, tuple[int, ...]] = {}
         how: list[str] = []
@@ -60,15 +59,19 @@ class History:
             self.phases[spec.pair], self.numbers[spec.pair] = phases(response, spec, column)
             how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
         self.taken = "; ".join(how)
-        self._begins: dict[tuple[str, int], Solution] = {}
-        self._holds: dict[tuple[str, int], Hold] = {}
-        self._reached: dict[tuple[str, int], Hold] = {}
-        self._followed: set[tuple[str, int, float]] = set()
+        self._begins: dict[Phase, Solution] = {}
+        self._holds: dict[Phase, Hold] = {}
+        self._reached: dict[Phase, Hold] = {}
+        self._followed: set[tuple[Phase, float]] = set()
         """Where sticks began, the places up to which they were followed, and from where they were."""
         changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
         times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
         self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
-        self._sought: set[tuple[str, int]] = set()
+        self._sought: set[Phase] = set()
+
+    def phase(self, pair: str, k: int) -> Phase:
+        """Return the phase of a contact at load parameter number k."""
+        return self.phases[pair][self.numbers[pair][k]]
 
     def grips(self, k: int) -> dict[str, Grip]:
         """Return how friction holds the closed contacts at load parameter number k.
@@ -78,58 +81,52 @@ class History:
         UnknownFrictionError
             If no equilibrium is found where a stick begins; so do the following methods.
         """
-        held = {}
-        for pair, spec in self.specs.items():
-            number = self.numbers[pair][k]
-            if spec.friction and self.phases[pair][number].slip != OPEN:
-                held[pair] = self.grip(spec, number, float(self.response.load_parameter[k]))
-        return held
+        t = float(self.response.load_parameter[k])
+        now = {spec.pair: self.phase(spec.pair, k) for spec in self.scene.contacts if spec.friction}
+        return {pair: self.grip(phase, t) for pair, phase in now.items() if phase.slip != OPEN}
 
     def closed(self, t: float) -> set[str]:
         """Return the contacts that are closed at load parameter t, those that touch there included."""
-        return {pair for pair, own in self.phases.items() if own[self._number(pair, t)].slip != OPEN}
+        return {pair for pair in self.phases if self._phase_at(pair, t).slip != OPEN}
 
-    def begin(self, pair: str, number: int) -> Solution:
+    def begin(self, phase: Phase) -> Solution:
         """Return the equilibrium where a phase of a contact begins, in the state before it; not for the first phase, nor for a slip-off."""
-        if (pair, number) not in self._begins:
-            if (pair, number) in self._sought:
+        if phase not in self._begins:
+            if phase in self._sought:
                 raise UnknownFrictionError(
-                    f"the changes of {pair} and of another contact depend on each other"
+                    f"the changes of {phase.spec.pair} and of another contact depend on each other"
                 )
-            self._sought.add((pair, number))
+            self._sought.add(phase)
             try:
-                self._begins[pair, number] = self._found(self.specs[pair], number)
+                self._begins[phase] = self._found(phase)
             finally:
-                self._sought.discard((pair, number))
-        return self._begins[pair, number]
+                self._sought.discard(phase)
+        return self._begins[phase]
 
-    def grip(self, spec: ContactSpec, number: int, until: float) -> Grip:
+    def grip(self, phase: Phase, until: float) -> Grip:
         """Return how friction holds a contact in a closed phase, up to a load parameter in it."""
-        slip = self.phases[spec.pair][number].slip
-        if slip == UNKNOWN:
-            slip = self._sign(spec, number)
+        spec, slip = phase.spec, self._sign(phase) if phase.slip == UNKNOWN else phase.slip
         if slip:
             return Grip(friction=spec.friction, slip=slip)
-        own = spec.pair, number
-        if own not in self._holds:
+        if phase not in self._holds:
             begin = at_rest(self.scene, spec)
-            if number:
-                solution = self.begin(*own)
+            if phase.before is not None:
+                solution = self.begin(phase)
                 begin = place(solution, solution.layout.touch(spec.pair))
-            self._holds[own] = self._reached[own] = begin
+            self._holds[phase] = self._reached[phase] = begin
         if spec.surface == "face" or self.scene.radius(spec):
             for first, last in pairwise(self._cuts):
-                if self.phases[spec.pair][number].begin <= first + SAME and first < until - SAME:
-                    self._roll(own, first, last)
-        return Grip(friction=spec.friction, slip=0, hold=self._holds[own])
+                if phase.begin <= first + SAME and first < until - SAME:
+                    self._roll(phase, first, last)
+        return Grip(friction=spec.friction, slip=0, hold=self._holds[phase])
 
-    def _roll(self, own: tuple[str, int], first: float, last: float) -> None:
+    def _roll(self, phase: Phase, first: float, last: float) -> None:
         """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
-        if (*own, first) in self._followed:
+        if (phase, first) in self._followed:
             return
         middle = (first + last) / 2.0
         grips = self.around(middle, until=first)
-        sticking = {pair: (pair, self._number(pair, middle)) for pair, grip in grips.items() if not grip.slip}
+        sticking = {pair: self._phase_at(pair, middle) for pair, grip in grips.items() if not grip.slip}
         begins = {pair: self._reached[item] for pair, item in sticking.items()}
         begin = max(item.load_parameter for item in begins.values())
         if begin >= last:
@@ -138,47 +135,44 @@ class History:
         began = [self._begins[item] for item in sticking.values() if item in self._begins]
         began = [item for item in began if closed_pairs(item).keys() == closed]
         # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
-        near = (
-            max(began, key=lambda item: item.layout.load_parameter)
-            if began
-            else self.near(middle, closed, grips)
-        )
+        latest = max(began, key=lambda item: item.layout.load_parameter, default=None)
+        near = self.near(middle, closed, grips) if latest is None else latest
         rolled = roll(self.scene, near, (begin, last), grips, begins)
         if rolled is None:
             raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
         for pair, item in sticking.items():
             self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
-            self._followed.add((*item, first))
+            self._followed.add((item, first))
 
-    def _sign(self, spec: ContactSpec, number: int) -> int:
+    def _sign(self, phase: Phase) -> int:
         """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
-        own = self.phases[spec.pair]
-        if number and own[number - 1].slip == 0:
-            solution = self.begin(spec.pair, number)
-            return 1 if touching(solution, solution.layout.touch(spec.pair)).drag > 0.0 else -1
-        if number + 1 < len(own) and own[number + 1].slip == 0:
-            return self.begin(spec.pair, number + 1).layout.grips[spec.pair].slip
-        raise UnknownFrictionError(
-            f"{spec.pair} slips between two load parameters, and its sign is not stated"
-        )
+        pair = phase.spec.pair
+        if phase.before is not None and phase.before.slip == 0:
+            solution = self.begin(phase)
+            return 1 if touching(solution, solution.layout.touch(pair)).drag > 0.0 else -1
+        for after in self.phases[pair]:
+            if after.before is phase and after.slip == 0:
+                return self.begin(after).layout.grips[pair].slip
+        raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
 
-    def _found(self, spec: ContactSpec, number: int) -> Solution:
+    def _found(self, phase: Phase) -> Solution:
         """Find the root of a phase's margin, in each state that the contact may have been in before."""
-        before, phase = self.phases[spec.pair][number - 1 : number + 1]
+        before, friction = phase.before, phase.spec.friction
+        assert before is not None, "the first phase has no begin"
         if before.slip == OPEN:
-            return self._root(spec, number, LOOSE)
+            return self._root(phase, LOOSE)
         if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
             raise UnknownFrictionError(
-                f"the slip of {spec.pair} turns between two load parameters, and a stick in between is not stated"
+                f"the slip of {phase.spec.pair} turns between two load parameters, and a stick in between is not stated"
             )
-        if before.slip != UNKNOWN or (number > 1 and self.phases[spec.pair][number - 2].slip == 0):
-            return self._root(spec, number, self.grip(spec, number - 1, phase.begin))
+        if before.slip != UNKNOWN or (before.before is not None and before.before.slip == 0):
+            return self._root(phase, self.grip(before, phase.begin))
         found, reasons = [], []
         for sign in (1, -1):
-            own = Grip(friction=spec.friction, slip=sign)
+            own = Grip(friction=friction, slip=sign)
             try:
-                begin = self._root(spec, number, own)
-                found.append((self._unlike(spec, number, own, begin), begin))
+                begin = self._root(phase, own)
+                found.append((self._unlike(phase, before, own, begin), begin))
             except UnknownFrictionError as error:
                 reasons.append(error)
         if not found:
@@ -186,89 +180,80 @@ class History:
         # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
         return min(found, key=lambda item: item[0])[1]
 
-    def _unlike(
-        self, spec: ContactSpec, number: int, own: Grip, begin: Solution
-    ) -> tuple[bool, float, float]:
+    def _unlike(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> tuple[bool, float, float]:
         """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
-        phase = self.phases[spec.pair][number]
-        off = abs(closed_pairs(begin)[spec.pair] - self.stated_arc(spec.pair, number))
-        slipped = self._slipped(spec, number, own, begin)
-        return not slipped, 0.0 if math.isnan(off) else off, abs(begin.layout.load_parameter - phase.begin)
+        off = abs(closed_pairs(begin)[phase.spec.pair] - self.stated_arc(phase))
+        slipped, t = self._slipped(phase, before, own, begin), begin.layout.load_parameter
+        return not slipped, 0.0 if math.isnan(off) else off, abs(t - phase.begin)
 
-    def events_at(self, pair: str, number: int) -> list[ContactEvent]:
+    def events_at(self, phase: Phase) -> list[ContactEvent]:
         """Return the events at which the answer states that a phase of a contact begins."""
-        stated = self.phases[pair][number].stated
-        return [event for event in changes_of(self.response, pair) if event.load_parameter == stated]
+        events = changes_of(self.response, phase.spec.pair)
+        return [event for event in events if event.load_parameter == phase.stated]
 
-    def stated_arc(self, pair: str, number: int) -> float:
+    def stated_arc(self, phase: Phase) -> float:
         """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
-        return next((event.arc_position for event in reversed(self.events_at(pair, number))), math.nan)
+        return next((event.arc_position for event in reversed(self.events_at(phase))), math.nan)
 
-    def _slipped(self, spec: ContactSpec, number: int, own: Grip, begin: Solution) -> bool:
+    def _slipped(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> bool:
         """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
-        before = self.phases[spec.pair][number - 1].begin
-        t = begin.layout.load_parameter - _BEFORE * (begin.layout.load_parameter - before)
+        pair, t = phase.spec.pair, begin.layout.load_parameter
+        t = t - _BEFORE * (t - before.begin)
         if self.closed(t) != closed_pairs(begin).keys():
             return True
-        state = {**self.around(t, spec), spec.pair: own}
-        now = reach(self.scene, begin, t, state)
+        now = reach(self.scene, begin, t, {**self.around(t, phase.spec), pair: own})
         if now.status is not SearchStatus.FOUND:
             return False
-        return own.slip * slip_rate(now, now.layout.touch(spec.pair), rates(self.scene, now)) > 0.0
+        return own.slip * slip_rate(now, now.layout.touch(pair), rates(self.scene, now)) > 0.0
 
-    def _root(self, spec: ContactSpec, number: int, own: Grip) -> Solution:
-        """Find the load parameter at which the state `own` of a contact ends."""
-        phase = self.phases[spec.pair][number]
-        around = self.around(phase.begin, spec)
-        state = {**around, spec.pair: own}
-        now = self._start(spec, number, state)
+    def _root(self, phase: Phase, own: Grip) -> Solution:
+        """Return the equilibrium at which the state `own` of a contact ends."""
+        state = {**self.around(phase.begin, phase.spec), phase.spec.pair: own}
+        now = self._start(phase, state)
 
         def margin(t: float) -> float:
             nonlocal now
-            now = reach(self.scene, now, t, state)
-            if now.status is not SearchStatus.FOUND:
-                raise UnknownFrictionError(
-                    f"no equilibrium was found where {spec.pair} {phase.does} at {t:.6g}"
-                )
-            return _margin(self.scene, now, spec, own, opens=phase.slip == OPEN)
+            now = _found_at(reach(self.scene, now, t, state), phase, t)
+            return _margin(self.scene, now, phase, own)
 
         # each way evaluates the margin at the root last
-        if self._jumps(spec, phase.begin):
+        if self._jumps(phase, phase.begin):
             margin(phase.begin)
         elif math.isfinite(phase.stated):
             _secant(margin, phase)
         elif not (
             # the slip rate changes its sign by a jump, and the margin has the rate behind it
-            own.friction and own.slip and self._jumps(spec, phase.low) and margin(phase.low) < 0.0
+            own.friction and own.slip and self._jumps(phase, phase.low) and margin(phase.low) < 0.0
         ):
-            _bisected(margin, phase, spec.pair)
+            _bisected(margin, phase)
         return now
 
-    def _start(self, spec: ContactSpec, number: int, state: dict[str, Grip]) -> Solution:
+    def _start(self, phase: Phase, state: dict[str, Grip]) -> Solution:
         """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
-        phase = self.phases[spec.pair][number]
-        t, found = phase.begin, None
-        closed = self.closed(t) | {spec.pair}
+        t, found, before = phase.begin, None, phase.before
+        closed = self.closed(t) | {phase.spec.pair}
+        later = before is not None and before.before is not None
         try:
             found = reach(self.scene, self.near(t, closed, state), t, state)
         except UnknownFrictionError:
-            if number < 2:
+            if not later:
                 raise
-        if number > 1 and (found is None or found.status is not SearchStatus.FOUND):
-            began = self.begin(spec.pair, number - 1)
+        if before is not None and later and (found is None or found.status is not SearchStatus.FOUND):
+            began = self.begin(before)
             found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
-        if found is None or found.status is not SearchStatus.FOUND:
-            raise UnknownFrictionError(f"no equilibrium was found where {spec.pair} {phase.does} at {t:.6g}")
-        return found
+        return _found_at(found, phase, t)
 
-    def _jumps(self, spec: ContactSpec, t: float) -> bool:
+    def _jumps(self, phase: Phase, t: float) -> bool:
         """Whether rates jump at load parameter t: at a corner of a pin's path, at the end of a stage, and where another contact changes."""
-        others = [phase.stated for pair, own in self.phases.items() if pair != spec.pair for phase in own[1:]]
+        others = [
+            one.stated for pair, own in self.phases.items() if pair != phase.spec.pair for one in own[1:]
+        ]
         return any(abs(t - other) <= SAME for other in (*corners(self.scene), *others))
 
-    def _number(self, pair: str, t: float) -> int:
-        """Number of the phase of a contact at a load parameter; the later one where it changes."""
-        return max((n for n, phase in enumerate(self.phases[pair]) if phase.begin <= t + SAME), default=0)
+    def _phase_at(self, pair: str, t: float) -> Phase:
+        """Phase of a contact at a load parameter; the later one where it changes."""
+        first, *others = self.phases[pair]
+        return next((phase for phase in reversed(others) if phase.begin <= t + SAME), first)
 
     def around(
         self, t: float, spec: ContactSpec | None = None, until: float | None = None
@@ -278,47 +263,45 @@ class History:
         A contact that touches there is `LOOSE`. Sticks are followed `until` a load parameter, by default t.
         """
         held, until = {}, t if until is None else until
-        for pair, other in self.specs.items():
-            if other is spec or not other.friction:
+        for other in self.scene.contacts:
+            now = self._phase_at(other.pair, t)
+            if other is spec or not other.friction or now.slip == OPEN:
                 continue
-            number = self._number(pair, t)
-            now = self.phases[pair][number]
-            if number and abs(now.begin - t) <= SAME and now.slip != OPEN:
-                before = self.phases[pair][number - 1]
-                held[pair] = LOOSE if before.slip == OPEN else self.grip(other, number - 1, until)
-            elif now.slip != OPEN:
-                held[pair] = self.grip(other, number, until)
+            if now.before is not None and abs(now.begin - t) <= SAME:
+                now = now.before
+            held[other.pair] = LOOSE if now.slip == OPEN else self.grip(now, until)
         return held
 
     def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
-        """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t.
-
-        Raises
-        ------
-        UnknownFrictionError
-            If none is found.
-        """
+        """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t."""
         times = self.response.load_parameter
         after = int(np.searchsorted(times, t))
         for k in (after - 1, after, after + 1):
-            if not 0 <= k < len(times):
+            answer = answer_state(self.response, self.scene, k) if 0 <= k < len(times) else None
+            if answer is None or not closed <= answer.arcs.keys():
                 continue
-            answer = answer_state(self.response, self.scene, k)
-            if closed <= answer.arcs.keys():
-                kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
-                # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
-                loose = dict.fromkeys(state, LOOSE)
-                for first in (state, loose):
-                    found = solve(self.scene, replace(answer, arcs=kept, grips=first))
-                    if first is loose and found.status is SearchStatus.FOUND:
-                        found = reach(self.scene, found, t, loose)
-                        if found.status is SearchStatus.FOUND:
-                            found = reach(self.scene, found, t, state)
+            kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
+            # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
+            loose = dict.fromkeys(state, LOOSE)
+            for first in (state, loose):
+                found = solve(self.scene, replace(answer, arcs=kept, grips=first))
+                for then in (loose, state) if first is loose else ():
                     if found.status is SearchStatus.FOUND:
-                        return found
+                        found = reach(self.scene, found, t, then)
+                if found.status is SearchStatus.FOUND:
+                    return found
         raise UnknownFrictionError(
             f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
         )
+
+
+def _found_at(solution: Solution | None, phase: Phase, t: float) -> Solution:
+    """Return an equilibrium that was found where a phase begins, or raise `UnknownFrictionError`."""
+    if solution is None or solution.status is not SearchStatus.FOUND:
+        raise UnknownFrictionError(
+            f"no equilibrium was found where {phase.spec.pair} {phase.does} at {t:.6g}"
+        )
+    return solution
 
 
 def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
@@ -352,9 +335,9 @@ def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
     return float(np.clip(fraction, 0.0, 1.0)) * beam.length
 
 
-def _margin(scene: Scene, now: Solution, spec: ContactSpec, own: Grip, *, opens: bool) -> float:
+def _margin(scene: Scene, now: Solution, phase: Phase, own: Grip) -> float:
     """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
-    touch = now.layout.touch(spec.pair)
+    touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
     if own.friction and own.slip and not opens:
         rate = rates(scene, now)
         return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
@@ -382,14 +365,14 @@ def _secant(margin: Callable[[float], float], phase: Phase) -> None:
     raise UnknownFrictionError(f"no change of a contact was found near load parameter {phase.stated:.6g}")
 
 
-def _bisected(margin: Callable[[float], float], phase: Phase, pair: str) -> None:
+def _bisected(margin: Callable[[float], float], phase: Phase) -> None:
     """Find the root of a margin between two load parameters; the margin is evaluated there last."""
     from scipy.optimize import brentq
 
     low, high = max(phase.low, 1e-3 * phase.high), phase.high
     if margin(low) * margin(high) > 0.0:
         raise UnknownFrictionError(
-            f"{pair} {phase.does} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
+            f"{phase.spec.pair} {phase.does} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
             wrong=True,
         )
     margin(float(brentq(margin, low, high, xtol=_CLOSE)))

@@ -21,16 +21,18 @@ SAME = 1e-9
 """Load parameters of one event."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Phase:
-    """A phase of a contact, which begins between the load parameters `low` and `high`."""
+    """A phase of a contact, which begins between the load parameters `low` and `high`, with the phase before it."""
 
-    low: float
-    high: float
+    spec: ContactSpec
+    low: float = 0.0
+    high: float = 0.0
     stated: float
     """Where it begins by the answer's events; nan without an event."""
     slip: int
     """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
+    before: "Phase | None"
 
     @property
     def does(self) -> str:
@@ -98,13 +100,13 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
             between = [event for event in between if event.load_parameter < high - SAME]
         events = events[len(between) :]
         if not found:
-            found.append(Phase(low=0.0, high=0.0, stated=0.0, slip=_before(between, now)))
+            found.append(Phase(spec=spec, stated=0.0, slip=_before(between, now), before=None))
         for n, event in enumerate(between):
             slip = now if event is between[-1] else _after(event, between[n + 1])
             t = event.load_parameter
-            found.append(Phase(low=low, high=high, stated=t, slip=slip))
+            found.append(Phase(spec=spec, low=low, high=high, stated=t, slip=slip, before=found[-1]))
         if found[-1].slip != now:
-            found.append(Phase(low=low, high=high, stated=np.nan, slip=now))
+            found.append(Phase(spec=spec, low=low, high=high, stated=np.nan, slip=now, before=found[-1]))
         numbers.append(len(found) - 1)
     return tuple(found), tuple(numbers)
 

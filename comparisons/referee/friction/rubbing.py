@@ -84,8 +84,7 @@ def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
     """Yield contacts that stick and move along the beam by more than they could roll, by the stated arc positions alone."""
     scene = history.scene
     for spec in scene.contacts:
-        number = history.numbers[spec.pair][k]
-        if spec.friction and history.phases[spec.pair][number].slip == 0:
+        if spec.friction and history.phase(spec.pair, k).slip == 0:
             length = scene.beam(spec.beam).length
             moved = _moved(history, spec, k)
             if abs(moved) > _law(history.response, allowed) * length + math.pi * scene.offset(spec):
@@ -114,8 +113,8 @@ def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed:
 
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
-    number = history.numbers[spec.pair][k]
-    began = history.stated_arc(spec.pair, number) if number else at_rest(history.scene, spec).arc_position
+    phase = history.phase(spec.pair, k)
+    began = at_rest(history.scene, spec).arc_position if phase.before is None else history.stated_arc(phase)
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 
@@ -209,17 +208,16 @@ def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, lea
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
 
-def _changes(history: History, spec: ContactSpec) -> list[tuple[int, Phase, Phase]]:
-    """Return the changes between slip and stick: numbers of the phases, the phases before, and the phases."""
-    own = history.phases[spec.pair]
-    changes = [(n, before, phase) for n, (before, phase) in enumerate(pairwise(own), 1)]
-    return [change for change in changes if OPEN not in (change[1].slip, change[2].slip)]
+def _changes(history: History, spec: ContactSpec) -> list[tuple[Phase, Phase]]:
+    """Return the changes between slip and stick: the phases before and behind."""
+    changes = pairwise(history.phases[spec.pair])
+    return [(before, phase) for before, phase in changes if OPEN not in (before.slip, phase.slip)]
 
 
 def _unstated(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield changes between slip and stick without an event, or against it, if the answer records events."""
-    for n, _, phase in _changes(history, spec) if history.response.events is not None else ():
-        events = history.events_at(spec.pair, n)
+    for _, phase in _changes(history, spec) if history.response.events is not None else ():
+        events = history.events_at(phase)
         if not events:
             yield f"{spec.pair} {phase.does} without an event up to load parameter {phase.high:.6g}"
         elif (events[-1].kind == "stick") != (phase.slip == 0):
@@ -228,11 +226,11 @@ def _unstated(history: History, spec: ContactSpec) -> Iterator[str]:
 
 def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[str]:
     """Yield changes between slip and stick that are not where the referee's own equilibria change."""
-    for n, before, phase in _changes(history, spec)[-_MOST:]:
+    for before, phase in _changes(history, spec)[-_MOST:]:
         if UNKNOWN in (phase.slip, before.slip):
             continue
         try:
-            begin = history.begin(spec.pair, n).layout.load_parameter
+            begin = history.begin(phase).layout.load_parameter
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)
