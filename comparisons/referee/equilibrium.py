@@ -10,7 +10,7 @@ from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh,
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.layout import Layout
 from comparisons.referee.numbering import lay_out
-from comparisons.referee.start import SHORTEST, AnswerState, Rotations, first_guess
+from comparisons.referee.start import SHORTEST, AnswerState, first_guess
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
@@ -34,8 +34,13 @@ DENSE = 300
 """Number of unknowns up to which matrices are solved as full ones."""
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
-_LOW, _ALL = np.linalg.pinv(VALUES[:, 2:6]), np.linalg.pinv(VALUES[:, 2:])
-"""From values at the Gauss points to the lowest bubbles, and to all."""
+_FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
+_FIT_LOW = np.zeros_like(_FIT)
+_FIT_LOW[:4] = np.linalg.pinv(VALUES[:, 2:6])
+"""From values at the Gauss points to all bubbles, and to the lowest ones, since an answer's rotations are inaccurate."""
+_INSIDE = 1.0 - 1e-9
+"""Fraction of a part up to which points lie before its end."""
+_PLACES = np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
 
 
 class SearchStatus(Enum):
@@ -49,19 +54,27 @@ class SearchStatus(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solution:
-    """Result of Newton's method in the units of `layout`, with the last equations and the last correction over the unknowns."""
+    """Result of Newton's method in the units of `layout`, with the last equations and the last correction over the unknowns; or a guess."""
 
-    status: SearchStatus
-    reason: str
-    """Reason of a search without success."""
     layout: Layout
     mesh: Mesh
     z: Array
     bubbles: Array
     """Coefficients (e, p - 1) of the bubbles."""
-    system: System | None = field(repr=False)
-    iterations: int
-    correction: float
+    status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
+    reason: str = ""
+    """Reason of a search without success."""
+    system: System | None = field(default=None, repr=False)
+    iterations: int = 0
+    correction: float = np.inf
+
+
+def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
+    """Return the rotations at fractions x (...) of the parts `part` (...)."""
+    mesh, inside = solution.mesh, np.minimum(x, _INSIDE)
+    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
+    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
+    return np.asarray((values * rotations(mesh, solution.z, solution.bubbles)[e]).sum(axis=-1))
 
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
@@ -70,19 +83,24 @@ def solve(scene: Scene, answer: AnswerState) -> Solution:
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        mesh = mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts])
-        return Solution(
-            status=SearchStatus.NOT_JUDGED, reason=reason, layout=layout, mesh=mesh, z=z,
-            bubbles=np.zeros((0, DEGREE - 1)), system=None, iterations=0, correction=np.inf,
-        )  # fmt: skip
+        mesh, bubbles = (
+            mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts]),
+            np.zeros((0, DEGREE - 1)),
+        )
+        status = SearchStatus.NOT_JUDGED
+        return Solution(layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
-    start = _fitted(layout, mesh, z, turns)
-    best = correct(layout, mesh, *start, _ITERATIONS)
+    places, ends = _places(mesh), zip(layout.extents(z), layout.parts, strict=True)
+    seen = [
+        turns[part.beam].angle(a + (b - a) * places[mesh.part == k]) for k, ((a, b), part) in enumerate(ends)
+    ]
+    start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
+    best = correct(start, _ITERATIONS)
     # arc positions of contacts and forces of parts are more accurate in an answer than rotations
     for held in (layout.arcs, np.union1d(layout.arcs, layout.forces)):
         if _is_near(z, best):
             break
-        other = correct(layout, mesh, *_rotations_corrected(layout, mesh, *start, held), _ITERATIONS)
+        other = correct(_rotations_corrected(start, held), _ITERATIONS)
         if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(z, other):
             best = other
     return best
@@ -97,43 +115,44 @@ def _is_near(z: Array, solution: Solution) -> bool:
     return solution.status is SearchStatus.FOUND and bool(close)
 
 
-def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
-    """Return the equilibrium near given unknowns; elements that do not resolve the rotation are halved.
+def correct(guess: Solution, iterations: int) -> Solution:
+    """Return the equilibrium near a guess; elements that do not resolve the rotation are halved.
 
     At most `iterations` Newton iterations are made on each mesh.
     """
-    spent = 0
+    spent, layout = 0, guess.layout
     for _ in range(_ROUNDS):
-        found = _newton(layout, mesh, z, bubbles, iterations)
+        found = _newton(guess, iterations)
         spent += found.iterations
         coarse = tails(found.bubbles) > _RESOLVED
         if found.status is not SearchStatus.FOUND or not coarse.any():
             return replace(found, iterations=spent)
-        grids = _refined(mesh, coarse)
+        grids = _refined(found.mesh, coarse)
         if max(map(len, grids)) > _MOST_ELEMENTS:
             break
-        z, bubbles, mesh = _transferred(layout, mesh, found.z, found.bubbles, grids)
+        finer = mesh_of(layout, grids)
+        seen = rotation_at(found, finer.part[:, None], _places(finer))
+        guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
     return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
 
 
-def _rotations_corrected(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: Ints
-) -> tuple[Array, Array]:
+def _rotations_corrected(guess: Solution, held: Ints) -> Solution:
     """Correct the rotations while the unknowns `held` keep the values of the answer.
 
     Otherwise the first correction of inaccurate rotations could move a contact beyond an end. With a tension near GA EA/(EA - GA)
     the rotations are so sensitive that the first correction could lead to another equilibrium.
     """
     for _ in range(_HOLDING):
-        system = assemble(layout, mesh, z, bubbles)
+        system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
         change = _step(system, held)
         if change is None:
             break
-        inside = _inside(system, mesh, change)
-        turn = max(float(np.abs(change[layout.unknowns :]).max(initial=0.0)), float(np.abs(inside).max()))
+        inside = _inside(system, guess.mesh, change)
+        turns = change[guess.layout.unknowns :]
+        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(inside).max()))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300))
-        z, bubbles = z + part * change, bubbles + part * inside
-    return z, bubbles
+        guess = replace(guess, z=guess.z + part * change, bubbles=guess.bubbles + part * inside)
+    return guess
 
 
 def _reason_not_to_judge(layout: Layout, z: Array) -> str:
@@ -164,23 +183,22 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
     return grids
 
 
-def _fitted(layout: Layout, mesh: Mesh, z: Array, turns: list[Rotations]) -> tuple[Array, Array]:
-    """Return the unknowns and bubbles of the first guess; only the lowest bubbles, since an answer's rotations are inaccurate."""
-    whole = np.concatenate([z, np.zeros(mesh.unknowns - len(z))])
-    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    for e, number in enumerate(mesh.part):
-        part = layout.parts[number]
-        start = part.ends(z)[0] + mesh.start[e] * part.extent(z)
-        places = start + mesh.share[e] * part.extent(z) * np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
-        there = turns[part.beam].angle(places)
-        if mesh.vertices[mesh.first[e]] >= len(z):
-            whole[mesh.vertices[mesh.first[e]]] = there[-2]
-        bubbles[e, :4] = _LOW @ (there[:-2] - VALUES[:, :2] @ there[-2:])
-    return whole, bubbles
+def _places(mesh: Mesh) -> Array:
+    """Fractions (e, g + 2) of the parts at the Gauss points and the ends of the elements."""
+    return mesh.start[:, None] + mesh.share[:, None] * _PLACES
 
 
-def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
+def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
+    """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
+    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.vertices[mesh.first]
+    whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
+    bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
+    return Solution(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
+
+
+def _newton(guess: Solution, iterations: int) -> Solution:
     """Iterate until the corrections are round-off."""
+    layout, mesh, z, bubbles = guess.layout, guess.mesh, guess.z, guess.bubbles
     last, size, error = np.inf, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
@@ -213,18 +231,18 @@ def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: in
             break
         last = size if part == 1.0 else np.inf
     return Solution(
-        status=status, reason=reason, layout=layout, mesh=mesh, z=z, bubbles=bubbles, system=system,
+        layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason, system=system,
         iterations=iteration, correction=error,
     )  # fmt: skip
 
 
-def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
+def newton_step(guess: Solution) -> tuple[Array, Array]:
     """Return the first Newton correction; zero if the equations are singular."""
-    system = assemble(layout, mesh, z, bubbles)
+    system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
     change = _step(system)
     if change is None:
-        return np.zeros_like(z), np.zeros_like(bubbles)
-    return change, _inside(system, mesh, change)
+        return np.zeros_like(guess.z), np.zeros_like(guess.bubbles)
+    return change, _inside(system, guess.mesh, change)
 
 
 def _inside(system: System, mesh: Mesh, change: Array) -> Array:
@@ -291,29 +309,3 @@ def _refined(mesh: Mesh, coarse: NDArray[np.bool_]) -> list[Array]:
         start, share, split = mesh.start[inside], mesh.share[inside], coarse[inside]
         grids.append(np.sort(np.concatenate([start, (start + share / 2.0)[split], [1.0]])))
     return grids
-
-
-def _transferred(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, grids: list[Array]
-) -> tuple[Array, Array, Mesh]:
-    """Return the unknowns of the same rotations on halved elements."""
-    finer = mesh_of(layout, grids)
-    whole = np.concatenate([z[: layout.unknowns], np.zeros(finer.unknowns - layout.unknowns)])
-    coefficients = rotations(mesh, z, bubbles)
-    inside = np.zeros((len(finer.part), DEGREE - 1))
-    for e, number in enumerate(finer.part):
-        elements = np.flatnonzero(mesh.part == number)
-        middle = finer.start[e] + finer.share[e] / 2.0
-        old = elements[np.searchsorted(mesh.start[elements], middle, side="right") - 1]
-        if finer.start[e] == mesh.start[old] and finer.share[e] == mesh.share[old]:
-            inside[e] = bubbles[old]
-            ends = coefficients[old, :2]
-        else:
-            points = finer.start[e] + finer.share[e] * np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
-            xi = 2.0 * (points - mesh.start[old]) / mesh.share[old] - 1.0
-            there = shapes(xi)[0] @ coefficients[old]
-            ends = there[-2:]
-            inside[e] = _ALL @ (there[:-2] - VALUES[:, :2] @ ends)
-        if finer.vertices[finer.first[e]] >= layout.unknowns:
-            whole[finer.vertices[finer.first[e]]] = ends[0]
-    return whole, inside, finer

@@ -1,16 +1,16 @@
 """Whether two equilibria are on one branch: the path is followed between them in steps too short to jump to another branch."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import DEGREE, Mesh, mesh_for, mesh_of, rotations, shapes
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct, solve
+from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct, rotation_at, solve
 from comparisons.referee.events import changes_of
-from comparisons.referee.layout import Layout
-from comparisons.referee.march import closed_pairs, corners, tangent
+from comparisons.referee.march import Rate, closed_pairs, corners, moved, tangent
 from comparisons.referee.numbering import lay_out
 from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.start import AnswerState
@@ -19,7 +19,6 @@ from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
-_Rate = tuple[Array, Array]
 
 _NEAR = 0.2
 """Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
@@ -122,20 +121,16 @@ def _alike(one: Solution, other: Solution) -> bool:
     """Whether two equilibria have the same contacts in the same order along the beams, which slip in the same direction or stick."""
     slips = [{pair: grip.slip for pair, grip in item.layout.grips.items()} for item in (one, other)]
     orders = [[(part.beam, part.first, part.last) for part in item.layout.parts] for item in (one, other)]
-    found = one.status is SearchStatus.FOUND
-    return (
-        found
-        and closed_pairs(one).keys() == closed_pairs(other).keys()
-        and slips[0] == slips[1]
-        and orders[0] == orders[1]
-    )
+    same = closed_pairs(one).keys() == closed_pairs(other).keys()
+    return one.status is SearchStatus.FOUND and same and slips[0] == slips[1] and orders[0] == orders[1]
 
 
 def at_rest(scene: Scene) -> Solution:
     """Return the undeformed state of a scene with all contacts open."""
     layout = lay_out(scene, 0.0, {})
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 4) for _ in layout.parts])
-    return correct(layout, mesh, np.zeros(mesh.unknowns), np.zeros((len(mesh.part), DEGREE - 1)), 6)
+    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
+    return correct(Solution(layout=layout, mesh=mesh, z=np.zeros(mesh.unknowns), bubbles=bubbles), 6)
 
 
 def departs(scene: Scene, first: Solution, last: Solution) -> str:
@@ -146,7 +141,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
     start, end = first.layout.load_parameter, last.layout.load_parameter
     there, stopped = _followed(scene, first, end, last)
     if not stopped:
-        off = _apart(_state(there), _state(last))
+        off = _apart(there, last)
         if off < _SAME:
             return ""
         return (
@@ -154,7 +149,7 @@ def departs(scene: Scene, first: Solution, last: Solution) -> str:
         )
     back, stopped = _followed(scene, last, start)
     t, met = (item.layout.load_parameter for item in (there, back))
-    if stopped and abs(met - t) < _MEET * (end - start) and _apart(_state(there), _state(back)) < _MEETING:
+    if stopped and abs(met - t) < _MEET * (end - start) and _apart(there, back) < _MEETING:
         return ""
     index = index_of(first)
     kind = "" if index < 0 else f" of index {index}"
@@ -169,8 +164,7 @@ def _followed(
     A step is accepted if the tangents at both its ends explain it, and the index is unchanged; with friction, the sign of the
     determinant. Displacements and rotations along all parts are compared, so that nothing depends on the elements.
     """
-    closed, grips, index = closed_pairs(first), first.layout.grips, _kind(first)
-    start = first.layout.load_parameter
+    index, start = _kind(first), first.layout.load_parameter
     ways, sign = abs(end - start), 1.0 if end > start else -1.0
     stops = sorted(sign * t for t in {*corners(scene), end} if 0.0 < sign * (t - start) <= ways)
     now, step, rate = first, ways, None
@@ -181,17 +175,11 @@ def _followed(
         t = here + sign * step if step < left - _ROUND_OFF * ways else stop
         if t == here:
             return now, True
-        layout = lay_out(scene, t, closed, grips)
-        mesh, z, bubbles = (
-            mesh_for(layout, now.mesh),
-            now.z + (t - here) * rate[0],
-            now.bubbles + (t - here) * rate[1],
-        )
         there, off, behind = last or now, np.inf, None
         if last and t == end:
             off, behind = _unexplained(scene, now, rate, last, index)
         if off >= _NEAR:
-            there = correct(layout, mesh, z, bubbles, _ITERATIONS)
+            there = correct(moved(scene, now, t, now.layout.grips, rate), _ITERATIONS)
             off, behind = _unexplained(scene, now, rate, there, index)
         step = min(step, abs(t - here)) * float(np.clip(_AIM / max(off, 1e-300), 0.25, 3.0))
         if off < _NEAR:
@@ -202,8 +190,8 @@ def _followed(
 
 
 def _unexplained(
-    scene: Scene, now: Solution, rate: _Rate, there: Solution, index: int
-) -> tuple[float, _Rate | None]:
+    scene: Scene, now: Solution, rate: Rate, there: Solution, index: int
+) -> tuple[float, Rate | None]:
     """Largest part of a step that the tangents at its ends do not explain, and the tangent at its end; infinite off the branch."""
     if there.status is not SearchStatus.FOUND or _kind(there) != index:
         return np.inf, None
@@ -219,31 +207,21 @@ def _kind(solution: Solution) -> int:
     return orientation_of(solution) if solution.layout.rubs else index_of(solution)
 
 
-def _off(now: Solution, rate: _Rate, there: Solution) -> float:
+def _off(now: Solution, rate: Rate, there: Solution) -> float:
     """Error of a prediction along a tangent over the change from one state to another; infinite for a large error."""
-    way = there.layout.load_parameter - now.layout.load_parameter
-    mesh = mesh_for(there.layout, now.mesh)
-    guess = _shape(there.layout, mesh, now.z + way * rate[0], now.bubbles + way * rate[1])
-    off = _apart(guess, _state(there))
-    return off / (_apart(_state(now), _state(there)) + _ROUND_OFF) if off < _SHORT else np.inf
+    way, mesh = there.layout.load_parameter - now.layout.load_parameter, mesh_for(there.layout, now.mesh)
+    z, bubbles = now.z + way * rate[0], now.bubbles + way * rate[1]
+    off = _apart(replace(now, layout=there.layout, mesh=mesh, z=z, bubbles=bubbles), there)
+    return off / (_apart(now, there) + _ROUND_OFF) if off < _SHORT else np.inf
 
 
-def _apart(one: Array, other: Array) -> float:
-    return float(np.abs(one - other).max())
+def _apart(one: Solution, other: Solution) -> float:
+    return float(np.abs(_state(one) - _state(other)).max())
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)
 def _state(solution: Solution) -> Array:
-    return _shape(solution.layout, solution.mesh, solution.z, solution.bubbles)
-
-
-def _shape(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> Array:
     """Displacements, arc positions and directions of the stations, and the rotations along all parts."""
-    rest, parts = np.delete(z[: layout.unknowns], layout.forces), range(len(layout.parts))
-    places = np.tile(_PLACES, len(parts))
-    own = [np.flatnonzero(mesh.part == k) for k in parts]
-    inside = np.concatenate(
-        [item[np.searchsorted(mesh.start[item], _PLACES, side="right") - 1] for item in own]
-    )
-    xi = 2.0 * (places - mesh.start[inside]) / mesh.share[inside] - 1.0
-    return np.append(rest, (shapes(xi)[0] * rotations(mesh, z, bubbles)[inside]).sum(axis=1))
+    layout = solution.layout
+    rest = np.delete(solution.z[: layout.unknowns], layout.forces)
+    return np.append(rest, rotation_at(solution, np.arange(len(layout.parts))[:, None], _PLACES))

@@ -13,6 +13,8 @@ from comparisons.referee.numbering import lay_out
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Rate = tuple[Array, Array]
+"""Rates of the unknowns and bubbles per load parameter."""
 
 _ITERATIONS = 12
 """Largest number of Newton iterations of a step."""
@@ -34,13 +36,23 @@ def closed_pairs(solution: Solution) -> dict[str, float]:
     return {touch.spec.pair: float(solution.z[touch.arc]) * layout.length for touch in layout.touches}
 
 
+def moved(
+    scene: Scene, now: Solution, t: float, grips: Mapping[str, Grip], rate: Rate | None = None
+) -> Solution:
+    """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns, or those predicted by their rates."""
+    layout, way = lay_out(scene, t, closed_pairs(now), grips), t - now.layout.load_parameter
+    z, bubbles = (
+        (now.z, now.bubbles) if rate is None else (now.z + way * rate[0], now.bubbles + way * rate[1])
+    )
+    return Solution(layout=layout, mesh=mesh_for(layout, now.mesh), z=z, bubbles=bubbles)
+
+
 def reach(
     scene: Scene, near: Solution, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS
 ) -> Solution:
     """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
-    layout = lay_out(scene, t, closed_pairs(near), grips)
-    there = correct(layout, mesh_for(layout, near.mesh), near.z, near.bubbles, _ITERATIONS)
-    turning = [k for k in (item.rotation_unknown for item in layout.stations) if k != NONE]
+    there = correct(moved(scene, near, t, grips), _ITERATIONS)
+    turning = [k for k in (item.rotation_unknown for item in there.layout.stations) if k != NONE]
     turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
     here = near.layout.load_parameter
     if (there.status is SearchStatus.FOUND and turned < _TURN) or not halvings or here == t:
@@ -51,14 +63,13 @@ def reach(
     return reach(scene, middle, t, grips, halvings - 1)
 
 
-def tangent(scene: Scene, now: Solution, little: float) -> tuple[Array, Array]:
+def tangent(scene: Scene, now: Solution, little: float) -> Rate:
     """Rates of the unknowns and bubbles per load parameter, by a difference over `little`."""
     if little == 0.0:
         return np.zeros_like(now.z), np.zeros_like(now.bubbles)
-    layout = lay_out(scene, now.layout.load_parameter + little, closed_pairs(now), now.layout.grips)
-    change, inside = newton_step(layout, mesh_for(layout, now.mesh), now.z, now.bubbles)
+    change, inside = newton_step(moved(scene, now, now.layout.load_parameter + little, now.layout.grips))
     if scene.stages:
         # in a stage that changes nothing the difference is round-off alone, which the correction here has too
-        change_here, inside_here = newton_step(now.layout, now.mesh, now.z, now.bubbles)
+        change_here, inside_here = newton_step(now)
         change, inside = change - change_here, inside - inside_here
     return change / little, inside / little
