@@ -80,8 +80,8 @@ def element_before(mesh: Mesh, touch: Touch) -> int:
 def _add_parts(layout: Layout, z: Array, g: Array, k: Array) -> None:
     """Add ``c.(r_b - r_a - R_b + R_a)`` of the parts."""
     for part in layout.parts:
-        own = np.array([part.force, part.force + 1])
-        n, axes = z[own], part.rod.axes
+        own, axes = slice(part.force, part.force + 2), part.rod.axes
+        n = z[own]
         g[own] += _apart(layout, z, part)
         for number, sign in ((part.first, -1.0), (part.last, 1.0)):
             there = layout.stations[number]
@@ -126,7 +126,7 @@ def _add_springs_and_loads(layout: Layout, z: Array, g: Array, k: Array) -> floa
 
 def _add_offset(part: Part, touch: Touch, sign: float, z: Array, g: Array, k: Array) -> None:
     """Add ``sign c.r`` of the axis point ``r = x - offset(s) nu(phi)`` by phi, and by s where the offset depends on s."""
-    own, axes, nu = np.array([part.force, part.force + 1]), part.rod.axes, normal(float(z[touch.angle]))
+    own, axes, nu = slice(part.force, part.force + 2), part.rod.axes, normal(float(z[touch.angle]))
     n, tau, offset = z[own], np.array([nu[1], -nu[0]]), touch.away(float(z[touch.arc]))
     way, lean = offset * axes.T @ tau, -touch.slope * axes.T @ nu
     for unknown, by in ((touch.angle, way), (touch.arc, lean)):

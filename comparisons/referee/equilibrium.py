@@ -185,7 +185,7 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
 
 def _places(mesh: Mesh) -> Array:
     """Fractions (e, g + 2) of the parts at the Gauss points and the ends of the elements."""
-    return mesh.start[:, None] + mesh.share[:, None] * _PLACES
+    return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
 
 
 def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
@@ -261,8 +261,7 @@ def _step(system: System, held: Ints | None = None) -> Array | None:
         hessian, gradient = hessian.copy(), gradient.copy()
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
-    row, column = np.nonzero(hessian)
-    entry = hessian[row, column]
+    row, column, entry = entries(hessian)
     if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
         return None
     scale = scales(row, column, entry)
@@ -279,7 +278,14 @@ def _step(system: System, held: Ints | None = None) -> Array | None:
         return None
 
 
-def scales(row: NDArray[np.int64], column: NDArray[np.int64], entry: Array) -> Array:
+def entries(matrix: Array) -> tuple[Ints, Ints, Array]:
+    """Return rows, columns and values of the entries that are not zero."""
+    # faster than `nonzero` of the matrix itself, which has few such entries
+    number = np.flatnonzero(matrix != 0.0)
+    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
+
+
+def scales(row: Ints, column: Ints, entry: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
     scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
     for _ in range(3):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.equilibrium import DENSE, Solution, scales
+from comparisons.referee.equilibrium import DENSE, Solution, entries, scales
 from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE
 
@@ -25,8 +25,7 @@ def index_of(solution: Solution) -> int:
     held, reduced = _directions(solution), system.hessian
     if held is not None:
         reduced = held.T @ reduced @ held
-    row, column = np.nonzero(reduced)
-    scale = scales(row, column, reduced[row, column])
+    scale = scales(*entries(reduced))
     inside = np.linalg.eigvalsh(system.blocks)
     negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
     return negatives - 2 * len(solution.layout.parts)
