@@ -6,12 +6,11 @@ import numpy as np
 
 from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.equilibrium import SearchStatus
-from comparisons.referee.march import reach
+from comparisons.referee.path import PASSES, changes_of, reach
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import ContactSpec, Scene
 
-PASSES = "pass-through"
 OPENS, CLOSES = ("release", "slip-off"), ("touch",)
 KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
 """Kinds of contact events."""
@@ -21,27 +20,14 @@ ENDING = ("line-contact", "end-contact")
 """Kinds of events at which a contact ends the solution."""
 
 
-def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
-    """Return the events at which a contact, or any one, changes; at a pass-through none does."""
-    events = [event for event in response.events or () if event.kind != PASSES]
-    return [event for event in events if pair in ("", event.pair)]
-
-
 def misstated(
     response: Response, scene: Scene, found: Mapping[int, Equilibrium], allowed: float
 ) -> Iterator[str]:
     """Yield events that are not those of the answer's states, or at which the exact contact is elsewhere or has another force.
 
-    Parameters
-    ----------
-    response, scene
-        The answer and its scene.
-    found : mapping of Equilibrium
-        Exact equilibria, by the numbers of their load parameters. An event beside one of them is compared with the equilibrium that
-        follows from it: at a contact that is closed there, arc position and force; of one that is open, the gap. With friction,
-        `rubbing` compares the events instead.
-    allowed : float
-        Largest difference allowed.
+    An event beside one of the exact equilibria `found`, by the numbers of their load parameters, is compared with the equilibrium that
+    follows from it: at a contact that is closed there, arc position and force; of one that is open, the gap. With friction,
+    `friction.rubbing` compares the events instead.
     """
     specs, times = {spec.pair: spec for spec in scene.contacts}, response.load_parameter
     for event in response.events or ():

@@ -12,7 +12,7 @@ from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.grip import UnknownFrictionError
-from comparisons.referee.march import closed_pairs, reach
+from comparisons.referee.path import closed_pairs, reach
 from comparisons.referee.start import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
@@ -45,16 +45,8 @@ def judged(
 ) -> Judgement:
     """Judge one load parameter.
 
-    Parameters
-    ----------
-    response, scene, k, allowed
-        The answer, its scene, the number of the load parameter, and the largest difference allowed.
-    history : History, optional
-        The states of friction in the answer; None for a scene without friction.
-    given : Equilibrium or Solution, optional
-        The exact equilibrium near the answer, or one at the load parameter before, from which the one here is sought first.
-    largest : (float, float, float)
-        Largest force, moment and displacement of other load parameters; differences are relative to these where they are larger.
+    The equilibrium near the answer may be `given`, or the solution at the load parameter before, from which it is sought first.
+    Differences are relative to the largest force, moment and displacement, here or those of other load parameters in `largest`.
     """
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, solve
-from comparisons.referee.follow import at_rest, events_between, on_the_way
+from comparisons.referee.path import at_rest, events_between, on_the_way
 from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import described

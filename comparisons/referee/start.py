@@ -1,6 +1,7 @@
 """The first guess of the exact equilibrium from the axes, forces and arc positions of an answer."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -33,19 +34,19 @@ class AnswerState:
         Load parameter of the answer.
     arcs : dict of float
         Arc position of every closed pair, by the pair's name.
-    forces : dict of (float, float)
+    forces : dict of sequence of float
         Contact force of every pair that has one, on its beam.
     axes : dict of (ndarray, ndarray)
         Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
-    reactions : dict of (float, float, float)
+    reactions : dict of sequence of float
         Force and moment of every support, by the supported end.
-    tips : dict of (float, float)
+    tips : dict of sequence of float
         Position of the free or less restrained end of every beam.
     grips : dict of Grip
         How friction holds the closed pairs; pairs without a grip have no friction.
     gaps : dict of float
         Gap of the pairs for which one is stated.
-    springs : dict of (float, float, float)
+    springs : dict of sequence of float
         Force and moment of the springs that the answer states, by the end that they hold.
     sections : dict of (ndarray, ndarray, ndarray, ndarray)
         Arc lengths and section forces N, V, M of every beam for which they are stated.
@@ -54,14 +55,14 @@ class AnswerState:
     """
 
     load_parameter: float
-    arcs: dict[str, float]
-    forces: dict[str, tuple[float, float]]
     axes: dict[str, tuple[Array, Array]]
-    reactions: dict[str, tuple[float, float, float]]
-    tips: dict[str, tuple[float, float]]
+    arcs: dict[str, float] = field(default_factory=dict)
+    forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    reactions: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    tips: Mapping[str, Sequence[float]] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
     gaps: dict[str, float] = field(default_factory=dict)
-    springs: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    springs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
     local: float = 0.0
 
@@ -77,26 +78,20 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     A contact whose force is round-off is open at an end of its beam, where no rod lies beside it; its force counts in the balance.
     """
     pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
-    idle = {
-        spec.pair
-        for spec in scene.contacts
-        if spec.pair in pushing and idle_at_an_end(pushing[spec.pair], scene, spec, k)
-    }
+    specs = [spec for spec in scene.contacts if spec.pair in pushing]
+    idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
         arcs={pair: float(item.arc_position[k]) for pair, item in pushing.items() if pair not in idle},
         forces={
-            pair: (math.nan, math.nan)
-            if item.vector is None
-            else (float(item.vector[k, 0]), float(item.vector[k, 1]))
+            pair: (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
             for pair, item in pushing.items()
         },
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions={
-            node: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
-            for node, item in response.supports.items()
+            node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
-        tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
+        tips={beam: tip[k].tolist() for beam, tip in response.tips.items()},
     )
 
 
@@ -175,26 +170,19 @@ def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
     known: dict[int, float] = {
         k: item.prescribed_rotation for k, item in enumerate(layout.stations) if item.rotation_unknown == NONE
     }
-    left = list(range(len(turns)))
-    aligned = list(turns)
+    own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
+    ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
+    left, aligned = list(range(len(turns))), list(turns)
     while left:
-        number = next((b for b in left if any(k in known for k, _ in _end_stations(layout, b))), left[0])
+        number = next((b for b in left if any(k in known for k, _ in ends[b])), left[0])
         left.remove(number)
-        ends = _end_stations(layout, number)
-        shift = next((known[k] - float(turns[number].angle(arc)) for k, arc in ends if k in known), 0.0)
-        turn = Rotations(
-            arc=turns[number].arc, theta=turns[number].theta + 2.0 * math.pi * round(shift / (2.0 * math.pi))
-        )
+        arc, theta = turns[number].arc, turns[number].theta
+        shifts = (known[k] - float(turns[number].angle(s)) for k, s in ends[number] if k in known)
+        turn = Rotations(arc=arc, theta=theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
         aligned[number] = turn
-        for k, arc in ends:
-            known.setdefault(k, float(turn.angle(arc)))
+        for k, s in ends[number]:
+            known.setdefault(k, float(turn.angle(s)))
     return aligned
-
-
-def _end_stations(layout: Layout, beam: int) -> list[tuple[int, float]]:
-    """Stations of a beam's ends with their arc positions."""
-    parts = [part for part in layout.parts if part.beam == beam]
-    return [(parts[0].first, 0.0), (parts[-1].last, layout.scene.beams[beam].length / layout.length)]
 
 
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:

@@ -11,7 +11,7 @@ from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.friction.history import History
 from comparisons.referee.friction.slip import rates, slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
-from comparisons.referee.march import corners, reach
+from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 
 Array = NDArray[np.float64]

@@ -11,12 +11,11 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.referee.equilibrium import SearchStatus, Solution, solve
-from comparisons.referee.events import changes_of
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.rolling import roll
 from comparisons.referee.friction.slip import place, rates, slip_rate, speed
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
-from comparisons.referee.march import closed_pairs, corners, reach
+from comparisons.referee.path import changes_of, closed_pairs, corners, reach
 from comparisons.referee.rod import face_slope, touching_distance
 from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching

@@ -13,7 +13,7 @@ from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase
 from comparisons.referee.friction.slip import place, rates, slip_rate, speed
 from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.march import corners
+from comparisons.referee.path import corners
 from comparisons.referee.state import Equilibrium
 from comparisons.response import FrictionHistory, Response
 from comparisons.response.round_off import LEAST, least_force

@@ -7,7 +7,7 @@ from comparisons.referee.equations import element_before
 from comparisons.referee.equilibrium import Solution
 from comparisons.referee.grip import Hold, rows
 from comparisons.referee.layout import NONE, Touch
-from comparisons.referee.march import corners, tangent
+from comparisons.referee.path import corners, tangent
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]

@@ -11,8 +11,8 @@ from comparisons.referee.elements import DEGREE, mesh_of
 from comparisons.referee.equations import System, assemble
 from comparisons.referee.grip import Grip, Hold
 from comparisons.referee.layout import Layout
-from comparisons.referee.march import tangent
 from comparisons.referee.numbering import lay_out
+from comparisons.referee.path import tangent
 from comparisons.referee.stability import _directions
 from comparisons.referee.state import _tangents
 from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec

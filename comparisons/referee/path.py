@@ -1,4 +1,4 @@
-"""Whether two equilibria are on one branch: the path is followed between them in steps too short to jump to another branch."""
+"""The path of equilibria: steps from one to another, and whether two are on one branch, by steps too short to jump to another branch."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct, rotation_at, solve
-from comparisons.referee.events import changes_of
-from comparisons.referee.march import Rate, closed_pairs, corners, moved, tangent
+from comparisons.referee.equilibrium import SearchStatus, Solution, correct, newton_step, rotation_at, solve
+from comparisons.referee.grip import Grip
+from comparisons.referee.layout import NONE
 from comparisons.referee.numbering import lay_out
 from comparisons.referee.stability import index_of, orientation_of
 from comparisons.referee.start import AnswerState
@@ -19,7 +19,15 @@ from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Rate = tuple[Array, Array]
+"""Rates of the unknowns and bubbles per load parameter."""
 
+_ITERATIONS = 12
+"""Largest number of Newton iterations of a step."""
+_TURN = 0.3
+"""Largest change of a rotation in a step [rad]; a longer step could lead to another equilibrium."""
+_HALVINGS = 8
+"""Number of times that a step is halved at most."""
 _NEAR = 0.2
 """Largest correction of a tangent prediction over the change in the step, at which the step is accepted."""
 _SHORT = 0.1
@@ -30,8 +38,6 @@ _ROUND_OFF = 1e-9
 """Changes of rotations [rad] and lengths below this are round-off."""
 _LITTLE = 1e-7
 """Fraction of the remaining path over which the tangent is a difference."""
-_ITERATIONS = 12
-"""Largest number of Newton iterations after a prediction."""
 _SMALLEST = 1e-10
 """Smallest step of the load parameter, over the distance from the start; an imperfect column needs steps this small."""
 _SAME = 1e-6
@@ -40,12 +46,69 @@ _MEET, _MEETING = 1e-4, 0.02
 """Largest distances in the load parameter, over the interval, and in place between the ends of two branches that meet there."""
 _PLACES = np.linspace(0.0, 1.0, 33)
 """Fractions of a part at which rotations are compared."""
-
-
 _SWITCHED = ("touch", "release")
 """Kinds of events without a jump at which a contact closes or opens."""
 _POINTS = 201
 """Points of an axis from which an equilibrium with other contacts is sought."""
+
+PASSES = "pass-through"
+
+
+def changes_of(response: Response, pair: str = "") -> list[ContactEvent]:
+    """Return the events at which a contact, or any one, changes; at a pass-through none does."""
+    events = [event for event in response.events or () if event.kind != PASSES]
+    return [event for event in events if pair in ("", event.pair)]
+
+
+def corners(scene: Scene) -> tuple[float, ...]:
+    """Load parameters at which rates jump: corners of the pins' paths, and ends of stages."""
+    turns = {corner for pin in scene.pins for corner in pin.corners}
+    return tuple(sorted(turns | {float(k + 1) for k in range(len(scene.stages))}))
+
+
+def closed_pairs(solution: Solution) -> dict[str, float]:
+    """Arc positions of the closed contacts, by pair."""
+    layout = solution.layout
+    return {touch.spec.pair: float(solution.z[touch.arc]) * layout.length for touch in layout.touches}
+
+
+def moved(
+    scene: Scene, now: Solution, t: float, grips: Mapping[str, Grip], rate: Rate | None = None
+) -> Solution:
+    """Return the guess at load parameter t with the contacts of an equilibrium and its unknowns, or those predicted by their rates."""
+    layout, way = lay_out(scene, t, closed_pairs(now), grips), t - now.layout.load_parameter
+    z, bubbles = (
+        (now.z, now.bubbles) if rate is None else (now.z + way * rate[0], now.bubbles + way * rate[1])
+    )
+    return Solution(layout=layout, mesh=mesh_for(layout, now.mesh), z=z, bubbles=bubbles)
+
+
+def reach(
+    scene: Scene, near: Solution, t: float, grips: Mapping[str, Grip], halvings: int = _HALVINGS
+) -> Solution:
+    """Return the equilibrium at load parameter t with the same contacts, held by `grips`, by steps from `near`."""
+    there = correct(moved(scene, near, t, grips), _ITERATIONS)
+    turning = [k for k in (item.rotation_unknown for item in there.layout.stations) if k != NONE]
+    turned = float(np.abs(there.z[turning] - near.z[turning]).max(initial=0.0))
+    here = near.layout.load_parameter
+    if (there.status is SearchStatus.FOUND and turned < _TURN) or not halvings or here == t:
+        return there
+    middle = reach(scene, near, (here + t) / 2.0, grips, halvings - 1)
+    if middle.status is not SearchStatus.FOUND:
+        return middle
+    return reach(scene, middle, t, grips, halvings - 1)
+
+
+def tangent(scene: Scene, now: Solution, little: float) -> Rate:
+    """Rates of the unknowns and bubbles per load parameter, by a difference over `little`."""
+    if little == 0.0:
+        return np.zeros_like(now.z), np.zeros_like(now.bubbles)
+    change, inside = newton_step(moved(scene, now, now.layout.load_parameter + little, now.layout.grips))
+    if scene.stages:
+        # in a stage that changes nothing the difference is round-off alone, which the correction here has too
+        change_here, inside_here = newton_step(now)
+        change, inside = change - change_here, inside - inside_here
+    return change / little, inside / little
 
 
 def departures(response: Response, scene: Scene, states: Mapping[int, Equilibrium]) -> Iterator[str]:
@@ -105,14 +168,12 @@ def _switched(scene: Scene, now: Solution, event: ContactEvent) -> Solution:
     if event.kind == "touch":
         arcs[event.pair] = event.arc_position
     lines = {beam.name: np.linspace(0.0, beam.length, _POINTS) for beam in scene.beams}
-    forces = {pair: (float(item.force[0]), float(item.force[1])) for pair, item in exact.contacts.items()}
     answer = AnswerState(
         load_parameter=exact.load_parameter,
         arcs=arcs,
-        forces={pair: forces.get(pair, (0.0, 0.0)) for pair in arcs},
+        forces={pair: exact.contacts[pair].force if pair in exact.contacts else np.zeros(2) for pair in arcs},
         axes={name: (arc, exact.shape(name, arc).position) for name, arc in lines.items()},
-        reactions={end: (float(x), float(y), float(m)) for end, (x, y, m) in exact.reactions.items()},
-        tips={},
+        reactions={end: held.tolist() for end, held in exact.reactions.items()},
     )
     return solve(scene, answer)
 
