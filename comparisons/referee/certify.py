@@ -10,9 +10,8 @@ import numpy as np
 
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.events import misstated
 from comparisons.referee.judge import impossible, judged
-from comparisons.referee.passing import changes, passages
+from comparisons.referee.passing import changes, misstated, passages
 from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response

@@ -86,8 +86,7 @@ class Distance:
     @property
     def largest(self) -> tuple[str, float]:
         """Name and size of the largest difference that measures the accuracy."""
-        # of differences that are equal but for round-off the first
-        name = max(COMPARED, key=lambda name: float(f"{_size(getattr(self, name)):.6g}"))
+        name = max(COMPARED, key=lambda name: _size(getattr(self, name)))
         return name.replace("_", " "), float(getattr(self, name))
 
     def line(self, of: tuple[str, float] | None = None) -> str:
