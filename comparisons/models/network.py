@@ -11,8 +11,6 @@ from comparisons.models.progress import Watch, unwatched
 from comparisons.models.rod import ROD
 from comparisons.models.tsm import TSM
 from comparisons.referee import Equilibrium, Verdict, certify
-from comparisons.referee.energy import dissipated
-from comparisons.referee.history import History
 from comparisons.response import (
     Array,
     ContactHistory,
@@ -115,6 +113,8 @@ def _frictions(scene: Scene, followed: Response, states: States) -> dict[str, Fr
     pairs = [spec.pair for spec in scene.contacts if spec.friction]
     if not pairs:
         return {}
+    from comparisons.referee.friction import History, dissipated
+
     history = History(followed, scene)
     spent = [dissipated(history, k, state) for k, state in enumerate(states)]
     found = {}

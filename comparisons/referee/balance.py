@@ -1,14 +1,14 @@
 """The balance of forces and moments on the whole structure, from a response and its scene alone."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import Array, ContactHistory, Response
+from comparisons.response import Array, Response
 from comparisons.response.round_off import force_round_off, least_force
-from comparisons.scene import BeamSpec, ContactSpec, LoadSpec, Scene
+from comparisons.scene import BeamSpec, Scene
 
 BALANCE = 1e-6
 """Largest unbalanced force of a model of this package, over the largest force that acts. Newton's tolerances are far below."""
@@ -22,21 +22,20 @@ _PANELS, _NODES = 20, 4
 class Action(NamedTuple):
     """A force (s, 2) on the structure and its moment (s,) about the start of the first beam, with any free moment added.
 
-    Its point moves along `place` (s + 1, 2), rest first, and turns, where the scene prescribes that, by `angle` (s + 1,). No sum has them.
+    Its point moves along `place` (s + 1, 2), rest first, and turns by `angle` (s + 1,) where the scene prescribes that.
     """
 
     force: Array
     moment: Array
-    place: Array | None = None
-    free: Array | None = None
-    angle: Array | None = None
+    place: Array
+    free: Array
+    angle: Array | None
 
     def work(self, chosen: NDArray[np.int64]) -> Array:
         """Return the work between the chosen states, 0 the one at rest, where forces change linearly with the place."""
-        assert self.place is not None, "a sum of forces has no place"
         force = np.vstack([np.zeros(2), self.force])[chosen]
         work = ((force[1:] + force[:-1]) / 2.0 * np.diff(self.place[chosen], axis=0)).sum(axis=1)
-        if self.free is not None and self.angle is not None:
+        if self.angle is not None:
             moment = np.concatenate([[0.0], self.free])[chosen]
             work += (moment[1:] + moment[:-1]) / 2.0 * np.diff(self.angle[chosen])
         return np.asarray(work)
@@ -53,19 +52,20 @@ def balance_failures(response: Response, scene: Scene, allowed: float = BALANCE)
     is computed, and its magnitude is compared with the stated contact force. Its moment enters the balance of moments, with the moment
     ``-side (R + g) F_t`` of a stated tangential force about the centre of a pin of radius R at the gap g, side = 1 for a pin on the right.
     """
-    supports, loads = [*_supports(response, scene), *_springs(response, scene)], _loads(response, scene)
-    outer = _sum([*supports, *loads], len(response.load_parameter))
-    pushing, magnitude, actions = _pins(response, scene, outer)
-    pins = _sum(actions, len(response.load_parameter))
-    largest = max(_largest(scene, [*supports, *loads]), float(magnitude.max(initial=0.0)))
-    scale = allowed * largest + max(force_round_off(scene, largest), response.round_off)
-    missing = np.hypot(*outer.force.T)
-    off = np.where(pushing <= 1, np.abs(missing - magnitude), np.hypot(*(outer.force + pins.force).T))
+    actions = [*_supports(response, scene), *_springs(response, scene), *_loads(response, scene)]
+    force, _ = _sum(actions, len(response.load_parameter))
+    pushing, magnitude, pins = _pins(response, scene, force)
+    whole, whole_moment = _sum([*actions, *pins], len(response.load_parameter))
     length = max(beam.length for beam in scene.beams)
+    # a least value keeps the solvers' residuals within balance where nothing acts
+    forces = [array for item in actions for array in (item.force, item.moment / length)]
+    largest = max([least_force(scene), *(float(np.abs(x).max(initial=0.0)) for x in (magnitude, *forces))])
+    scale = allowed * largest + max(force_round_off(scene, largest), response.round_off)
+    off = np.where(pushing <= 1, np.abs(np.hypot(*force.T) - magnitude), np.hypot(*whole.T))
     unknown = any(spring.rotation and spring.node not in response.springs for spring in scene.springs)
     for what, failed in (
         ("reactions", ~(off <= scale)),
-        ("moments", (not unknown) & ~(np.abs(outer.moment + pins.moment) <= scale * length)),
+        ("moments", (not unknown) & ~(np.abs(whole_moment) <= scale * length)),
     ):
         if failed.any():
             t = response.load_parameter[np.argmax(failed)]
@@ -86,7 +86,7 @@ def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allo
         return
     jumps = [event.load_parameter for event in response.events if event.released]
     actions = [*_supports(response, scene), *_loads(response, scene)]
-    outer = _sum([*actions, *_springs(response, scene)], len(response.load_parameter))
+    outer, _ = _sum([*actions, *_springs(response, scene)], len(response.load_parameter))
     actions += _pins(response, scene, outer)[2]
     least = least_force(scene) * max(beam.length for beam in scene.beams)
     for k, energy in energies.items():
@@ -108,18 +108,10 @@ def unpaid(response: Response, scene: Scene, energies: Mapping[int, float], allo
             return
 
 
-def _sum(actions: list[Action], steps: int) -> Action:
-    nothing = Action(np.zeros((steps, 2)), np.zeros(steps))
-    both = [nothing, *actions]
-    return Action(sum(item.force for item in both), sum(item.moment for item in both))  # type: ignore[arg-type]
-
-
-def _largest(scene: Scene, actions: list[Action]) -> float:
-    """Largest force, or moment over length. A least value keeps the solvers' residuals within balance where nothing acts."""
-    length = max(beam.length for beam in scene.beams)
-    forces = [float(np.abs(item.force).max(initial=0.0)) for item in actions]
-    moments = [float(np.abs(item.moment).max(initial=0.0)) / length for item in actions]
-    return max(*forces, *moments, least_force(scene))
+def _sum(actions: list[Action], steps: int) -> tuple[Array, Array]:
+    """Return the sums of the forces and of the moments."""
+    force = np.sum([np.zeros((steps, 2)), *(item.force for item in actions)], axis=0)
+    return force, np.sum([np.zeros(steps), *(item.moment for item in actions)], axis=0)
 
 
 def _action(
@@ -173,75 +165,56 @@ def _springs(response: Response, scene: Scene) -> list[Action]:
 def _loads(response: Response, scene: Scene) -> list[Action]:
     """Return the dead loads and the weights; those along a beam and inside it act on the axis that the response states."""
     times, actions = response.load_parameter.tolist(), []
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    inside = ((np.arange(_PANELS)[:, None] + (nodes + 1.0) / 2.0) / _PANELS).ravel()
+    weights = np.tile(weights / 2.0, _PANELS) / _PANELS
     for history in scene.load_histories:
-        load, acting = history.load, np.array([history.at(t) for t in times]).reshape(-1, 3)
+        load, beam = history.load, scene.beam(history.load.beam)
+        acting, (first, last) = np.array([history.at(t) for t in times]).reshape(-1, 3), load.span
         if load.force_per_length is not None:
-            actions.append(_along(response, scene.beam(load.beam), load.span, acting[:, :2], scene))
-            continue
-        inside = load.at is not None
-        place = _inside(response, scene, load) if inside else _place(response, scene, load.node)
-        rest = scene.beam(load.beam).place(load.at or 0.0) if inside else scene.place(load.node)
-        actions.append(_action(scene, acting[:, :2], place, rest, acting[:, 2]))
-    gravity = np.array([scene.gravity_at(t) for t in times]).reshape(-1, 2)
-    heavy = (beam for beam in scene.beams if beam.density is not None)
-    actions += [_along(response, beam, (0.0, 1.0), gravity, scene, beam.mass_per_length) for beam in heavy]
+            parts, extents = first + (last - first) * inside, (last - first) * beam.length * weights
+            actions.append(_inside(response, scene, beam, parts, extents, acting * (1.0, 1.0, 0.0)))
+        elif load.at is not None:
+            actions.append(_inside(response, scene, beam, np.array([load.at]), np.ones(1), acting))
+        else:
+            place, rest = _place(response, scene, load.node), scene.place(load.node)
+            actions.append(_action(scene, acting[:, :2], place, rest, acting[:, 2]))
+    gravity = np.array([(*scene.gravity_at(t), 0.0) for t in times]).reshape(-1, 3)
+    for beam in scene.beams:
+        if beam.density is not None:
+            masses = beam.length * weights * [beam.mass_per_length(part) for part in inside]
+            actions.append(_inside(response, scene, beam, inside, masses, gravity))
     return actions
 
 
-def _inside(response: Response, scene: Scene, load: LoadSpec) -> Array:
-    """Deformed position (s, 2) of a point inside a beam."""
-    at = (load.at or 0.0) * scene.beam(load.beam).length
-    return _axis_at(response, load.beam, np.array([at]))[:, 0]
-
-
-def _axis_at(response: Response, beam: str, arcs: Array) -> Array:
-    """Deformed positions (s, m, 2) of a beam's axis, by cubic splines through the points that the response states."""
+def _inside(
+    response: Response, scene: Scene, beam: BeamSpec, parts: Array, weights: Array, acting: Array
+) -> Action:
+    """Action of forces and moments (s, 3) times `weights` at parts of a beam's length, by cubic splines through the points of its axis."""
     from scipy.interpolate import CubicSpline
 
-    lines = [response.axis_line(beam, k) for k in range(len(response.load_parameter))]
-    return np.array([CubicSpline(arc, line)(arcs) for arc, line in lines]).reshape(-1, len(arcs), 2)
-
-
-def _along(
-    response: Response,
-    beam: BeamSpec,
-    span: tuple[float, float],
-    vector: Array,
-    scene: Scene,
-    factor: Callable[[float], float] = lambda _: 1.0,
-) -> Action:
-    """Action of a load per length, a vector (s, 2) times a factor at parts of the length, by Gauss's rule in `_PANELS` panels."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    ends = np.linspace(*span, _PANELS + 1)
-    parts = (ends[:-1, None] + np.diff(ends)[:, None] * (nodes + 1.0) / 2.0).ravel()
-    weights = np.tile(weights / 2.0, _PANELS) * (span[1] - span[0]) * beam.length / _PANELS
-    weights = weights * [factor(part) for part in parts]
-    centre = np.average(_axis_at(response, beam.name, parts * beam.length), axis=1, weights=weights)
+    lines = [response.axis_line(beam.name, k) for k in range(len(response.load_parameter))]
+    places = [CubicSpline(arc, line)(parts * beam.length) for arc, line in lines]
+    centre = np.average(np.reshape(places, (-1, len(parts), 2)), axis=1, weights=weights)
     rest = np.average([beam.place(part) for part in parts], axis=0, weights=weights)
-    return _action(scene, vector * weights.sum(), centre, rest)
+    return _action(scene, acting[:, :2] * weights.sum(), centre, rest, acting[:, 2] * weights.sum())
 
 
-def _pins(response: Response, scene: Scene, outer: Action) -> tuple[NDArray[np.int64], Array, list[Action]]:
-    """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances `outer`."""
+def _pins(response: Response, scene: Scene, outer: Array) -> tuple[NDArray[np.int64], Array, list[Action]]:
+    """Return the number of pins that push, the sum of their magnitudes, and their actions; a single pin balances the forces `outer`."""
+    touching = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if "." not in spec.node]
     steps, actions = len(response.load_parameter), []
-    pushing, magnitude = np.zeros(steps, dtype=np.int64), np.zeros(steps)
-    touching = [spec for spec in scene.contacts if "." not in spec.node]
-    for spec in touching:
-        pushing += response.contacts[spec.pair].force > 0.0
-    for spec in touching:
-        history = response.contacts[spec.pair]
+    pushing = np.sum([np.zeros(steps, dtype=np.int64), *(item.force > 0.0 for _, item in touching)], axis=0)
+    magnitude = np.sum([np.zeros(steps), *(item.force for _, item in touching)], axis=0)
+    for spec, history in touching:
         rest, *places = (scene.pin(spec.node).position(t) for t in (0.0, *response.load_parameter.tolist()))
         vector = np.full((steps, 2), np.nan) if history.vector is None else history.vector
-        force = np.where((pushing <= 1)[:, None], -outer.force, vector)
+        force = np.where((pushing <= 1)[:, None], -outer, vector)
         force = np.where((history.force > 0.0)[:, None], force, 0.0)
-        magnitude += history.force
-        actions.append(_action(scene, force, np.array(places), rest, _roll(scene, spec, history)))
+        rolling: Array | float = 0.0
+        if history.friction is not None:
+            # the tangential force acts on the surface, a radius and a gap away from the pin's centre
+            lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
+            rolling = (1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential
+        actions.append(_action(scene, force, np.array(places), rest, rolling))
     return pushing, magnitude, actions
-
-
-def _roll(scene: Scene, spec: ContactSpec, history: ContactHistory) -> Array | float:
-    """Moment (s,) of the tangential force on the surface about the pin's centre, which is a radius and a gap away."""
-    if history.friction is None:
-        return 0.0
-    lever = scene.radius(spec) + np.where(history.force > 0.0, history.gap, 0.0)
-    return np.asarray((1.0 if spec.side == "left" else -1.0) * lever * history.friction.tangential)

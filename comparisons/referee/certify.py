@@ -4,27 +4,30 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from comparisons.referee.balance import BALANCE, balance_failures, unpaid
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
-from comparisons.referee.distance import LEAST, least_force
-from comparisons.referee.events import misstated
-from comparisons.referee.follow import departures
-from comparisons.referee.history import History
 from comparisons.referee.judge import impossible, judged
-from comparisons.referee.passing import changes, passages
-from comparisons.referee.rubbing import rubs_wrongly_on_the_way
+from comparisons.referee.passing import changes, misstated, passages
+from comparisons.referee.path import changes_of, departures
 from comparisons.referee.state import Equilibrium
 from comparisons.response import Response
 from comparisons.response.axis import SampledAxes
 from comparisons.response.material import material_forces
+from comparisons.response.round_off import least_force
 from comparisons.scene import Scene
 from comparisons.scene.keys import REFEREE, unstated
 
+if TYPE_CHECKING:
+    from comparisons.referee.friction import History
+
 ALLOWED = 5e-2
 """Default of the largest difference allowed to an answer; ten straight elements of a beam that bends to a half circle need it."""
+_MOST = 4
+"""Largest number of load parameters that are judged beside events."""
 
 
 def certify(
@@ -56,77 +59,58 @@ def certify(
     if not isinstance(response.axis_line, SampledAxes):
         response = replace(response, axis_line=cache(response.axis_line))
     allowed = default_allowance(response, scene) if allowance is None else allowance
-    steps = len(response.load_parameter)
-    numbers = (
-        tuple(sorted({*beside_events(response), *ends_of_stages(response, scene), *hardest(response)}))
-        if at is None
-        else tuple(sorted({k % steps for k in at if -steps <= k < steps}))
-    )
+    numbers = _chosen(response, scene)
+    if at is not None:
+        steps = len(response.load_parameter)
+        numbers = sorted({k % steps for k in at if -steps <= k < steps})
     history = _history(response, scene)
-    states = tuple(_judged(response, scene, numbers, allowed, history))
-    states = tuple(_on_the_path(response, scene, numbers, states, allowed, history))
+    states = _judged(response, scene, numbers, allowed, history)
     found = {k: item.exact for k, item in zip(numbers, states, strict=True) if item.exact is not None}
     energies = {k: exact.strain_energy for k, exact in found.items()}
-    unsound = tuple(_unsound(response, scene, allowed)) or tuple(unpaid(response, scene, energies, allowed))
-    path = () if unsound else tuple(_path(response, scene, found, allowed))
+    unsound = [*_unsound(response, scene, allowed)] or [*unpaid(response, scene, energies, allowed)]
+    path = [] if unsound else [*_path(response, scene, found, allowed)]
     if history is not None:
-        path += tuple(rubs_wrongly_on_the_way(history, numbers, states, allowed))
+        from comparisons.referee.friction import rubs_wrongly_on_the_way
+
+        path += rubs_wrongly_on_the_way(history, numbers, states, allowed)
     verdict, reason = _worst(states, unsound, path)
     if verdict is Verdict.CERTIFIED:
         verdict, reason = _sound(response, scene, numbers, states)
-    gone = (
-        next(departures(response, scene, numbers, [item.exact for item in states]), "")
-        if verdict is Verdict.CERTIFIED
-        else ""
-    )
-    if gone:
-        verdict, reason = Verdict.UNSTABLE, gone
+    if verdict is Verdict.CERTIFIED:
+        for gone in departures(response, scene, found):
+            verdict, reason = Verdict.UNSTABLE, gone
+            break
     if history is not None and history.taken:
         reason = f"{reason}; {history.taken}"
     return Certificate(
-        verdict=verdict, reason=reason, allowance=allowed, judged=states, path=unsound + path,
+        verdict=verdict, reason=reason, allowance=allowed, judged=tuple(states), path=(*unsound, *path),
         seconds=perf_counter() - began,
     )  # fmt: skip
 
 
 def _judged(
-    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: History | None
-) -> Iterator[Judgement]:
-    """Yield the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged."""
-    before, near = -2, None
-    for k in numbers:
-        item = judged(response, scene, k, allowed, history=history, near=near if k == before + 1 else None)
-        before, near = k, None if item.exact is None else item.exact.solution
-        yield item
+    response: Response, scene: Scene, numbers: Sequence[int], allowed: float, history: "History | None"
+) -> list[Judgement]:
+    """Return the judgements; an equilibrium is sought from the one at the load parameter before, where that was judged.
 
-
-def _on_the_path(
-    response: Response,
-    scene: Scene,
-    numbers: Sequence[int],
-    states: Sequence[Judgement],
-    allowed: float,
-    history: History | None,
-) -> Iterator[Judgement]:
-    """Yield the judgements; a refused state is judged again with the largest sizes of all judged load parameters.
-
-    A moment that changes its sign is small at one load parameter, and a difference relative to it alone is large.
+    A moment that changes its sign is small at one load parameter, and a difference relative to it alone is large: a refused state is
+    judged again with the largest sizes of all judged load parameters.
     """
+    states: list[Judgement] = []
+    for n, k in enumerate(numbers):
+        before = states[-1].exact if n and numbers[n - 1] == k - 1 else None
+        near = None if before is None else before.solution
+        states.append(judged(response, scene, k, allowed, history=history, given=near))
     sizes = [item.distance.scales for item in states if item.distance is not None]
-    force, moment, moved = (max(column) for column in zip(*sizes, strict=True)) if sizes else (0.0, 0.0, 0.0)
-    for k, item in zip(numbers, states, strict=True):
-        if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None:
-            yield judged(
-                response,
-                scene,
-                k,
-                allowed,
-                history=history,
-                exact=item.exact,
-                largest=(force, moment, moved),
-            )
-        else:
-            yield item
+    if not sizes:
+        return states
+    force, moment, moved = (max(column) for column in zip(*sizes, strict=True))
+    return [
+        judged(response, scene, k, allowed, history=history, given=item.exact, largest=(force, moment, moved))
+        if item.verdict is Verdict.NOT_AN_EQUILIBRIUM and item.exact is not None
+        else item
+        for k, item in zip(numbers, states, strict=True)
+    ]
 
 
 _GRAVITY = (
@@ -159,46 +143,38 @@ def default_allowance(response: Response, scene: Scene) -> float:
     return ALLOWED + max(beam.rectangle_height / beam.length for beam in scene.beams)
 
 
-def beside_events(response: Response, most: int = 4) -> tuple[int, ...]:
-    """Return the indices of the last load parameter and of the ones next to events, the latest ones up to `most`."""
-    steps = len(response.load_parameter)
+def _chosen(response: Response, scene: Scene) -> list[int]:
+    """Return the indices of the load parameters that are judged by default: see `certify`."""
+    times, steps = response.load_parameter, len(response.load_parameter)
     if not steps:
-        return ()
+        return []
     numbers = {steps - 1}
-    events = [event for event in response.events or () if event.kind != "pass-through"]
-    for event in sorted(events, key=lambda event: -event.load_parameter):
-        after = int(np.searchsorted(response.load_parameter, event.load_parameter))
+    for event in sorted(changes_of(response), key=lambda event: -event.load_parameter):
+        after = int(np.searchsorted(times, event.load_parameter))
         for k in (after, after - 1):
-            if 0 <= k < steps and len(numbers) < most:
+            if 0 <= k < steps and len(numbers) < _MOST:
                 numbers.add(k)
-    return tuple(sorted(numbers))
+    ends = [k for k in range(steps) if 0.0 < times[k] <= len(scene.stages) and times[k] % 1.0 == 0.0]
+    return sorted({*numbers, *ends, *_hardest(response)})
 
 
-def hardest(response: Response) -> tuple[int, ...]:
+def _hardest(response: Response) -> tuple[int, ...]:
     """Return the index of the load parameter with the largest contact force; none without contact force."""
     none = np.zeros(len(response.load_parameter))
     force = np.nan_to_num(sum((np.abs(item.force) for item in response.contacts.values()), none))
     return (int(np.argmax(force)),) if force.any() else ()
 
 
-def ends_of_stages(response: Response, scene: Scene) -> tuple[int, ...]:
-    """Return the indices of the load parameters at which a stage ends and another follows."""
-    ends = [float(k + 1) for k in range(len(scene.stages))]
-    return tuple(k for k, t in enumerate(map(float, response.load_parameter)) if t in ends)
-
-
 def _sound(
     response: Response, scene: Scene, numbers: Sequence[int], states: Sequence[Judgement]
 ) -> tuple[Verdict, str]:
     """Return the verdict on an answer in which nothing is wrong, and its reason."""
-    if max((item.distance.scales[0] for item in states if item.distance), default=0.0) <= LEAST * least_force(
-        scene
-    ):
+    if max((item.distance.scales[0] for item in states if item.distance), default=0.0) <= least_force(scene):
         return Verdict.NOT_JUDGED, "nothing to judge: no load, support or contact carries a force"
     worst = max((item.distance for item in states if item.distance), key=lambda item: item.largest[1])
     stable = "stable" if all(item.index == 0 for item in states) else "stability not judged (friction)"
     count = f"{len(states)} of {len(scene.times)} load parameters"
-    most = next((f"{response.load_parameter[k]:.6g}" for k in hardest(response) if k in numbers), "")
+    most = next((f"{response.load_parameter[k]:.6g}" for k in _hardest(response) if k in numbers), "")
     loaded = (
         f", the largest contact force (at {most}) among them"
         if most and len(states) < len(scene.times)
@@ -207,12 +183,14 @@ def _sound(
     return Verdict.CERTIFIED, f"{worst.line()}, admissible, {stable}; judged at {count}{loaded}"
 
 
-def _history(response: Response, scene: Scene) -> History | None:
+def _history(response: Response, scene: Scene) -> "History | None":
     """Return the states of friction in an answer; None without friction, and for an answer that is not one to the scene."""
     if not any(spec.friction for spec in scene.contacts):
         return None
     if any(next(impossible(response, scene, k), "") for k in range(len(response.load_parameter))):
         return None
+    from comparisons.referee.friction import History
+
     return History(response, scene)
 
 
@@ -235,7 +213,7 @@ def _unsound(response: Response, scene: Scene, allowed: float) -> Iterator[str]:
     )
     for beam, force in response.material_force.items():
         off = np.abs(force - forces[beam]) if beam in forces else np.full(len(steps), np.inf)
-        if not np.all(off <= allowed * max(largest, LEAST * least_force(scene))):
+        if not np.all(off <= allowed * max(largest, least_force(scene))):
             t = response.load_parameter[np.argmax(np.nan_to_num(off, nan=np.inf))]
             yield f"the material force of {beam} is not that of its reactions at load parameter {t:.6g}"
 

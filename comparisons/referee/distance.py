@@ -7,26 +7,22 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.faces import face_slope, touching_distance
-from comparisons.referee.loads import dead_loads
+from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
 from comparisons.referee.start import SHORTEST, AnswerState
 from comparisons.referee.state import Equilibrium
+from comparisons.response.round_off import (
+    LAST_PLACES,
+    LEAST,
+    RESIDUAL,
+    UNRESOLVED,
+    force_round_off,
+    least_force,
+)
 from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
 Scales = tuple[float, float, float]
 """Largest force, moment and displacement."""
-
-LEAST = 1e-4
-"""Smallest force scale of relative differences, over EI/L^2. Such a force bends a beam by 3e-5 L."""
-LAST_PLACES, UNRESOLVED = 8.0 * float(np.finfo(float).eps), 1e-4
-"""Round-off of a force, over EA, and its bound over the largest force.
-
-A model computes an axial force from a stretch, and positions resolve a stretch to a few units in the last place.
-"""
-
-RESIDUAL = 1e-10
-"""Error of a position over the length at which the models' iterations end."""
 
 COMPARED = ("force", "arc_position", "reaction", "tip", "shape", "displacement")
 """The differences that are held against the allowance, by their names."""
@@ -36,6 +32,7 @@ NONE = 1e-9
 """Difference below which only its bound is told."""
 _POINTS = 401
 """Points of an axis between which the feet of an open contact's node are sought."""
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _SHARPEST = 1.4
 """Largest angle between neighbouring chords in the bound of the chords' error [rad]; beyond it the tangent grows without limit."""
 
@@ -126,33 +123,36 @@ def distance(
     Forces, moments and displacements are relative to the largest at this load parameter, or to `largest` if that is larger.
     """
     axes = {beam.name: exact.shape(beam.name, answer.axes[beam.name][0]).position for beam in scene.beams}
-    ways = [axes[beam.name] - _undeformed(beam, answer.axes[beam.name][0]) for beam in scene.beams]
+    ways = [axes[beam.name] - axis_at_rest(beam, answer.axes[beam.name][0]) for beam in scene.beams]
     scales = (*_forces(scene, exact), max(float(np.hypot(*way.T).max()) for way in ways))
     size, moment, moved = map(max, scales, largest)
-    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH)}
-    largest_contact = max(
-        [LEAST * least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())]
-    )
-    last = LAST_PLACES * max(beam.EA for beam in scene.beams)
     length = max(beam.length for beam in scene.beams)
+    last, last_moment = (
+        force_round_off(scene, size),
+        min(force_round_off(scene, math.inf) * length, UNRESOLVED * moment),
+    )
+    found: dict[str, dict[str, float]] = {name: {} for name in (*COMPARED, *ROUGH)}
+    largest_contact = largest_force(scene, exact)
     for spec in scene.contacts:
         pair, own = spec.pair, scene.beam(spec.beam).length
         contact = exact.contacts.get(pair)
         if contact is not None:
             off = float(np.hypot(*(contact.force - answer.forces[pair])))
-            found["force"][pair] = _beyond(off, largest_contact, last)
+            found["force"][pair] = _beyond(off, largest_contact, force_round_off(scene, largest_contact))
             found["arc_position"][pair] = abs(contact.arc_position - answer.arcs[pair]) / own
         if pair in answer.gaps:
             found["gap"][pair] = gap_off(scene, exact, spec, answer.gaps[pair]) / own
     found["reaction"] = dict.fromkeys(answer.reactions.keys() - exact.reactions.keys(), math.inf)
     held = [(end, total, answer.reactions.get(end)) for end, total in exact.reactions.items()]
-    for end, total, stated in (*held, *_springs(scene, answer, exact)):
+    for spring in scene.springs:
+        if spring.node in answer.springs:
+            way = np.array(spring.stiffness) * (exact.ends[spring.node] - np.array(scene.place(spring.node)))
+            total = -np.append(way, spring.rotation * exact.joint_rotation(spring.node))
+            held.append((f"the spring at {spring.node}", total, answer.springs[spring.node]))
+    for end, total, stated in held:
         x, y, turn = total - np.array(stated or (math.nan,) * 3)
         found["reaction"][f"force of {end}"] = _beyond(float(np.hypot(x, y)), size, last)
-        found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last * length)
-    places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
-    soft = max(beam.length**3 / beam.EI for beam in scene.beams)
-    floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + min(last, UNRESOLVED * size) * soft
+        found["reaction"][f"moment of {end}"] = _beyond(abs(float(turn)), moment, last_moment)
     apart: dict[str, float] = {}
     for beam in scene.beams:
         there = exact.ends[f"{beam.name}.{scene.tip(beam.name)}"]
@@ -161,15 +161,17 @@ def distance(
         found["tip"][beam.name], found["shape"][beam.name] = tip / beam.length, axis / beam.length
         apart[beam.name] = max(_size(tip), _size(axis))
         for name, off in _section_differences(scene, answer, exact, beam):
-            found["sections"][f"{name} of {beam.name}"] = _beyond(
-                off, moment if name == "M" else size, last * (length if name == "M" else 1.0)
-            )
+            of = (moment, last_moment) if name == "M" else (size, last)
+            found["sections"][f"{name} of {beam.name}"] = _beyond(off, *of)
     found["place"] = _misplaced(scene, answer)
     touched = {spec.pair: spec.beam for spec in scene.contacts}
     off_by = {
         name: off * scene.beam(touched.get(name, name.split(".")[0])).length
         for name, off in found["place"].items()
     }
+    places = [np.abs(place) for beam in scene.beams for place in (beam.start, beam.end)]
+    soft = max(beam.length**3 / beam.EI for beam in scene.beams)
+    floor = RESIDUAL * length + LAST_PLACES * float(np.max(places)) + last * soft
     for relative, lengths in (("displacement", apart), ("constraint", off_by)):
         found[relative] = {
             name: 0.0 if off <= floor else _size(off / moved) if moved else math.inf
@@ -180,30 +182,13 @@ def distance(
     return Distance(**sizes, where=where, scales=scales)
 
 
-def _springs(
-    scene: Scene, answer: AnswerState, exact: Equilibrium
-) -> Iterator[tuple[str, Array, tuple[float, float, float]]]:
-    """Yield names of the springs that the answer states, and their exact and stated forces and moments."""
-    for spring in scene.springs:
-        if spring.node in answer.springs:
-            moved = exact.ends[spring.node] - np.array(scene.place(spring.node))
-            turn = spring.rotation * exact.joint_rotation(spring.node)
-            total = -np.append(np.array(spring.stiffness) * moved, turn)
-            yield f"the spring at {spring.node}", total, answer.springs[spring.node]
-
-
 def gap_off(scene: Scene, exact: Equilibrium, spec: ContactSpec, gap: float) -> float:
     """Difference of a stated gap from the exact one; an open pair may be stated at any foot of its node, or at none."""
     if spec.pair in exact.contacts:
         return _size(abs(gap))
     arcs = np.linspace(0.0, scene.beam(spec.beam).length, _POINTS)
     there = exact.shape(spec.beam, arcs)
-    node = (
-        exact.ends[spec.node]
-        if "." in spec.node
-        else np.array(scene.pin(spec.node).position(exact.load_parameter))
-    )
-    away = node - there.position
+    away = exact.place(spec.node) - there.position
     ahead = np.einsum("mi,mi->m", away, there.tangent)
     feet = np.flatnonzero((ahead[:-1] >= 0.0) & (ahead[1:] <= 0.0))
     across = (there.tangent[:, 0] * away[:, 1] - there.tangent[:, 1] * away[:, 0]) / np.hypot(
@@ -229,8 +214,8 @@ def _section_differences(
         return
     arc, *stated = answer.sections[beam.name]
     near = answer.local * beam.rectangle_height + SHORTEST * beam.length
-    loads = [load for load in dead_loads(scene, answer.load_parameter) if load.beam == beam.name]
-    jumps = [(load.first * beam.length,) * 2 for load in loads if load.first == load.last and not load.node]
+    loads = [item.load.at for item in scene.load_histories if item.load.beam == beam.name]
+    jumps = [(at * beam.length,) * 2 for at in loads if at is not None]
     jumps += [
         (exact.contacts[spec.pair].arc_position, answer.arcs[spec.pair])
         for spec in scene.contacts
@@ -254,40 +239,40 @@ def _section_differences(
 
 
 def _beyond(off: float, size: float, last: float) -> float:
-    """Relative difference `off / size`; zero if it is at most the round-off `last` and `UNRESOLVED` of the size."""
-    return 0.0 if off <= min(last, UNRESOLVED * size) else _size(off / size)
+    """Relative difference `off / size`; zero if it is at most the round-off `last`."""
+    return 0.0 if off <= last else _size(off / size)
 
 
-def bending_force(beam: BeamSpec) -> float:
-    """EI/L^2 of a beam."""
-    return beam.EI / beam.length**2
-
-
-def least_force(scene: Scene) -> float:
-    """Smallest EI/L^2 of the beams."""
-    return min(map(bending_force, scene.beams))
+def largest_force(scene: Scene, exact: Equilibrium) -> float:
+    """Return the largest contact force, at least the force below which nothing acts."""
+    return max([least_force(scene), *(float(np.hypot(*item.force)) for item in exact.contacts.values())])
 
 
 def _forces(scene: Scene, exact: Equilibrium) -> tuple[float, float]:
     """Return the largest force and the largest moment; without a considerable moment the force times the longest beam."""
-    t = exact.load_parameter
-    acting = list(dead_loads(scene, t))
-    forces = [float(np.hypot(*item.force)) for item in exact.contacts.values()]
-    forces += [float(np.hypot(*held[:2])) for held in exact.reactions.values()]
-    forces += [math.hypot(*load.force) for load in acting]
-    moments = [abs(float(held[2])) for held in exact.reactions.values()]
-    moments += [abs(load.moment) for load in acting]
+    acting = np.array([*exact.reactions.values(), *_loads(scene, exact.load_parameter)]).reshape(-1, 3)
+    moments = np.abs(acting[:, 2]).tolist()
     length = max(beam.length for beam in scene.beams)
-    size = max(LEAST * least_force(scene), *forces, *(value / length for value in moments), 0.0)
+    forces = [*np.hypot(*acting[:, :2].T).tolist(), *(moment / length for moment in moments)]
+    size = max(largest_force(scene, exact), *forces)
     considerable = max(moments, default=0.0) > 1e-3 * size * length
     return size, max(size * length * LEAST, *moments) if considerable else size * length
 
 
-def _undeformed(beam: BeamSpec, arcs: Array) -> Array:
-    """Undeformed positions of points of a beam's axis."""
-    if beam.turn:
-        return np.array([beam.place(part) for part in (arcs / beam.length).tolist()])
-    return np.asarray(np.array(beam.start) + np.outer(arcs, beam.direction))
+def _loads(scene: Scene, t: float) -> Iterator[tuple[float, float, float]]:
+    """Yield the forces and moments of the dead loads at load parameter t, and the weights of the beams."""
+    for item in scene.load_histories:
+        along, (first, last) = item.load.force_per_length is not None, item.load.span
+        x, y, moment = item.at(t)
+        span = (last - first) * scene.beam(item.load.beam).length if along else 1.0
+        yield x * span, y * span, 0.0 if along else moment
+    gravity = scene.gravity_at(t)
+    for beam in scene.beams:
+        if beam.density is not None and any(gravity):
+            mass = sum(
+                w * beam.mass_per_length((1.0 + x) / 2.0) for x, w in zip(_PLACES, _WEIGHTS, strict=True)
+            )
+            yield gravity[0] * mass * beam.length / 2.0, gravity[1] * mass * beam.length / 2.0, 0.0
 
 
 def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
@@ -299,13 +284,15 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         beam = scene.beam(spec.beam)
         arcs, line = answer.axes[spec.beam]
         place, cut = _on_axis(arcs, line, answer.arcs[spec.pair])
-        apart = float(np.hypot(*(place - node_place(scene, answer, spec.node))))
+        pin = "." not in spec.node
+        node = scene.pin(spec.node).position(answer.load_parameter) if pin else answer.end(spec.node)
+        apart = float(np.hypot(*(place - node)))
         distances[spec.pair] = (
             max(0.0, abs(apart - touching_distance(scene, spec, answer.arcs[spec.pair])) - cut) / beam.length
         )
     for support in scene.all_supports:
         here = np.array(scene.place(support.node))
-        way = (_end(answer, support.node) - here).tolist()
+        way = (answer.end(support.node) - here).tolist()
         off = [
             abs(x - motion) / scene.beam(support.beam).length
             for x, motion in zip(
@@ -316,19 +303,6 @@ def _misplaced(scene: Scene, answer: AnswerState) -> dict[str, float]:
         if off:
             distances[support.node] = max(map(_size, off))
     return distances
-
-
-def node_place(scene: Scene, answer: AnswerState, node: str) -> Array:
-    """Position of a contact's node, which is a pin or the end of a beam's axis in the answer."""
-    if "." in node:
-        return _end(answer, node)
-    return np.array(scene.pin(node).position(answer.load_parameter))
-
-
-def _end(answer: AnswerState, node: str) -> Array:
-    """Position of a beam's end in the answer."""
-    beam, end = node.split(".")
-    return np.asarray(answer.axes[beam][1][0 if end == "start" else -1])
 
 
 def _on_axis(arcs: Array, line: Array, arc: float) -> tuple[Array, float]:

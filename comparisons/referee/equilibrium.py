@@ -1,20 +1,20 @@
 """The search for the exact equilibrium of a scene's rods near an answer."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import AMPLITUDE, DEGREE, GAUSS, VALUES, shapes
-from comparisons.referee.elements import Mesh, mesh_of, properties, rotations
+from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
 from comparisons.referee.equations import System, assemble
-from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.start import SHORTEST, AnswerState, Rotations, first_guess
+from comparisons.referee.layout import Layout
+from comparisons.referee.numbering import lay_out
+from comparisons.referee.start import SHORTEST, AnswerState, first_guess
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 _RESOLVED = 3e-14
 """Largest amplitude of the last two bubbles of a resolved element [rad]."""
@@ -32,9 +32,15 @@ _LAST_PLACES = 10.0 * float(np.finfo(float).eps)
 _AT_ONE_PLACE = "two contacts on a beam, or a contact and an end, come to one place"
 DENSE = 300
 """Number of unknowns up to which matrices are solved as full ones."""
-_NONE = np.zeros(0, dtype=np.int64)
 _MOST_ELEMENTS = 400
 """Largest number of elements of a part."""
+_FIT = np.asarray(np.linalg.pinv(VALUES[:, 2:]), dtype=np.float64)
+_FIT_LOW = np.zeros_like(_FIT)
+_FIT_LOW[:4] = np.linalg.pinv(VALUES[:, 2:6])
+"""From values at the Gauss points to all bubbles, and to the lowest ones, since an answer's rotations are inaccurate."""
+_INSIDE = 1.0 - 1e-9
+"""Fraction of a part up to which points lie before its end."""
+_PLACES = np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
 
 
 class SearchStatus(Enum):
@@ -48,38 +54,27 @@ class SearchStatus(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solution:
-    """Result of Newton's method in the units of `Layout`.
+    """Result of Newton's method in the units of `layout`, with the last equations and the last correction over the unknowns; or a guess."""
 
-    Attributes
-    ----------
-    status : SearchStatus
-        Outcome of the search.
-    reason : str
-        Reason of a search without success.
-    layout, mesh
-        Layout and mesh of the unknowns.
-    z, bubbles : ndarray
-        Unknowns of layout and mesh, and coefficients of the bubbles (e, p - 1).
-    system : System
-        The last equations.
-    iterations : int
-        Total number of Newton iterations.
-    correction : float
-        The last correction relative to the unknowns.
-    tail : float
-        Largest amplitude of the last two bubbles of an element.
-    """
-
-    status: SearchStatus
-    reason: str
     layout: Layout
     mesh: Mesh
     z: Array
     bubbles: Array
-    system: System | None = field(repr=False)
-    iterations: int
-    correction: float
-    tail: float
+    """Coefficients (e, p - 1) of the bubbles."""
+    status: SearchStatus = SearchStatus.NO_EQUILIBRIUM
+    reason: str = ""
+    """Reason of a search without success."""
+    system: System | None = field(default=None, repr=False)
+    iterations: int = 0
+    correction: float = np.inf
+
+
+def rotation_at(solution: Solution, part: Ints, x: Array) -> Array:
+    """Return the rotations at fractions x (...) of the parts `part` (...)."""
+    mesh, inside = solution.mesh, np.minimum(x, _INSIDE)
+    e = np.searchsorted(mesh.part + mesh.start, part + inside, side="right") - 1
+    values = shapes(2.0 * (x - mesh.start[e]) / mesh.share[e] - 1.0)[0]
+    return np.asarray((values * rotations(mesh, solution.z, solution.bubbles)[e]).sum(axis=-1))
 
 
 def solve(scene: Scene, answer: AnswerState) -> Solution:
@@ -88,98 +83,76 @@ def solve(scene: Scene, answer: AnswerState) -> Solution:
     z, turns = first_guess(layout, answer)
     reason = _reason_not_to_judge(layout, z)
     if reason:
-        mesh = mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts])
-        return Solution(
-            status=SearchStatus.NOT_JUDGED,
-            reason=reason,
-            layout=layout,
-            mesh=mesh,
-            z=z,
-            bubbles=np.zeros((0, DEGREE - 1)),
-            system=None,
-            iterations=0,
-            correction=np.inf,
-            tail=np.inf,
+        mesh, bubbles = (
+            mesh_of(layout, [np.array([0.0, 1.0]) for _ in layout.parts]),
+            np.zeros((0, DEGREE - 1)),
         )
+        status = SearchStatus.NOT_JUDGED
+        return Solution(layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason)
     mesh = mesh_of(layout, _first_grids(layout, z))
-    start = _fitted(layout, mesh, z, turns)
-    best = correct(layout, mesh, *start, _ITERATIONS)
-    arcs, forces = _stated(layout)
-    for held in (arcs, np.union1d(arcs, forces)):
-        if _is_near(layout, z, best):
+    places, ends = _places(mesh), zip(layout.extents(z), layout.parts, strict=True)
+    seen = [
+        turns[part.beam].angle(a + (b - a) * places[mesh.part == k]) for k, ((a, b), part) in enumerate(ends)
+    ]
+    start = _fitted(layout, mesh, z, np.concatenate(seen), _FIT_LOW)
+    best = correct(start, _ITERATIONS)
+    # arc positions of contacts and forces of parts are more accurate in an answer than rotations
+    for held in (layout.arcs, np.union1d(layout.arcs, layout.forces)):
+        if _is_near(z, best):
             break
-        other = correct(layout, mesh, *_rotations_corrected(layout, mesh, *start, held), _ITERATIONS)
-        if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(layout, z, other):
+        other = correct(_rotations_corrected(start, held), _ITERATIONS)
+        if best.status is SearchStatus.NO_EQUILIBRIUM or _is_near(z, other):
             best = other
     return best
 
 
-def _stated(layout: Layout) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Unknowns that are more accurate in an answer than rotations: arc positions of contacts, and forces of parts."""
-    arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
-    return arcs, np.unique([k for part in layout.parts for k in (part.force, part.force + 1)])
-
-
-def _is_near(layout: Layout, z: Array, solution: Solution) -> bool:
+def _is_near(z: Array, solution: Solution) -> bool:
     """Whether an equilibrium was found with nearly the forces and arc positions of the answer."""
-    arcs, forces = _stated(layout)
+    arcs, forces = solution.layout.arcs, solution.layout.forces
     size = float(np.abs(z[forces]).max(initial=0.0))
     apart = np.abs(solution.z[: len(z)] - z)
     close = apart[forces].max(initial=0.0) <= _NEAR * size and apart[arcs].max(initial=0.0) <= _NEAR
     return solution.status is SearchStatus.FOUND and bool(close)
 
 
-def correct(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> Solution:
-    """Return the equilibrium near given unknowns; elements that do not resolve the rotation are halved.
+def correct(guess: Solution, iterations: int) -> Solution:
+    """Return the equilibrium near a guess; elements that do not resolve the rotation are halved.
 
     At most `iterations` Newton iterations are made on each mesh.
     """
-    spent, reason = 0, ""
+    spent, layout = 0, guess.layout
     for _ in range(_ROUNDS):
-        newton = _newton(layout, mesh, z, bubbles, iterations)
-        spent += newton.iterations
-        tails = _tails(newton.bubbles)
-        coarse = tails > _RESOLVED
-        grids = _refined(mesh, coarse)
-        done = not newton.converged or not coarse.any()
-        if done or max(map(len, grids)) > _MOST_ELEMENTS:
+        found = _newton(guess, iterations)
+        spent += found.iterations
+        coarse = tails(found.bubbles) > _RESOLVED
+        if found.status is not SearchStatus.FOUND or not coarse.any():
+            return replace(found, iterations=spent)
+        grids = _refined(found.mesh, coarse)
+        if max(map(len, grids)) > _MOST_ELEMENTS:
             break
-        z, bubbles, mesh = _transferred(layout, mesh, newton.z, newton.bubbles, grids)
-    status = SearchStatus.NOT_RESOLVED if newton.converged and not done else SearchStatus.FOUND
-    status, reason = (status, "") if newton.converged else (SearchStatus.NO_EQUILIBRIUM, newton.reason)
-    return Solution(
-        status=status,
-        reason=reason,
-        layout=layout,
-        mesh=mesh,
-        z=newton.z,
-        bubbles=newton.bubbles,
-        system=newton.system,
-        iterations=spent,
-        correction=newton.correction,
-        tail=float(tails.max()),
-    )
+        finer = mesh_of(layout, grids)
+        seen = rotation_at(found, finer.part[:, None], _places(finer))
+        guess = _fitted(layout, finer, found.z[: layout.unknowns], seen, _FIT)
+    return replace(found, status=SearchStatus.NOT_RESOLVED, iterations=spent)
 
 
-def _rotations_corrected(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, held: NDArray[np.int64]
-) -> tuple[Array, Array]:
+def _rotations_corrected(guess: Solution, held: Ints) -> Solution:
     """Correct the rotations while the unknowns `held` keep the values of the answer.
 
     Otherwise the first correction of inaccurate rotations could move a contact beyond an end. With a tension near GA EA/(EA - GA)
     the rotations are so sensitive that the first correction could lead to another equilibrium.
     """
-    rods = properties(layout, mesh)
     for _ in range(_HOLDING):
-        system = assemble(layout, mesh, rods, z, bubbles)
+        system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
         change = _step(system, held)
         if change is None:
             break
-        inside = _inside(system, change)
-        turn = max(float(np.abs(change[layout.unknowns :]).max(initial=0.0)), float(np.abs(inside).max()))
+        inside = _inside(system, guess.mesh, change)
+        turns = change[guess.layout.unknowns :]
+        turn = max(float(np.abs(turns).max(initial=0.0)), float(np.abs(inside).max()))
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300))
-        z, bubbles = z + part * change, bubbles + part * inside
-    return z, bubbles
+        guess = replace(guess, z=guess.z + part * change, bubbles=guess.bubbles + part * inside)
+    return guess
 
 
 def _reason_not_to_judge(layout: Layout, z: Array) -> str:
@@ -190,7 +163,7 @@ def _reason_not_to_judge(layout: Layout, z: Array) -> str:
     if max(stiffness) > _STIFFNESS_RATIO * min(stiffness):
         return f"the stiffest beam is {max(stiffness) / min(stiffness):.1g} times as stiff as the most flexible one"
     for part in layout.parts:
-        if layout.extent(z, part) <= SHORTEST:
+        if part.extent(z) <= SHORTEST:
             beam = layout.scene.beams[part.beam].name
             return (
                 f'two contacts on beam "{beam}", or a contact and an end, are at one place or beyond the end'
@@ -202,109 +175,93 @@ def _first_grids(layout: Layout, z: Array) -> list[Array]:
     """About one element for 1.5 of the length sqrt(EI/n) over which the deflection varies, at most 50."""
     grids = []
     for part in layout.parts:
-        n = float(np.hypot(*z[part.force : part.force + 2]))
+        n = float(np.hypot(*part.constant(z)))
         EI, stretch, shear = part.rod.greatest
         rate = np.sqrt(n * (1.0 + n * abs(stretch - shear)) / EI)
-        count = int(np.clip(np.ceil(layout.extent(z, part) * rate / 1.5), 1, 50))
+        count = int(np.clip(np.ceil(part.extent(z) * rate / 1.5), 1, 50))
         grids.append(np.linspace(0.0, 1.0, count + 1))
     return grids
 
 
-def _fitted(layout: Layout, mesh: Mesh, z: Array, turns: list[Rotations]) -> tuple[Array, Array]:
-    """Return the unknowns and bubbles of the first guess; only the lowest bubbles, since an answer's rotations are inaccurate."""
-    whole = np.concatenate([z, np.zeros(mesh.unknowns - len(z))])
-    bubbles = np.zeros((len(mesh.part), DEGREE - 1))
-    for e, number in enumerate(mesh.part):
-        part = layout.parts[number]
-        first, extent = layout.arc(z, part.first, part), layout.extent(z, part)
-        start, size = first + mesh.start[e] * extent, mesh.share[e] * extent
-        if mesh.vertices[mesh.first[e]] >= len(z):
-            whole[mesh.vertices[mesh.first[e]]] = turns[part.beam].angle(start)
-        ends = [turns[part.beam].angle(start), turns[part.beam].angle(start + size)]
-        there = turns[part.beam].angle(start + size * (GAUSS + 1.0) / 2.0)
-        bubbles[e, :4] = _LOW @ (there - VALUES[:, :2] @ ends)
-    return whole, bubbles
+def _places(mesh: Mesh) -> Array:
+    """Fractions (e, g + 2) of the parts at the Gauss points and the ends of the elements."""
+    return np.asarray(mesh.start[:, None] + mesh.share[:, None] * _PLACES)
 
 
-_LOW = np.linalg.pinv(VALUES[:, 2:6])
+def _fitted(layout: Layout, mesh: Mesh, z: Array, rotation: Array, fit: Array) -> Solution:
+    """Return the guess with rotations at `_places`; z are the unknowns without the rotations inside the parts."""
+    whole, at = np.append(z, np.zeros(mesh.unknowns - len(z))), mesh.vertices[mesh.first]
+    whole[at[at >= len(z)]] = rotation[at >= len(z), -2]
+    bubbles: Array = (rotation[:, :-2] - rotation[:, -2:] @ VALUES[:, :2].T) @ fit.T
+    return Solution(layout=layout, mesh=mesh, z=whole, bubbles=bubbles)
 
 
-class _Newton(NamedTuple):
-    z: Array
-    bubbles: Array
-    system: System | None
-    converged: bool
-    reason: str
-    iterations: int
-    correction: float
-
-
-def _newton(layout: Layout, mesh: Mesh, z: Array, bubbles: Array, iterations: int) -> _Newton:
+def _newton(guess: Solution, iterations: int) -> Solution:
     """Iterate until the corrections are round-off."""
-    rods, last, size, error = properties(layout, mesh), np.inf, np.inf, np.inf
+    layout, mesh, z, bubbles = guess.layout, guess.mesh, guess.z, guess.bubbles
+    last, size, error = np.inf, np.inf, np.inf
     most = [part.rod.greatest for part in layout.parts]
     least = _LAST_PLACES / (_ROUND_OFF * min(min(stretch, shear or np.inf) for _, stretch, shear in most))
-    arcs = np.array([touch.arc for touch in layout.touches], dtype=np.int64)
-    forces = np.array([k for part in layout.parts for k in (part.force, part.force + 1)])
-    turning = np.ones(mesh.unknowns, dtype=bool)
-    for k in [*arcs, *forces, *(k for item in layout.stations for k in item.place.unknown if k >= 0)]:
-        turning[k] = False
-    reason = SearchStatus.NO_EQUILIBRIUM.value
-    for iteration in range(1, iterations + 1):
-        if min(layout.extent(z, item) for item in layout.parts) <= 0.0:
-            return _Newton(z, bubbles, None, False, _AT_ONE_PLACE, iteration, np.inf)
-        system = assemble(layout, mesh, rods, z, bubbles)
+    forces, turning, moving = layout.forces, np.ones(mesh.unknowns, bool), np.zeros(mesh.unknowns, bool)
+    moving[layout.arcs] = True
+    moving[[k for item in layout.stations for k in item.place.unknown if k >= 0]] = True
+    turning[forces] = turning[moving] = False
+    status, reason, system = SearchStatus.NO_EQUILIBRIUM, SearchStatus.NO_EQUILIBRIUM.value, None
+    for iteration in range(1, iterations + 1):  # noqa: B007, the number of the last one is told
+        system, error = None, np.inf
+        if np.diff(layout.extents(z)).min() <= 0.0:
+            reason = _AT_ONE_PLACE
+            break
+        system = assemble(layout, mesh, z, bubbles)
         change = _step(system)
         if change is None:
-            return _Newton(z, bubbles, system, False, "the equations are singular", iteration, np.inf)
-        inside = _inside(system, change)
+            reason = "the equations are singular"
+            break
+        inside = _inside(system, mesh, change)
         turn = max(float(np.abs(change[turning]).max(initial=0.0)), float((np.abs(inside) * AMPLITUDE).max()))
-        moved = float(np.abs(change[~turning & ~np.isin(np.arange(mesh.unknowns), forces)]).max(initial=0.0))
-        scale = float(np.abs(z[forces]).max()) + 1e-6
-        forced = float(np.abs(change[forces]).max())
+        moved = float(np.abs(change[moving]).max(initial=0.0))
+        scale, forced = float(np.abs(z[forces]).max()) + 1e-6, float(np.abs(change[forces]).max())
         size, error = max(turn, moved, forced / (scale + least)), max(turn, moved, forced / scale)
         part = min(1.0, _LARGEST_ROTATION / max(turn, 1e-300), _damping(layout, z, change))
         z, bubbles = z + part * change, bubbles + part * inside
         if not np.isfinite(size):
-            return _Newton(z, bubbles, system, False, reason, iteration, error)
+            break
         if part == 1.0 and (size < 1e-15 or (size < _ROUND_OFF and size >= 0.25 * last)):
-            return _Newton(z, bubbles, assemble(layout, mesh, rods, z, bubbles), True, "", iteration, error)
+            status, reason, system = SearchStatus.FOUND, "", assemble(layout, mesh, z, bubbles)
+            break
         last = size if part == 1.0 else np.inf
-    return _Newton(z, bubbles, system, False, reason, iterations, error)
+    return Solution(
+        layout=layout, mesh=mesh, z=z, bubbles=bubbles, status=status, reason=reason, system=system,
+        iterations=iteration, correction=error,
+    )  # fmt: skip
 
 
-def newton_step(layout: Layout, mesh: Mesh, z: Array, bubbles: Array) -> tuple[Array, Array]:
+def newton_step(guess: Solution) -> tuple[Array, Array]:
     """Return the first Newton correction; zero if the equations are singular."""
-    system = assemble(layout, mesh, properties(layout, mesh), z, bubbles)
+    system = assemble(guess.layout, guess.mesh, guess.z, guess.bubbles)
     change = _step(system)
-    return (np.zeros_like(z), np.zeros_like(bubbles)) if change is None else (change, _inside(system, change))
+    if change is None:
+        return np.zeros_like(guess.z), np.zeros_like(guess.bubbles)
+    return change, _inside(system, guess.mesh, change)
 
 
-def _inside(system: System, change: Array) -> Array:
+def _inside(system: System, mesh: Mesh, change: Array) -> Array:
     """Change of the bubbles that belongs to a change of the other unknowns."""
-    return np.asarray(
-        -(system.shift + np.einsum("eij,ej->ei", system.lever, _element_changes(system, change)))
-    )
+    moved = np.append(change, 0.0)[mesh.local]
+    return np.asarray(-(system.shift + np.einsum("eij,ej->ei", system.lever, moved)))
 
 
-def _element_changes(system: System, change: Array) -> Array:
-    """Changes (e, 5 or 6) of the unknowns of every element."""
-    local = system.sign * np.append(change, 0.0)[system.local]
-    return np.column_stack([local[:, :4], local[:, 4] + local[:, 5], local[:, 6:]])
-
-
-def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:
+def _step(system: System, held: Ints | None = None) -> Array | None:
     """Newton correction with the unknowns `held` fixed; None if singular.
 
     Rows and columns are scaled, since EI, EA and forces differ by orders of magnitude.
     """
     hessian, gradient = system.hessian, system.gradient
-    if len(held):
+    if held is not None and len(held):
         hessian, gradient = hessian.copy(), gradient.copy()
         hessian[held], hessian[:, held], gradient[held] = 0.0, 0.0, 0.0
         hessian[held, held] = 1.0
-    row, column = np.nonzero(hessian)
-    entry = hessian[row, column]
+    row, column, entry = entries(hessian)
     if not np.all(np.isfinite(entry)) or len(np.unique(row)) < len(hessian):
         return None
     scale = scales(row, column, entry)
@@ -321,7 +278,14 @@ def _step(system: System, held: NDArray[np.int64] = _NONE) -> Array | None:
         return None
 
 
-def scales(row: NDArray[np.int64], column: NDArray[np.int64], entry: Array) -> Array:
+def entries(matrix: Array) -> tuple[Ints, Ints, Array]:
+    """Return rows, columns and values of the entries that are not zero."""
+    # faster than `nonzero` of the matrix itself, which has few such entries
+    number = np.flatnonzero(matrix != 0.0)
+    return *np.divmod(number, len(matrix)), matrix.ravel()[number]
+
+
+def scales(row: Ints, column: Ints, entry: Array) -> Array:
     """Return factors of rows and columns with which the largest entry of every row is about one."""
     scale, size = np.ones(int(row[-1]) + 1), np.abs(entry)
     for _ in range(3):
@@ -333,16 +297,12 @@ def scales(row: NDArray[np.int64], column: NDArray[np.int64], entry: Array) -> A
 
 def _damping(layout: Layout, z: Array, change: Array) -> float:
     """Largest fraction of a change that leaves a third of the length of every part."""
-    part = 1.0
-    for item in layout.parts:
-        before = layout.extent(z, item)
-        less = before - layout.extent(z + change, item)
-        if less > 2.0 / 3.0 * before:
-            part = min(part, 2.0 / 3.0 * before / less)
-    return part
+    before = np.diff(layout.extents(z))
+    less = before - np.diff(layout.extents(z + change))
+    return float(np.min(2.0 / 3.0 * before / np.maximum(less, 2.0 / 3.0 * before)))
 
 
-def _tails(bubbles: Array) -> Array:
+def tails(bubbles: Array) -> Array:
     """Largest amplitude of the last two bubbles of every element."""
     return np.asarray((np.abs(bubbles) * AMPLITUDE)[:, -2:].max(axis=1))
 
@@ -355,32 +315,3 @@ def _refined(mesh: Mesh, coarse: NDArray[np.bool_]) -> list[Array]:
         start, share, split = mesh.start[inside], mesh.share[inside], coarse[inside]
         grids.append(np.sort(np.concatenate([start, (start + share / 2.0)[split], [1.0]])))
     return grids
-
-
-def _transferred(
-    layout: Layout, mesh: Mesh, z: Array, bubbles: Array, grids: list[Array]
-) -> tuple[Array, Array, Mesh]:
-    """Return the unknowns of the same rotations on halved elements."""
-    finer = mesh_of(layout, grids)
-    whole = np.concatenate([z[: layout.unknowns], np.zeros(finer.unknowns - layout.unknowns)])
-    coefficients = rotations(mesh, z, bubbles)
-    inside = np.zeros((len(finer.part), DEGREE - 1))
-    for e, number in enumerate(finer.part):
-        elements = np.flatnonzero(mesh.part == number)
-        middle = finer.start[e] + finer.share[e] / 2.0
-        old = elements[np.searchsorted(mesh.start[elements], middle, side="right") - 1]
-        if finer.start[e] == mesh.start[old] and finer.share[e] == mesh.share[old]:
-            inside[e] = bubbles[old]
-            ends = coefficients[old, :2]
-        else:
-            points = finer.start[e] + finer.share[e] * np.append((GAUSS + 1.0) / 2.0, [0.0, 1.0])
-            xi = 2.0 * (points - mesh.start[old]) / mesh.share[old] - 1.0
-            there = shapes(xi)[0] @ coefficients[old]
-            ends = there[-2:]
-            inside[e] = _ALL @ (there[:-2] - VALUES[:, :2] @ ends)
-        if finer.vertices[finer.first[e]] >= layout.unknowns:
-            whole[finer.vertices[finer.first[e]]] = ends[0]
-    return whole, inside, finer
-
-
-_ALL = np.linalg.pinv(VALUES[:, 2:])

@@ -1,22 +1,28 @@
-"""The verdict on an answer at one load parameter."""
+"""The verdict on an answer at one load parameter: its differences from the exact equilibrium, and whether that is admissible and stable."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from comparisons.referee.admissible import inadmissible
 from comparisons.referee.certificate import Judgement, Verdict
-from comparisons.referee.distance import Distance, Scales, bending_force, distance
+from comparisons.referee.distance import Distance, Scales, distance
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.history import History, UnknownFrictionError
-from comparisons.referee.march import closed_pairs, reach
-from comparisons.referee.rubbing import rubs_wrongly, unlawful, wanders
-from comparisons.referee.start import PULL, AnswerState, answer_state, idle_at_an_end
+from comparisons.referee.grip import UnknownFrictionError
+from comparisons.referee.path import closed_pairs, reach
+from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.start import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
+
+if TYPE_CHECKING:
+    from comparisons.referee.friction import History
+
+Array = NDArray[np.float64]
 
 PLACE = 1e-3
 """Largest violation of constraints by an answer's axis, over the length; a larger one means another load parameter."""
@@ -28,6 +34,12 @@ LOCAL = 1.5
 """Distance from contacts, loads and ends, over the height, within which the section forces of a solid are not compared."""
 LAST_PLACES = 1e-9
 """Largest relative difference between the size of a contact force and the norm of its components."""
+INSIDE = 1e-9
+"""Largest accepted penetration over the beam's length, for the round-off of the models' contacts."""
+_POINTS = 201
+"""Points of an axis between which the least gaps are sought."""
+_BESIDE = 1e-12
+"""Relative distance of two arc positions on either side of a contact."""
 
 
 def judged(
@@ -36,25 +48,14 @@ def judged(
     k: int,
     allowed: float,
     *,
-    history: History | None = None,
-    exact: Equilibrium | None = None,
-    near: Solution | None = None,
+    history: "History | None" = None,
+    given: Equilibrium | Solution | None = None,
     largest: Scales = (0.0, 0.0, 0.0),
 ) -> Judgement:
     """Judge one load parameter.
 
-    Parameters
-    ----------
-    response, scene, k, allowed
-        The answer, its scene, the number of the load parameter, and the largest difference allowed.
-    history : History, optional
-        The states of friction in the answer; None for a scene without friction.
-    exact : Equilibrium, optional
-        The exact equilibrium near the answer, if it is known.
-    near : Solution, optional
-        An exact equilibrium at the load parameter before, from which the one here is sought first.
-    largest : (float, float, float)
-        Largest force, moment and displacement of other load parameters; differences are relative to these where they are larger.
+    The equilibrium near the answer may be `given`, or the solution at the load parameter before, from which it is sought first.
+    Differences are relative to the largest force, moment and displacement, here or those of other load parameters in `largest`.
     """
     t = float(response.load_parameter[k])
     contradiction = next(impossible(response, scene, k), "") or next(_not_finite(response, scene, k), "")
@@ -62,6 +63,8 @@ def judged(
         return Judgement(load_parameter=t, verdict=Verdict.NOT_AN_EQUILIBRIUM, reason=contradiction)
     answer = answer_state(response, scene, k)
     if history is not None:
+        from comparisons.referee.friction import rubs_wrongly, unlawful, wanders
+
         misstated = next(unlawful(response, scene, k, allowed), "") or next(wanders(history, k, allowed), "")
         if misstated:
             return Judgement(load_parameter=t, verdict=Verdict.INADMISSIBLE, reason=misstated)
@@ -70,7 +73,7 @@ def judged(
         except UnknownFrictionError as error:
             verdict = Verdict.INADMISSIBLE if error.wrong else Verdict.NOT_JUDGED
             return Judgement(load_parameter=t, verdict=verdict, reason=str(error))
-    exact, differences = _nearest(response, scene, answer, k, exact or near, min(allowed, CLOSE), largest)
+    exact, differences = _nearest(response, scene, answer, k, given, min(allowed, CLOSE), largest)
     if differences is None:
         not_judged = exact.status in (SearchStatus.NOT_JUDGED, SearchStatus.NOT_RESOLVED)
         verdict = Verdict.NOT_JUDGED if not_judged else Verdict.NOT_AN_EQUILIBRIUM
@@ -138,7 +141,7 @@ def _impossible_contact(contact: ContactHistory, scene: Scene, spec: ContactSpec
     force, arc = float(contact.force[k]), float(contact.arc_position[k])
     if not math.isfinite(force):
         yield f"the force of {spec.pair} is not finite"
-    elif force < -PULL * bending_force(scene.beam(spec.beam)):
+    elif force < -pull_allowed(scene.beam(spec.beam)):
         yield f"the contact force of {spec.pair} pulls"
     elif force != 0.0 and idle_at_an_end(contact, scene, spec, k):
         return
@@ -181,34 +184,110 @@ def _nearest(
 def _complete(
     answer: AnswerState, response: Response, scene: Scene, exact: Equilibrium, k: int
 ) -> AnswerState:
-    """Add all that the answer states, contact forces without direction by the exact direction, and tangential forces not stated."""
-    forces, drags = dict(answer.forces), dict(answer.drags)
+    """Add all that the answer states, and the exact direction of contact forces without direction."""
+    forces = dict(answer.forces)
     for pair, force in answer.forces.items():
-        if pair not in exact.contacts:
-            # open at an end, with a force that is round-off
-            forces[pair] = tuple(np.nan_to_num(force).tolist())
-            drags.setdefault(pair, 0.0)
-            continue
         if math.isnan(force[0]):
-            x, y = exact.contacts[pair].force / max(float(np.hypot(*exact.contacts[pair].force)), 1e-300)
-            size = float(response.contacts[pair].force[k])
+            # a contact that is open at an end has a force that is round-off
+            x, y = exact.contacts[pair].force if pair in exact.contacts else np.zeros(2)
+            size = float(response.contacts[pair].force[k]) / max(math.hypot(x, y), 1e-300)
             forces[pair] = (size * float(x), size * float(y))
-        drags.setdefault(pair, exact.contacts[pair].drag)
     gaps = {pair: float(item.gap[k]) for pair, item in response.contacts.items()}
-    sections = (
+    stated = (
         {}
         if response.sections is None
         else {beam.name: response.sections(beam.name, k) for beam in scene.beams}
     )
+    springs = response.springs.items()
     return replace(
         answer,
         forces=forces,
-        drags=drags,
         gaps={pair: gap for pair, gap in gaps.items() if pair in exact.contacts or math.isfinite(gap)},
-        springs={
-            end: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
-            for end, item in response.springs.items()
-        },
-        sections={name: (at.arc, at.N, at.V, at.M) for name, at in sections.items()},
+        springs={end: (*item.force[k].tolist(), float(item.moment[k])) for end, item in springs},
+        sections={name: (at.arc, at.N, at.V, at.M) for name, at in stated.items()},
         local=LOCAL if response.continuum else 0.0,
     )
+
+
+def inadmissible(scene: Scene, exact: Equilibrium) -> Iterator[str]:
+    """Yield a sentence for every violation of unilateral contact; `friction.rubbing` judges friction."""
+    for spec in scene.contacts:
+        beam = scene.beam(spec.beam)
+        contact = exact.contacts.get(spec.pair)
+        if contact is not None:
+            if contact.push < -pull_allowed(beam):
+                yield f"the contact force of {spec.pair} pulls, {contact.push:.3g}"
+            if not 0.0 <= contact.arc_position <= beam.length:
+                yield f"{spec.pair} is closed beyond the end of its beam"
+        gap, arc = least_gap(scene, exact, spec)
+        if gap < -INSIDE * beam.length:
+            what = "the round pin" if scene.radius(spec) else "the node"
+            yield f"{what} of {spec.pair} is {-gap / beam.length:.2g} L inside the beam at arc position {arc:.4g}"
+        for end, room in _rooms(scene, exact, spec):
+            if room < -INSIDE * beam.length:
+                yield f"the round pin of {spec.pair} overlaps the {end} of the beam by {-room / beam.length:.2g} L"
+
+
+def _rooms(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> Iterator[tuple[str, float]]:
+    """Distance of a round pin beyond an end from the segment across that end, for the ends that no other beam shares."""
+    beam, radius, node = scene.beam(spec.beam), scene.radius(spec), exact.place(spec.node)
+    for end, arc, out in (("start", 0.0, -1.0), ("end", beam.length, 1.0)):
+        half = beam.height_at(arc / beam.length) / 2.0 if spec.surface == "face" else 0.0
+        if any(
+            f"{spec.beam}.{end}" in item.joint and len(item.joint) > 1
+            for item in exact.solution.layout.stations
+        ):
+            continue
+        there = exact.shape(spec.beam, np.array([arc]))
+        (x, y), (tx, ty) = node - there.position[0], out * there.tangent[0] / np.hypot(*there.tangent[0])
+        along, across = x * tx + y * ty, abs(y * tx - x * ty)
+        if along > 0.0:
+            yield end, math.hypot(along, max(across - half, 0.0)) - radius
+
+
+def least_gap(scene: Scene, exact: Equilibrium, spec: ContactSpec) -> tuple[float, float]:
+    """Return the smallest gap of a pair, if it is closed on its side of the beam, and its arc position; infinite without a closest point.
+
+    Gaps are evaluated at the local minima of the distance between node and axis, less the radius of the face's circles. At a contact the axis has a kink of the angle 2 a by
+    shear, and the contact force is normal to the mean of the two directions. Near it, at the distance d, a round pin penetrates the
+    beam by ``a d - (1/offset - curvature) d^2/2``. Only penetration beyond ``a d``, which means line contact, counts.
+    """
+    beam, node = scene.beam(spec.beam), exact.place(spec.node)
+    offset, side = touching_distance(scene, spec, 0.0), 1.0 if spec.side == "left" else -1.0
+    if offset == 0.0:
+        return np.inf, np.nan
+    steep = face_slope(scene, spec)
+    arcs, contact, half = np.linspace(0.0, beam.length, _POINTS), exact.contacts.get(spec.pair), 0.0
+    if contact is not None:
+        arcs = np.sort(np.append(arcs, contact.arc_position))
+        half = _kink(exact, spec.beam, contact.arc_position) / 2.0
+    away = np.hypot(*(exact.shape(spec.beam, arcs).position - node).T) - steep * arcs
+    least = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] <= away[2:])) + 1
+    best, place = np.inf, np.nan
+    for k in least[away[least] < offset + 2.0 * beam.length / _POINTS]:
+        arc = _foot(exact, spec.beam, node, steep, (float(arcs[k - 1]), float(arcs[k + 1])))
+        there = exact.shape(spec.beam, np.array([arc]))
+        (out_x, out_y), (x, y) = node - there.position[0], there.tangent[0]
+        gap = math.hypot(out_x, out_y) - offset - steep * arc
+        if contact is not None:
+            gap += half * abs(arc - contact.arc_position)
+        if (contact is None or side * (x * out_y - y * out_x) > 0.0) and gap < best:
+            best, place = gap, arc
+    return best, place
+
+
+def _kink(exact: Equilibrium, beam: str, arc: float) -> float:
+    """Angle between the directions of the axis before and behind a contact."""
+    a, b = exact.shape(beam, arc * np.array([1.0 - _BESIDE, 1.0 + _BESIDE])).tangent
+    return abs(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
+
+
+def _foot(exact: Equilibrium, beam: str, node: Array, steep: float, between: tuple[float, float]) -> float:
+    """Arc position of the least gap between two arc positions, to 1e-6 of their distance."""
+    low, high = between
+    for _ in range(8):
+        arcs = np.linspace(low, high, 11)
+        away = np.hypot(*(exact.shape(beam, arcs).position - node).T) - steep * arcs
+        k = int(np.argmin(away))
+        low, high = float(arcs[max(k - 1, 0)]), float(arcs[min(k + 1, 10)])
+    return (low + high) / 2.0

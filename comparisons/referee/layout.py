@@ -1,67 +1,72 @@
-"""A scene with a set of closed contacts as rods between stations, and the numbering of the unknowns.
+"""The rods of a scene between stations, with the numbers of the unknowns.
 
 Stations are the contacts, the ends of the beams, and the places inside a beam where a force acts or a load begins or ends. Joined ends
 are one station; an end behind a hinge is a station of its own with the place of the joint. A part is a rod between neighbouring stations
 of a beam; its force is ``n = c - W(s)`` with an unknown constant c. Lengths are in units of the longest beam and forces in units of
-``EI/L^2`` with the largest EI, so that all quantities are dimensionless.
+``EI/L^2`` with the largest EI, so that all quantities are dimensionless. The number of a prescribed quantity is `NONE`, the place of a
+zero that is appended to the unknowns.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.faces import face_slope, touching_distance
-from comparisons.referee.friction import Grip
-from comparisons.referee.joints import inner_stations, joints, relative, rod_of, units_of
-from comparisons.referee.rods import Rod
-from comparisons.referee.stations import NONE, Hinge, Position, Station
+from comparisons.referee.grip import Grip
+from comparisons.referee.rod import Rod
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
-_FREE: Mapping[str, Grip] = MappingProxyType({})
+NONE = -1
+"""Number of a quantity that is prescribed and not unknown."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Position:
+    """A position: a reference, which may be far larger than the displacement, and a displacement, prescribed or unknown by component."""
+
+    reference: tuple[float, float]
+    prescribed: tuple[float, float] = (0.0, 0.0)
+    unknown: tuple[int, int] = (NONE, NONE)
+
+    def displacement(self, z: Array) -> Array:
+        """Return the displacement."""
+        return np.array(
+            [z[k] if k != NONE else g for g, k in zip(self.prescribed, self.unknown, strict=True)]
+        )
+
+    def position(self, z: Array) -> Array:
+        """Return the position."""
+        return np.array(self.reference) + self.displacement(z)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
     """A closed contact between a touching point x and the axis point ``r = x - offset(s) nu(phi)``.
 
-    nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi,
-    the contact force acts along nu. With friction phi is the direction of the face by a row of its own.
-
-    Stationarity in s, ``nu . (r'_- + r'_+)/2 = -offset'``, makes nu normal to the face, see `comparisons.referee.faces`.
-
-    Attributes
-    ----------
-    spec : ContactSpec
-        The pair in the scene.
-    place : Position
-        Position of the touching point.
-    offset, slope : float
-        Distance of x from the axis at the start of the beam, positive on the left of the beam, and its derivative by the arc position.
-    arc, angle : int
-        Indices of the unknown arc position and of phi (`NONE` without offset).
-    grip : Grip or None
-        How friction holds the contact; None without friction.
-    roll : float
-        Radius of a round pin, positive on the right of the beam.
+    nu is the left normal of the direction phi. With an offset the angle phi is an unknown; since the energy is stationary in phi, the
+    contact force acts along nu. Stationarity in s, ``nu . (r'_- + r'_+)/2 = -offset'``, makes nu normal to the face. With friction phi is
+    the direction of the face by a row of its own.
     """
 
     spec: ContactSpec
-    place: Position
-    offset: float
     arc: int
+    """Number of the arc position."""
     angle: int
-    grip: Grip | None = None
-    roll: float = 0.0
-    slope: float = 0.0
+    """Number of phi; `NONE` without offset."""
+    offset: float
+    """Distance of x from the axis at the start of the beam, positive on the left of the beam."""
+    slope: float
+    """Derivative of the offset by the arc position."""
+    roll: float
+    """Radius of a round pin, positive on the right of the beam."""
+    grip: Grip | None
+    """How friction holds the contact; None without friction."""
 
     def away(self, s: Any) -> Any:
         """Offset at an arc position, real or complex."""
@@ -69,7 +74,7 @@ class Touch:
 
     def lever(self, s: Any) -> Any:
         """Distance of the face from the axis at an arc position, positive on the right of the beam; real or complex."""
-        return -(self.away(s) if self.slope else self.offset) - self.roll
+        return -self.away(s) - self.roll
 
     @property
     def right(self) -> float:
@@ -77,86 +82,113 @@ class Touch:
         return -1.0 if self.spec.side == "left" else 1.0
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Part:
-    """A rod between two stations of a beam.
+@dataclass(frozen=True, kw_only=True)
+class Station:
+    """An end of a beam, a joint, a contact, or a place inside a beam, with the dead load there.
 
-    Attributes
-    ----------
-    beam : int
-        Index of the beam.
-    first, last : int
-        Indices of the stations at the start and the end.
-    force : int
-        Index of the first of the two unknown components of c, along the chord of the undeformed beam and to its left.
-    rod : Rod
-        Axis, stiffnesses and load of the beam.
-    axes : ndarray, shape (2, 2)
-        Unit vectors along the chord of the undeformed beam and to its left, as columns.
-    piece : int
-        Index of the piece of the load on the part.
+    At the end of a beam the force includes the resultant of the load along the beam, since the part has c = n + W there.
     """
+
+    place: Position
+    """Position of the axis; of a contact, that of the touching point."""
+    rotation_unknown: int
+    prescribed_rotation: float = 0.0
+    force: tuple[float, float] = (0.0, 0.0)
+    moment: float = 0.0
+    touch: Touch | None = None
+    ends: tuple[str, ...] = ()
+    """Ends of beams that are rigidly attached."""
+    joint: tuple[str, ...] = ()
+    """Ends of all beams at a joint, with those behind a hinge; empty for other stations."""
+    springs: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Stiffnesses against displacement and rotation."""
+    arc: float | None = None
+    """Arc position of a place inside a beam."""
+
+    def rotation(self, z: Array) -> float:
+        """Return the rotation."""
+        return self.prescribed_rotation if self.rotation_unknown == NONE else float(z[self.rotation_unknown])
+
+    @property
+    def unknown(self) -> tuple[int, int, int]:
+        """Numbers of the displacement and the rotation."""
+        return (*self.place.unknown, self.rotation_unknown)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hinge:
+    """A hinge between the stations `end`, of the beam's end, and `joint`, with a rotational spring."""
+
+    end: int
+    joint: int
+    stiffness: float
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A rod between two stations of a beam."""
 
     beam: int
     first: int
     last: int
+    arcs: tuple[int, int]
+    """Numbers of the arc positions of both stations."""
+    fixed: tuple[float, float]
+    """Arc positions that are not unknown; 0 for a contact."""
     force: int
+    """Number of the first of the two components of c, along the chord of the undeformed beam and to its left."""
     rod: Rod
-    axes: Array
-    piece: int = 0
+    piece: int
+    """Number of the piece of the load."""
 
-    def local(self, c: Any, s: Any) -> Any:
-        """Force at an arc position in the frame of the undeformed tangent."""
-        return self.rod.local(self.piece, c, s)
+    def ends(self, z: Array) -> tuple[float, float]:
+        """Arc positions at the start and the end."""
+        a, b = (g if k == NONE else float(z[k]) for g, k in zip(self.fixed, self.arcs, strict=True))
+        return a, b
+
+    def extent(self, z: Array) -> float:
+        """Undeformed length."""
+        a, b = self.ends(z)
+        return b - a
+
+    def constant(self, z: Array) -> Array:
+        """Return c (2,)."""
+        return z[self.force : self.force + 2]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Layout:
-    """Stations, contacts and parts of a scene at a load parameter.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene in the user's units.
-    load_parameter : float
-        Load parameter of supports, loads and pins.
-    length, force : float
-        Units of length and force.
-    stations, touches, parts, hinges : tuple
-        Stations, closed contacts, parts and hinges of the scene; the parts of a beam are consecutive and in order.
-    unknowns : int
-        Number of unknowns without the rotations inside the parts.
-    """
+    """Stations, parts and hinges of a scene at a load parameter; the parts of a beam are consecutive and in order."""
 
     scene: Scene
     load_parameter: float
     length: float
     force: float
     stations: tuple[Station, ...]
-    touches: tuple[Touch, ...]
     parts: tuple[Part, ...]
     hinges: tuple[Hinge, ...]
     unknowns: int
+    """Number of unknowns without the rotations inside the parts."""
 
-    def arc(self, z: Array, station: int, part: Part) -> float:
-        """Arc position of a part's station."""
-        there = self.stations[station]
-        if there.touch != NONE:
-            return float(z[self.touches[there.touch].arc])
-        if there.arc is not None:
-            return there.arc
-        beam = self.scene.beams[part.beam]
-        return 0.0 if f"{beam.name}.start" in there.ends else beam.length / self.length
+    @cached_property
+    def touches(self) -> tuple[Touch, ...]:
+        """The closed contacts."""
+        return tuple(item.touch for item in self.stations if item.touch is not None)
+
+    @cached_property
+    def arcs(self) -> Ints:
+        """Numbers of the arc positions of the contacts."""
+        return np.array([touch.arc for touch in self.touches], dtype=np.int64)
+
+    @cached_property
+    def forces(self) -> Ints:
+        """Numbers (2 parts,) of the components of c."""
+        return np.array([k for part in self.parts for k in (part.force, part.force + 1)], dtype=np.int64)
 
     @cached_property
     def uniform(self) -> bool:
         """Whether all beams are straight, of one section, and without a load along them."""
         return all(part.rod.uniform for part in self.parts)
-
-    @cached_property
-    def sprung(self) -> bool:
-        """Whether a joint has a spring to the ground."""
-        return any(any(station.springs) for station in self.stations)
 
     @property
     def rubs(self) -> bool:
@@ -176,122 +208,33 @@ class Layout:
         """Return the closed contact of a pair."""
         return next(item for item in self.touches if item.spec.pair == pair)
 
+    def joint(self, end: str) -> int:
+        """Return the number of the joint to which a beam's end belongs."""
+        return next(k for k, item in enumerate(self.stations) if end in item.joint)
+
     def beside(self, touch: Touch) -> tuple[Part, Part]:
         """Return the parts before and behind a contact."""
-        number = next(
-            k
-            for k, item in enumerate(self.stations)
-            if item.touch != NONE and self.touches[item.touch] is touch
-        )
-        before = next(part for part in self.parts if part.last == number)
-        behind = next(part for part in self.parts if part.first == number)
-        return before, behind
-
-    def ends(self, z: Array, part: Part) -> tuple[float, float]:
-        """Arc positions at the start and the end of a part."""
-        return self.arc(z, part.first, part), self.arc(z, part.last, part)
-
-    def extent(self, z: Array, part: Part) -> float:
-        """Undeformed length of a part."""
-        return self.arc(z, part.last, part) - self.arc(z, part.first, part)
+        before = next(part for part in self.parts if part.arcs[1] == touch.arc)
+        return before, next(part for part in self.parts if part.arcs[0] == touch.arc)
 
     def position(self, z: Array, station: int) -> Array:
         """Position of the axis at a station."""
         there = self.stations[station]
-        place = there.place.position(z)
-        if there.touch == NONE:
-            return place
-        touch = self.touches[there.touch]
-        if touch.angle == NONE:
+        place, touch = there.place.position(z), there.touch
+        if touch is None or touch.angle == NONE:
             return place
         return np.asarray(place - touch.away(float(z[touch.arc])) * normal(float(z[touch.angle])))
 
-    def rotation(self, z: Array, station: int) -> float:
-        """Rotation at a station."""
-        there = self.stations[station]
-        return (
-            there.prescribed_rotation if there.rotation_unknown == NONE else float(z[there.rotation_unknown])
-        )
+    def extents(self, z: Array) -> Array:
+        """Arc positions (parts, 2) at the starts and the ends of all parts."""
+        numbers, fixed = self._ends
+        return np.where(numbers == NONE, fixed, z[numbers])
+
+    @cached_property
+    def _ends(self) -> tuple[Ints, Array]:
+        return np.array([part.arcs for part in self.parts]), np.array([part.fixed for part in self.parts])
 
 
 def normal(angle: float) -> Array:
     """Left normal of a direction."""
     return np.array([-math.sin(angle), math.cos(angle)])
-
-
-def lay_out(
-    scene: Scene, load_parameter: float, closed: dict[str, float], grips: Mapping[str, Grip] = _FREE
-) -> Layout:
-    """Return the layout of `scene`.
-
-    `closed` are the arc positions of the closed pairs, which order them along the beams, and `grips` say how friction holds them; pairs
-    without a grip have no friction.
-    """
-    units = length, force = units_of(scene)
-    rods = [rod_of(scene, beam, load_parameter, units) for beam in scene.beams]
-    stations, hinges = joints(scene, load_parameter, units, rods)
-    count = 1 + max(
-        (k for item in stations for k in (*item.place.unknown, item.rotation_unknown)), default=NONE
-    )
-    touches: list[Touch] = []
-    at = {end: number for number, station in enumerate(stations) for end in station.joint}
-    on_beam: dict[str, list[tuple[float, int]]] = {beam.name: [] for beam in scene.beams}
-    for spec in scene.contacts:
-        if spec.pair not in closed:
-            continue
-        if "." in spec.node:
-            place = stations[at[spec.node]].place
-        else:
-            x, y = scene.pin(spec.node).position(load_parameter)
-            place = Position(reference=relative(scene, (x, y), length))
-        left = 1.0 if spec.side == "left" else -1.0
-        offset = touching_distance(scene, spec, 0.0) / length * left
-        roll = -scene.radius(spec) / length * left
-        turn, arc, count = count, count + 1, count + 2
-        angle, count = (count, count + 1) if offset else (NONE, count)
-        on_beam[spec.beam].append((closed[spec.pair], len(stations)))
-        stations.append(Station(place=place, rotation_unknown=turn, touch=len(touches)))
-        touches.append(
-            Touch(
-                spec=spec,
-                place=place,
-                offset=offset,
-                arc=arc,
-                angle=angle,
-                grip=grips.get(spec.pair),
-                roll=roll,
-                slope=left * face_slope(scene, spec),
-            )
-        )
-    for beam, rod in zip(scene.beams, rods, strict=True):
-        for station in inner_stations(scene, beam, rod, load_parameter, units, count):
-            assert station.arc is not None, "a place inside a beam has an arc position"
-            on_beam[beam.name].append((station.arc * length, len(stations)))
-            stations.append(station)
-            count += 3
-    ends = {end: number for number, station in enumerate(stations) for end in station.ends}
-    parts: list[Part] = []
-    for number, (beam, rod) in enumerate(zip(scene.beams, rods, strict=True)):
-        chain = [
-            ends[f"{beam.name}.start"],
-            *(k for _, k in sorted(on_beam[beam.name])),
-            ends[f"{beam.name}.end"],
-        ]
-        piece = 0
-        for first, last in pairwise(chain):
-            piece += stations[first].arc is not None
-            parts.append(
-                Part(beam=number, first=first, last=last, force=count, rod=rod, axes=rod.axes, piece=piece)
-            )
-            count += 2
-    return Layout(
-        scene=scene,
-        load_parameter=load_parameter,
-        length=length,
-        force=force,
-        stations=tuple(stations),
-        touches=tuple(touches),
-        parts=tuple(parts),
-        hinges=tuple(hinges),
-        unknowns=count,
-    )

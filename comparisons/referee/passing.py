@@ -1,22 +1,30 @@
-"""Checks between the load parameters of an answer: no node passes through a beam, and contacts change at events only."""
+"""Checks between the load parameters of an answer: no node passes through a beam, contacts change at events only, and these are true."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.distance import gap_off, largest_force
 from comparisons.referee.equilibrium import SearchStatus, solve
-from comparisons.referee.faces import face_slope, touching_distance
-from comparisons.referee.follow import at_rest, events_between, on_the_way
+from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
+from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
 from comparisons.referee.start import answer_state
-from comparisons.referee.state import described
-from comparisons.response import ContactHistory, Response
+from comparisons.referee.state import Equilibrium, described
+from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
+OPENS, CLOSES = ("release", "slip-off"), ("touch",)
+KINDS = (*OPENS, *CLOSES, "slip", "stick", PASSES)
+"""Kinds of contact events."""
+CRITICAL = ("limit-point", "bifurcation")
+"""Kinds of events without a contact."""
+ENDING = ("line-contact", "end-contact")
+"""Kinds of events at which a contact ends the solution."""
 SAMPLES = 101
 """Positions of a node between two load parameters at which its side of the beam is determined."""
 _CLOSED = ("pass-through", "slip", "stick")
@@ -27,8 +35,7 @@ _AROUND = 0.2
 """Distance from touching an end, over the node's path, within which a node may have passed around the end."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Moment:
+class _Moment(NamedTuple):
     """A load parameter, with the axis of a beam and the place of a node."""
 
     t: float
@@ -55,13 +62,8 @@ def changes(response: Response, scene: Scene) -> Iterator[str]:
         if np.isfinite(contact.slip_off) and spec.pair not in slipped:
             yield f"{spec.pair} slips off at load parameter {contact.slip_off:.6g} without an event"
         closed = contact.force != 0.0
-        events = np.array(
-            [
-                event.load_parameter
-                for event in response.events
-                if event.pair == spec.pair and event.kind not in _CLOSED
-            ]
-        )
+        own = [event for event in response.events if event.pair == spec.pair and event.kind not in _CLOSED]
+        events = np.array([event.load_parameter for event in own])
         for k in np.flatnonzero(closed[1:] != closed[:-1]) + 1:
             if not np.any((events >= times[k]) & (events <= times[k + 1])):
                 what = "closes" if closed[k] else "opens"
@@ -115,9 +117,9 @@ def _followed(response: Response, scene: Scene, spec: ContactSpec, k: int) -> li
     events = events_between(response, way[0].t, end.t)
     found = on_the_way(scene, now, events, np.linspace(way[0].t, end.t, _STEPS + 1)[1:].tolist())
     for solution in found:
-        exact, t = described(scene, solution), solution.layout.load_parameter
-        node = exact.ends[spec.node] if "." in spec.node else np.array(scene.pin(spec.node).position(t))
-        way.append(_Moment(t=t, line=exact.shape(spec.beam, arcs).position, node=node))
+        exact = described(scene, solution)
+        line = exact.shape(spec.beam, arcs).position
+        way.append(_Moment(exact.load_parameter, line, exact.place(spec.node)))
     apart = np.hypot(*(way[-1].line - end.line).T).max()
     return way if found and apart <= _SAME * scene.beam(spec.beam).length else []
 
@@ -139,6 +141,7 @@ def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment,
     if apart.max() > float(np.max(_reach(line, scene, spec))):
         return False
     leaves = _whereabouts(line_after, nodes[-1], scene, spec) == "beyond"
+    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
     through = False
     for u, (start, node) in zip(parts[1:], pairwise(nodes), strict=True):
         moved = (1.0 - u) * line + u * line_after
@@ -146,36 +149,28 @@ def _goes_through(scene: Scene, spec: ContactSpec, begin: _Moment, end: _Moment,
         if before == "before" and where != "before":
             through = where == "behind" or _cuts(moved, start, node, scene, spec)
             short = np.hypot(*(node - moved[[0, -1]]).T) - np.max(_reach(moved, scene, spec))
-            through = through and not (leaves and _near_an_end(line, line_after, nodes, short))
+            # so near to an end that the node may have passed around the end
+            through = through and not (leaves and bool((short <= _AROUND * way).any()))
         through = through and where != "before"
     return through
 
 
-def _near_an_end(line: Array, line_after: Array, nodes: Array, short: Array) -> bool:
-    """Whether a node crosses the axis so near to an end that it may have passed around the end; `short` are its distances from touching them."""
-    way = np.hypot(*((nodes[-1] - nodes[0]) - (line_after - line)[[0, -1]]).T)
-    return bool((short <= _AROUND * way).any())
-
-
 def _moment(response: Response, scene: Scene, spec: ContactSpec, k: int) -> _Moment:
     """A beam and a node at load parameter k; undeformed for k = -1."""
-    t = float(response.load_parameter[k]) if k >= 0 else 0.0
-    return _Moment(
-        t=t,
-        line=_line(response, scene, spec.beam, k),
-        node=_node(response, scene, spec.node, k, t),
-    )
+    t, line = float(response.load_parameter[k]) if k >= 0 else 0.0, _line(response, scene, spec.beam, k)
+    if "." not in spec.node:
+        return _Moment(t, line, np.array(scene.pin(spec.node).position(t)))
+    beam, end = spec.node.split(".")
+    if k >= 0 and end == scene.tip(beam):
+        return _Moment(t, line, np.asarray(response.tips[beam][k]))
+    return _Moment(t, line, np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1]))
 
 
 def _line(response: Response, scene: Scene, beam: str, k: int) -> Array:
     """Axis of a beam at load parameter k; undeformed for k = -1 and if nothing acts on the beam."""
     if k >= 0 and not _at_rest(response, scene, beam, k):
         return response.axis_line(beam, k)[1]
-    arc, _ = response.axis_line(beam, 0)
-    spec = scene.beam(beam)
-    if spec.turn:
-        return np.array([spec.place(float(s) / spec.length) for s in arc])
-    return np.asarray(np.array(spec.start) + np.outer(arc, spec.direction))
+    return axis_at_rest(scene.beam(beam), response.axis_line(beam, 0)[0])
 
 
 def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
@@ -191,35 +186,21 @@ def _at_rest(response: Response, scene: Scene, beam: str, k: int) -> bool:
     return all(response.contacts[pair].force[k] == 0.0 for pair in pairs)
 
 
-def _node(response: Response, scene: Scene, node: str, k: int, t: float) -> Array:
-    """Position of a node at load parameter k, or of a pin at t."""
-    if "." not in node:
-        return np.array(scene.pin(node).position(t))
-    beam, end = node.split(".")
-    if k >= 0 and end == scene.tip(beam):
-        return np.asarray(response.tips[beam][k])
-    return np.asarray(_line(response, scene, beam, k)[0 if end == "start" else -1])
-
-
 def _cuts(line: Array, start: Array, end: Array, scene: Scene, spec: ContactSpec) -> bool:
     """Whether the segment from start to end crosses the curve of touching nodes from the pair's side."""
     near = 1e-6 * scene.beam(spec.beam).length
     side = 1.0 if spec.side == "left" else -1.0
-    pieces, way = np.diff(line, axis=0), end - start
+    pieces, way, offset = np.diff(line, axis=0), end - start, _reach(line[:-1], scene, spec)
     lengths = np.hypot(*pieces.T)
-    offset = _reach(line[:-1], scene, spec)
     before, after = (side * _cross(pieces, node - line[:-1]) / lengths - offset for node in (start, end))
-    left = (
-        np.reshape(side * offset, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]]) / lengths[:, None]
-    )
+    left = np.reshape(side * offset / lengths, (-1, 1)) * np.column_stack([-pieces[:, 1], pieces[:, 0]])
     first, last = (_cross(way, ends + left - start) > 0.0 for ends in (line[:-1], line[1:]))
     return bool(((before > near) & (after < -near) & (first != last)).any())
 
 
 def _cross(a: Array, b: Array) -> Array:
     """Cross product of plane vectors (..., 2)."""
-    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return product
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> str:
@@ -232,8 +213,9 @@ def _whereabouts(line: Array, node: Array, scene: Scene, spec: ContactSpec) -> s
     along = float(tangent @ away)
     if (nearest == 0 and along < -near) or (nearest == len(line) - 1 and along > near):
         return "beyond"
-    distance = tangent[0] * away[1] - tangent[1] * away[0]
-    gap = (distance if spec.side == "left" else -distance) - _offset(line, scene, spec, nearest, along)
+    distance = float(_cross(tangent, away)) * (1.0 if spec.side == "left" else -1.0)
+    reach = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
+    gap = distance - float(reach) - face_slope(scene, spec) * along
     return "behind" if gap < -near else "before"
 
 
@@ -246,7 +228,81 @@ def _reach(line: Array, scene: Scene, spec: ContactSpec) -> Array | float:
     return touching_distance(scene, spec, 0.0) + steep * arcs
 
 
-def _offset(line: Array, scene: Scene, spec: ContactSpec, nearest: int, along: float) -> float:
-    """Distance at which a node touches ahead of a point of an axis."""
-    there = np.broadcast_to(_reach(line, scene, spec), len(line))[nearest]
-    return float(there) + face_slope(scene, spec) * along
+def misstated(
+    response: Response, scene: Scene, found: Mapping[int, Equilibrium], allowed: float
+) -> Iterator[str]:
+    """Yield events that are not those of the answer's states, or at which the exact contact is elsewhere or has another force.
+
+    An event beside one of the exact equilibria `found`, by the numbers of their load parameters, is compared with the equilibrium that
+    follows from it: at a contact that is closed there, arc position and force; of one that is open, the gap. With friction,
+    `friction.rubbing` compares the events instead.
+    """
+    specs, times = {spec.pair: spec for spec in scene.contacts}, response.load_parameter
+    for event in response.events or ():
+        t = event.load_parameter
+        if event.kind in CRITICAL or (
+            event.kind in ENDING and event.pair in specs and not response.completed
+        ):
+            continue
+        last = times[-1] if response.completed else scene.times[-1]
+        if event.kind not in KINDS or event.pair not in specs or not 0.0 <= t <= last:
+            yield f"no contact of the scene has the event {event.kind} of {event.pair} at load parameter {t:.6g}"
+            continue
+        after = int(np.searchsorted(times, t))
+        # the load parameter of a pass-through is interpolated
+        if event.kind == PASSES or any(spec.friction for spec in scene.contacts):
+            continue
+        for k in (after - 1, after)[: 1 if event.kind in OPENS else 2]:
+            there = _at(scene, found.get(k), t) if _alone(response, event, k) else None
+            wrong = "" if there is None else _wrong(scene, specs[event.pair], event, there, allowed)
+            if wrong:
+                yield f"{event.kind} of {event.pair} at load parameter {t:.6g}: {wrong}"
+    for spec in scene.contacts:
+        yield from _disorder(response, spec)
+
+
+def _alone(response: Response, event: ContactEvent, k: int) -> bool:
+    """Whether nothing else changes between an event and a load parameter beside it."""
+    if not 0 <= k < len(response.load_parameter):
+        return False
+    low, high = sorted((event.load_parameter, float(response.load_parameter[k])))
+    return not any(low <= one.load_parameter <= high for one in changes_of(response) if one is not event)
+
+
+def _disorder(response: Response, spec: ContactSpec) -> Iterator[str]:
+    """Yield an event that closes a closed contact, or that opens or moves an open one."""
+    own = [event for event in response.events or () if event.pair == spec.pair and event.kind in KINDS]
+    force, times = response.contacts[spec.pair].force, response.load_parameter
+    closed = bool(own) and own[0].kind not in CLOSES
+    for event in own:
+        # a contact may begin without force, closed from the start
+        if closed == (event.kind in CLOSES) and not (event is own[0] and force[0] != 0.0):
+            yield f"{event.kind} of {spec.pair} at load parameter {event.load_parameter:.6g} where it is {'closed' if closed else 'open'}"
+        closed = event.kind not in OPENS
+    if own and own[-1].load_parameter < times[-1] and closed != (force[-1] != 0.0):
+        yield f"{spec.pair} is {'open' if closed else 'closed'} at the end, not as its last event says"
+
+
+def _at(scene: Scene, near: Equilibrium | None, t: float) -> Equilibrium | None:
+    """Return the equilibrium with the same contacts at an event beside a load parameter; None if there is none."""
+    if near is None:
+        return None
+    found = reach(scene, near.solution, t, near.solution.layout.grips, halvings=2)
+    return described(scene, found) if found.status is SearchStatus.FOUND else None
+
+
+def _wrong(scene: Scene, spec: ContactSpec, event: ContactEvent, there: Equilibrium, allowed: float) -> str:
+    """Return what an event states otherwise than the equilibrium there; empty if it states the same."""
+    length = scene.beam(spec.beam).length
+    contact = there.contacts.get(spec.pair)
+    if contact is None and event.kind not in CLOSES:
+        return ""
+    if contact is None:
+        off = gap_off(scene, there, spec, 0.0) / length
+        return "" if off <= allowed else f"the node is {off:.2g} L away"
+    off = abs(contact.arc_position - event.arc_position) / length
+    if not off <= allowed:
+        return f"arc position off by {off:.2g}"
+    force = 0.0 if event.kind in CLOSES else float(np.hypot(*contact.force))
+    off = abs(force - event.force) / largest_force(scene, there)
+    return "" if off <= allowed else f"contact force off by {off:.2g}"

@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.elements import fields
-from comparisons.referee.equilibrium import DENSE, Solution, scales
-from comparisons.referee.layout import Part, normal
-from comparisons.referee.stations import NONE
+from comparisons.referee.equilibrium import DENSE, Solution, entries, scales
+from comparisons.referee.grip import rows
+from comparisons.referee.layout import NONE
 
 Array = NDArray[np.float64]
 
@@ -26,8 +25,7 @@ def index_of(solution: Solution) -> int:
     held, reduced = _directions(solution), system.hessian
     if held is not None:
         reduced = held.T @ reduced @ held
-    row, column = np.nonzero(reduced)
-    scale = scales(row, column, reduced[row, column])
+    scale = scales(*entries(reduced))
     inside = np.linalg.eigvalsh(system.blocks)
     negatives = _negatives(scale[:, None] * reduced * scale) + int((inside < 0.0).sum())
     return negatives - 2 * len(solution.layout.parts)
@@ -55,48 +53,14 @@ def orientation_of(solution: Solution) -> int:
 
 
 def _directions(solution: Solution) -> Array | None:
-    """Admissible variations as columns, None if all are; the angles phi follow with ``nu . d(r'_- + r'_+) / |r'_- + r'_+|``."""
-    layout, z = solution.layout, solution.z
-    if all(touch.angle == NONE for touch in layout.touches):
+    """Admissible variations as columns, None if all are; the angles phi follow with the directions of the faces."""
+    turned = [touch for touch in solution.layout.touches if touch.angle != NONE]
+    if not turned:
         return None
-    size = solution.mesh.unknowns
-    free = np.eye(size)
-    angles = []
-    for number, station in enumerate(layout.stations):
-        if station.touch == NONE or layout.touches[station.touch].angle == NONE:
-            continue
-        angle = layout.touches[station.touch].angle
-        angles.append(angle)
-        turned, forced, whole, moved = np.zeros(2), [], np.zeros(2), np.zeros(2)
-        for part in (item for item in layout.parts if number in (item.first, item.last)):
-            theta, s = float(z[station.rotation_unknown]), layout.arc(z, number, part)
-            _, a, c = part.rod.flexibility(s)
-            n = part.local(z[part.force : part.force + 2], s)
-            here = fields(np.array(theta), n, a, c)
-            d1 = np.array([np.cos(theta), np.sin(theta)])
-            d2 = np.array([-d1[1], d1[0]])
-            whole += here.tangent + np.array([1.0, 0.0])
-            turned += d2 * (1.0 + here.N * (a - c)) + d1 * here.Q * (a - c)
-            flexible = a * np.outer(d1, d1) + c * np.outer(d2, d2)
-            forced.append((part.force, flexible if part.rod.turn == 0.0 else flexible @ _rotation(part, s)))
-            if not part.rod.uniform:
-                moved += flexible @ part.rod.steepness(part.piece, n, s) + part.rod.softening(s) @ [
-                    here.N * d1,
-                    here.Q * d2,
-                ]
-        across = np.array([-whole[1], whole[0]]) / (whole @ whole)
-        if layout.touches[station.touch].slope:
-            nu = part.rod.frame(s).T @ normal(float(z[angle]))
-            across = nu / (whole @ [nu[1], -nu[0]])
-        row = np.zeros(size)
-        row[station.rotation_unknown] = across @ turned
-        for force, by_force in forced:
-            row[force : force + 2] = across @ by_force
-        row[layout.touches[station.touch].arc] = across @ moved + part.rod.curvature
-        free[angle] = row
-    return np.delete(free, angles, axis=1)
-
-
-def _rotation(part: Part, s: float) -> Array:
-    """Rotation from the frame of the chord to that of the undeformed tangent."""
-    return np.asarray((part.axes.T @ part.rod.frame(s)).T)
+    free = np.eye(solution.mesh.unknowns)
+    for touch in turned:
+        numbers, *_, derivatives = rows(solution.layout, touch, solution.z, 0.0)
+        change = np.zeros(len(free) + 1)
+        np.add.at(change, numbers, derivatives[2])
+        free[touch.angle] = -change[:-1] / change[touch.angle]
+    return np.delete(free, [touch.angle for touch in turned], axis=1)

@@ -1,16 +1,16 @@
 """The first guess of the exact equilibrium from the axes, forces and arc positions of an answer."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.friction import Grip
-from comparisons.referee.layout import Layout, Part
-from comparisons.referee.stations import NONE, Position
+from comparisons.referee.grip import Grip
+from comparisons.referee.layout import NONE, Layout, Part
 from comparisons.response import ContactHistory, Response
-from comparisons.scene import ContactSpec, Scene
+from comparisons.scene import BeamSpec, ContactSpec, Scene
 
 Array = NDArray[np.float64]
 
@@ -34,21 +34,19 @@ class AnswerState:
         Load parameter of the answer.
     arcs : dict of float
         Arc position of every closed pair, by the pair's name.
-    forces : dict of (float, float)
+    forces : dict of sequence of float
         Contact force of every pair that has one, on its beam.
     axes : dict of (ndarray, ndarray)
         Arc lengths (m,) and deformed positions (m, 2) of every beam's axis.
-    reactions : dict of (float, float, float)
+    reactions : dict of sequence of float
         Force and moment of every support, by the supported end.
-    tips : dict of (float, float)
+    tips : dict of sequence of float
         Position of the free or less restrained end of every beam.
     grips : dict of Grip
         How friction holds the closed pairs; pairs without a grip have no friction.
-    drags : dict of float
-        Tangential force of the closed pairs whose friction the answer states.
     gaps : dict of float
         Gap of the pairs for which one is stated.
-    springs : dict of (float, float, float)
+    springs : dict of sequence of float
         Force and moment of the springs that the answer states, by the end that they hold.
     sections : dict of (ndarray, ndarray, ndarray, ndarray)
         Arc lengths and section forces N, V, M of every beam for which they are stated.
@@ -57,17 +55,21 @@ class AnswerState:
     """
 
     load_parameter: float
-    arcs: dict[str, float]
-    forces: dict[str, tuple[float, float]]
     axes: dict[str, tuple[Array, Array]]
-    reactions: dict[str, tuple[float, float, float]]
-    tips: dict[str, tuple[float, float]]
+    arcs: dict[str, float] = field(default_factory=dict)
+    forces: Mapping[str, Sequence[float] | Array] = field(default_factory=dict)
+    reactions: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    tips: Mapping[str, Sequence[float]] = field(default_factory=dict)
     grips: dict[str, Grip] = field(default_factory=dict)
-    drags: dict[str, float] = field(default_factory=dict)
     gaps: dict[str, float] = field(default_factory=dict)
-    springs: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    springs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     sections: dict[str, tuple[Array, ...]] = field(default_factory=dict)
     local: float = 0.0
+
+    def end(self, node: str) -> Array:
+        """Return the position of a beam's end such as ``upper.end``."""
+        beam, end = node.split(".")
+        return np.asarray(self.axes[beam][1][0 if end == "start" else -1])
 
 
 def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
@@ -76,39 +78,33 @@ def answer_state(response: Response, scene: Scene, k: int) -> AnswerState:
     A contact whose force is round-off is open at an end of its beam, where no rod lies beside it; its force counts in the balance.
     """
     pushing = {pair: item for pair, item in response.contacts.items() if item.force[k] != 0.0}
-    idle = {
-        spec.pair
-        for spec in scene.contacts
-        if spec.pair in pushing and idle_at_an_end(pushing[spec.pair], scene, spec, k)
-    }
+    specs = [spec for spec in scene.contacts if spec.pair in pushing]
+    idle = {spec.pair for spec in specs if idle_at_an_end(pushing[spec.pair], scene, spec, k)}
     return AnswerState(
         load_parameter=float(response.load_parameter[k]),
         arcs={pair: float(item.arc_position[k]) for pair, item in pushing.items() if pair not in idle},
         forces={
-            pair: (math.nan, math.nan)
-            if item.vector is None
-            else (float(item.vector[k, 0]), float(item.vector[k, 1]))
+            pair: (math.nan, math.nan) if item.vector is None else item.vector[k].tolist()
             for pair, item in pushing.items()
         },
         axes={beam.name: response.axis_line(beam.name, k) for beam in scene.beams},
         reactions={
-            node: (float(item.force[k, 0]), float(item.force[k, 1]), float(item.moment[k]))
-            for node, item in response.supports.items()
+            node: (*item.force[k].tolist(), float(item.moment[k])) for node, item in response.supports.items()
         },
-        tips={beam: (float(tip[k, 0]), float(tip[k, 1])) for beam, tip in response.tips.items()},
-        drags={
-            pair: float(item.friction.tangential[k])
-            for pair, item in pushing.items()
-            if item.friction is not None
-        },
+        tips={beam: tip[k].tolist() for beam, tip in response.tips.items()},
     )
+
+
+def pull_allowed(beam: BeamSpec) -> float:
+    """Largest tensile contact force on a beam that is round-off."""
+    return PULL * beam.EI / beam.length**2
 
 
 def idle_at_an_end(contact: ContactHistory, scene: Scene, spec: ContactSpec, k: int) -> bool:
     """Whether a contact is at an end of its beam with a force that is round-off."""
     beam, arc = scene.beam(spec.beam), float(contact.arc_position[k])
     inside = min(arc, beam.length - arc) / max(item.length for item in scene.beams)
-    return abs(float(contact.force[k])) <= PULL * beam.EI / beam.length**2 and abs(inside) <= SHORTEST
+    return abs(float(contact.force[k])) <= pull_allowed(beam) and abs(inside) <= SHORTEST
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -144,7 +140,7 @@ def first_guess(layout: Layout, answer: AnswerState) -> tuple[Array, list[Rotati
         for number in (part.first, part.last):
             station = layout.stations[number]
             if station.rotation_unknown != NONE:
-                z[station.rotation_unknown] = turns[part.beam].angle(layout.arc(z, number, part))
+                z[station.rotation_unknown] = turns[part.beam].angle(part.ends(z)[number == part.last])
     return z, turns
 
 
@@ -174,45 +170,36 @@ def _aligned(layout: Layout, turns: list[Rotations]) -> list[Rotations]:
     known: dict[int, float] = {
         k: item.prescribed_rotation for k, item in enumerate(layout.stations) if item.rotation_unknown == NONE
     }
-    left = list(range(len(turns)))
-    aligned = list(turns)
+    own = [[part for part in layout.parts if part.beam == number] for number in range(len(turns))]
+    ends = [((parts[0].first, 0.0), (parts[-1].last, parts[-1].rod.length)) for parts in own]
+    left, aligned = list(range(len(turns))), list(turns)
     while left:
-        number = next((b for b in left if any(k in known for k, _ in _end_stations(layout, b))), left[0])
+        number = next((b for b in left if any(k in known for k, _ in ends[b])), left[0])
         left.remove(number)
-        ends = _end_stations(layout, number)
-        shift = next((known[k] - float(turns[number].angle(arc)) for k, arc in ends if k in known), 0.0)
-        turn = Rotations(
-            arc=turns[number].arc, theta=turns[number].theta + 2.0 * math.pi * round(shift / (2.0 * math.pi))
-        )
+        arc, theta = turns[number].arc, turns[number].theta
+        shifts = (known[k] - float(turns[number].angle(s)) for k, s in ends[number] if k in known)
+        turn = Rotations(arc=arc, theta=theta + 2.0 * math.pi * round(next(shifts, 0.0) / (2.0 * math.pi)))
         aligned[number] = turn
-        for k, arc in ends:
-            known.setdefault(k, float(turn.angle(arc)))
+        for k, s in ends[number]:
+            known.setdefault(k, float(turn.angle(s)))
     return aligned
-
-
-def _end_stations(layout: Layout, beam: int) -> list[tuple[int, float]]:
-    """Stations of a beam's ends with their arc positions."""
-    parts = [part for part in layout.parts if part.beam == beam]
-    return [(parts[0].first, 0.0), (parts[-1].last, layout.scene.beams[beam].length / layout.length)]
 
 
 def _set_displacements(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the displacements of the stations and the normals of the contacts."""
-    scene = layout.scene
-    origin = np.array(scene.beams[0].start)
+    beams = layout.scene.beams
+    origin = np.array(beams[0].start)
     for number, station in enumerate(layout.stations):
-        if station.touch == NONE:
-            seen = (_stated_place(layout, answer, number) - origin) / layout.length - np.array(
-                station.place.reference
-            )
-            _set_displacement(z, station.place, seen)
-        else:
-            touch = layout.touches[station.touch]
-            if touch.angle != NONE:
-                beam = [item.name for item in scene.beams].index(touch.spec.beam)
-                x, y = scene.beams[beam].direction
-                undeformed = math.atan2(y, x) + layout.rod(beam).angle(float(z[touch.arc]))
-                z[touch.angle] = undeformed + float(turns[beam].angle(z[touch.arc])) + math.asin(touch.slope)
+        touch, unknown = station.touch, np.array(station.place.unknown)
+        if touch is None:
+            seen = (_stated_place(layout, answer, number) - origin) / layout.length
+            moved = seen - np.array(station.place.reference)
+            z[unknown[unknown != NONE]] = moved[unknown != NONE]
+        elif touch.angle != NONE:
+            beam, arc = [item.name for item in beams].index(touch.spec.beam), float(z[touch.arc])
+            x, y = beams[beam].direction
+            undeformed = math.atan2(y, x) + layout.rod(beam).angle(arc)
+            z[touch.angle] = undeformed + float(turns[beam].angle(arc)) + math.asin(touch.slope)
 
 
 def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
@@ -222,43 +209,32 @@ def _stated_place(layout: Layout, answer: AnswerState, number: int) -> Array:
         part = next(item for item in layout.parts if item.first == number)
         arc, line = answer.axes[layout.scene.beams[part.beam].name]
         return np.array([np.interp(station.arc * layout.length, arc, way) for way in line.T])
-    name, end = (station.joint or station.ends)[0].split(".")
-    return np.asarray(answer.axes[name][1][0 if end == "start" else -1])
-
-
-def _set_displacement(z: Array, place: Position, moved: Array) -> None:
-    for component, number in enumerate(place.unknown):
-        if number != NONE:
-            z[number] = moved[component]
+    return answer.end((station.joint or station.ends)[0])
 
 
 def _balance(layout: Layout, answer: AnswerState, turns: list[Rotations], z: Array) -> None:
     """Set the forces of the parts by a least-squares balance with the answer's contact forces, reactions and loads."""
-    column = {part.force: 2 * k for k, part in enumerate(layout.parts)}
-    size = 2 * len(layout.parts)
     acting, known = _acting(layout, answer, z)
     joined = {hinge.end: hinge.joint for hinge in layout.hinges}
-    rows, right = [], []
-    for k, item in enumerate(layout.stations):
-        if k in joined:
-            continue
-        row = np.zeros((2, size))
-        for part in layout.parts:
-            here = slice(column[part.force], column[part.force] + 2)
-            first, last = joined.get(part.first, part.first), joined.get(part.last, part.last)
-            row[:, here] += ((last == k) * 1.0 - (first == k) * 1.0) * part.axes
-        stated = [k in known or item.touch != NONE or number != NONE for number in item.place.unknown]
-        rows += [row[component] for component in range(2) if stated[component]]
-        right += [acting[k, component] for component in range(2) if stated[component]]
-    for part in layout.parts:
-        lever, value = _moments(layout, part, answer, turns, z)
-        full = np.zeros(size)
-        full[column[part.force] : column[part.force] + 2] = _CLOSED_LOOP * lever
-        rows.append(full)
-        right.append(_CLOSED_LOOP * value)
-    forces = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
-    for part in layout.parts:
-        z[part.force : part.force + 2] = forces[column[part.force] : column[part.force] + 2]
+    balance = np.zeros((len(layout.stations), 2, len(layout.parts), 2))
+    for n, part in enumerate(layout.parts):
+        for number, sign in ((part.first, -1.0), (part.last, 1.0)):
+            balance[joined.get(number, number), :, n] += sign * part.rod.axes
+    stated = [
+        [
+            k not in joined and (k in known or item.touch is not None or free != NONE)
+            for free in item.place.unknown
+        ]
+        for k, item in enumerate(layout.stations)
+    ]
+    moments, values = np.zeros((len(layout.parts), len(layout.parts), 2)), np.zeros(len(layout.parts))
+    for n, part in enumerate(layout.parts):
+        moments[n, n], values[n] = _moments(layout, part, answer, turns, z)
+    rows = np.concatenate([balance[np.array(stated)], _CLOSED_LOOP * moments]).reshape(
+        -1, 2 * len(layout.parts)
+    )
+    right = np.concatenate([acting[np.array(stated)], _CLOSED_LOOP * values])
+    z[layout.forces] = np.linalg.lstsq(rows, right, rcond=None)[0]
 
 
 def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[int]]:
@@ -276,9 +252,9 @@ def _acting(layout: Layout, answer: AnswerState, z: Array) -> tuple[Array, set[i
     for end, (x, y, _) in answer.reactions.items():
         acting[where[end]] += np.array([x, y]) / layout.force
     for k, item in enumerate(layout.stations):
-        if item.touch == NONE:
+        if item.touch is None:
             continue
-        spec = layout.touches[item.touch].spec
+        spec = item.touch.spec
         force = np.nan_to_num(np.array(answer.forces[spec.pair])) / layout.force
         acting[k] += force
         if "." in spec.node:
@@ -290,8 +266,8 @@ def _moments(
     layout: Layout, part: Part, answer: AnswerState, turns: list[Rotations], z: Array
 ) -> tuple[Array, float]:
     """Coefficients and right side of ``(r_b - r_a) x c = m_a - m_b + int r' x W ds`` in the beam's frame."""
-    a, b = layout.arc(z, part.first, part), layout.arc(z, part.last, part)
-    chord = part.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
+    a, b = part.ends(z)
+    chord = part.rod.axes.T @ (layout.position(z, part.last) - layout.position(z, part.first))
     turn, step = turns[part.beam], (b - a) / 8.0
     m_a, m_b = (
         part.rod.flexibility(x).EI * float(turn.angle(x + step) - turn.angle(x)) / step if step > 0.0 else 0.0
@@ -303,9 +279,9 @@ def _moments(
     arc, line = answer.axes[layout.scene.beams[part.beam].name]
     s = np.linspace(a, b, _LOADED)
     way = np.diff([np.interp(s * layout.length, arc, column) for column in line.T]) / layout.length
-    x, y = part.axes.T @ way
-    W = part.rod.resultant(part.piece, (s[:-1] + s[1:]) / 2.0)
-    return lever, m_a - m_b + float(x @ W[:, 1] - y @ W[:, 0])
+    x, y = part.rod.axes.T @ way
+    p, q = part.rod.force(part.piece, (0.0, 0.0), (s[:-1] + s[1:]) / 2.0)
+    return lever, m_a - m_b + float(y @ p - x @ q)
 
 
 def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: int, z: Array) -> Rotations:
@@ -319,11 +295,13 @@ def _less_shear(layout: Layout, answer: AnswerState, turn: Rotations, number: in
     if not len(way):
         return turn
     for part in layout.parts:
-        _, stretch, shear = part.rod.flexibility(turn.arc)
-        if part.beam != number or not np.any(shear):
+        if part.beam != number or not np.any(part.rod.greatest.shear):
             continue
-        inside = (turn.arc >= layout.arc(z, part.first, part)) & (turn.arc <= layout.arc(z, part.last, part))
-        n = part.local(z[part.force : part.force + 2], turn.arc) @ (1.0, 1.0j)
+        _, stretch, shear = part.rod.flexibility(turn.arc)
+        first, last = part.ends(z)
+        inside = (turn.arc >= first) & (turn.arc <= last)
+        x, y = part.rod.force(part.piece, part.constant(z), turn.arc)
+        n = (x + 1.0j * y) * np.exp(-1.0j * part.rod.angle(turn.arc))
         along = way - shear * n
         size = np.abs(along)
         d1 = along / np.where(size > 0.0, size, 1.0)

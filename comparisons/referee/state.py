@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.basis import GAUSS, VALUES, WEIGHTS, shapes, up_to
-from comparisons.referee.elements import Fields, fields, rotations
-from comparisons.referee.equilibrium import SearchStatus, Solution, solve
-from comparisons.referee.layout import Part, Touch
+from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places, rotations, shapes, up_to
+from comparisons.referee.equilibrium import SearchStatus, Solution, solve, tails
+from comparisons.referee.layout import Touch
 from comparisons.referee.stability import index_of
 from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
@@ -30,15 +29,12 @@ class Contact:
         Component of the force along the mean of the two tangent directions; zero without friction.
     arc_position : float
         Distance along the undeformed axis from the beam's start.
-    point : ndarray, shape (2,)
-        The touching point.
     """
 
     force: Array
     push: float
     drag: float
     arc_position: float
-    point: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,17 +103,16 @@ class Equilibrium:
         """Return the shape of a beam at arc lengths (m,)."""
         return _shape(self.solution, beam, np.asarray(arc, dtype=np.float64))
 
-    def pose(self, end: str) -> Array:
-        """Return position and rotation ``x, y, theta`` of a beam's end such as ``upper.end``."""
-        layout = self.solution.layout
-        number = next(k for k, station in enumerate(layout.stations) if end in station.ends)
-        return np.append(self.ends[end], layout.rotation(self.solution.z, number))
+    def place(self, node: str) -> Array:
+        """Return the position of a beam's end such as ``upper.end``, or of a pin."""
+        if "." in node:
+            return self.ends[node]
+        return np.array(self.solution.layout.scene.pin(node).position(self.load_parameter))
 
     def joint_rotation(self, end: str) -> float:
         """Return the rotation of the joint to which a beam's end belongs, which differs from the end's behind a hinge."""
         layout = self.solution.layout
-        number = next(k for k, station in enumerate(layout.stations) if end in station.joint)
-        return layout.rotation(self.solution.z, number)
+        return layout.stations[layout.joint(end)].rotation(self.solution.z)
 
 
 def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
@@ -140,18 +135,10 @@ def equilibrium(scene: Scene, answer: AnswerState) -> Equilibrium:
     solution = solve(scene, answer)
     if solution.status is not SearchStatus.FOUND or solution.system is None:
         return Equilibrium(
-            status=solution.status,
-            message=solution.reason or solution.status.value,
-            load_parameter=answer.load_parameter,
-            contacts={},
-            reactions={},
-            ends={},
-            strain_energy=np.nan,
-            index=-1,
-            error=np.inf,
-            iterations=solution.iterations,
-            solution=solution,
-        )
+            status=solution.status, message=solution.reason or solution.status.value,
+            load_parameter=answer.load_parameter, contacts={}, reactions={}, ends={}, strain_energy=np.nan, index=-1,
+            error=np.inf, iterations=solution.iterations, solution=solution,
+        )  # fmt: skip
     return described(scene, solution)
 
 
@@ -174,7 +161,7 @@ def described(scene: Scene, solution: Solution) -> Equilibrium:
         },
         strain_energy=solution.system.energy * layout.force * layout.length,
         index=index_of(solution),
-        error=max(solution.correction, solution.tail),
+        error=max(solution.correction, float(tails(solution.bubbles).max())),
         iterations=solution.iterations,
         solution=solution,
     )
@@ -182,35 +169,24 @@ def described(scene: Scene, solution: Solution) -> Equilibrium:
 
 def _tangents(solution: Solution, touch: Touch) -> tuple[Array, Array]:
     """Return ``r'_-`` and ``r'_+`` at a contact."""
-    before, behind = solution.layout.beside(touch)
-    return _tangent_at(solution, before, before.last), _tangent_at(solution, behind, behind.first)
-
-
-def _tangent_at(solution: Solution, part: Part, station: int) -> Array:
-    """Return ``r'`` of a part at one of its stations."""
-    theta = np.array(solution.layout.rotation(solution.z, station))
-    s = solution.layout.arc(solution.z, station, part)
-    _, stretch, shear = part.rod.flexibility(s)
-    there = fields(theta, part.local(solution.z[part.force : part.force + 2], s), stretch, shear)
-    return np.asarray(part.rod.frame(s) @ (there.tangent + np.array([1.0, 0.0])))
+    parts, z = solution.layout.beside(touch), solution.z
+    s, theta = float(z[touch.arc]), solution.layout.stations[parts[0].last].rotation(z)
+    before, behind = (np.asarray(part.rod.tangent(part.piece, part.constant(z), s, theta)) for part in parts)
+    return before, behind
 
 
 def touching(solution: Solution, touch: Touch) -> Contact:
     """Return a contact in the units of the scene."""
     layout, z = solution.layout, solution.z
     before, behind = layout.beside(touch)
-    force = (
-        layout.force * before.axes @ (z[before.force : before.force + 2] - z[behind.force : behind.force + 2])
-    )
-    first, second = _tangents(solution, touch)
-    x, y = (first + second) / np.hypot(*(first + second))
-    side = 1.0 if touch.spec.side == "left" else -1.0
+    force = layout.force * before.rod.axes @ (before.constant(z) - behind.constant(z))
+    x, y = np.sum(_tangents(solution, touch), axis=0)
+    size = np.hypot(x, y)
     return Contact(
         force=force,
-        push=float(side * (y * force[0] - x * force[1])),
-        drag=float(x * force[0] + y * force[1]),
+        push=float(touch.right * (x * force[1] - y * force[0]) / size),
+        drag=float((x * force[0] + y * force[1]) / size),
         arc_position=float(z[touch.arc]) * layout.length,
-        point=np.array(layout.scene.beams[0].start) + layout.length * touch.place.position(z),
     )
 
 
@@ -219,7 +195,7 @@ def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Ar
     layout = solution.layout
     reactions: dict[str, Array] = {}
     for support in layout.scene.all_supports:
-        number = next(k for k, item in enumerate(layout.stations) if support.node in item.joint)
+        number = layout.joint(support.node)
         total = _held(solution, number) * layout.force * np.array([1.0, 1.0, layout.length])
         for touch in layout.touches:
             if touch.spec.node in layout.stations[number].joint:
@@ -230,65 +206,60 @@ def _reactions(solution: Solution, contacts: dict[str, Contact]) -> dict[str, Ar
 
 
 def _held(solution: Solution, number: int) -> Array:
-    """Force and moment (3,) of parts, springs and hinges less the loads at a joint, in units of `Layout`."""
+    """Force and moment (3,) of parts, springs and hinges less the loads at a joint, in units of the layout."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
     assert solution.system is not None, "an equilibrium has its equations"
     station = layout.stations[number]
     total = -np.array([*station.force, station.moment])
-    total += np.array(station.springs) * [*station.place.displacement(z), layout.rotation(z, number)]
+    total += np.array(station.springs) * [*station.place.displacement(z), station.rotation(z)]
     here = {number}
     for hinge in layout.hinges:
         if hinge.joint == number:
             here.add(hinge.end)
             total[:2] -= layout.stations[hinge.end].force
-            total[2] += hinge.stiffness * (layout.rotation(z, number) - layout.rotation(z, hinge.end))
+            total[2] += hinge.stiffness * (station.rotation(z) - layout.stations[hinge.end].rotation(z))
     for k, part in enumerate(layout.parts):
-        elements = np.flatnonzero(mesh.part == k)
-        for end, sign, e, side in ((part.first, -1.0, elements[0], 0), (part.last, 1.0, elements[-1], 1)):
+        for end, sign in ((part.first, -1.0), (part.last, 1.0)):
             if end in here:
-                total[:2] += sign * part.axes @ z[part.force : part.force + 2]
+                total[:2] += sign * part.rod.axes @ part.constant(z)
             if end == number:
-                total[2] += solution.system.ends[e, side]
+                e = np.flatnonzero(mesh.part == k)[0 if sign < 0.0 else -1]
+                total[2] += solution.system.ends[e, int(sign > 0.0)]
     return total
 
 
 def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
     """Evaluate the shape of a beam at arc lengths (m,)."""
     layout, z, mesh = solution.layout, solution.z, solution.mesh
-    coefficients = rotations(mesh, z, solution.bubbles)
+    coefficients, s = rotations(mesh, z, solution.bubbles), arc / layout.length
     number = [item.name for item in layout.scene.beams].index(beam)
-    s = arc / layout.length
+    numbers = np.array([k for k, part in enumerate(layout.parts) if part.beam == number])
+    begins = layout.extents(z)[numbers, 0]
+    own = numbers[np.searchsorted(begins[1:], s, side="right")]
     table = np.empty((len(s), 8))
-    numbers = [k for k, part in enumerate(layout.parts) if part.beam == number]
-    for k in numbers:
-        part = layout.parts[k]
-        first, extent = layout.arc(z, part.first, part), layout.extent(z, part)
-        inside = ((s >= first) | (k == numbers[0])) & ((s < first + extent) | (k == numbers[-1]))
-        if not inside.any():
-            continue
-        elements = np.flatnonzero(mesh.part == k)
-        half = mesh.share[elements] * extent / 2.0
-        points = first + extent * mesh.start[elements][:, None] + half[:, None] * (1.0 + GAUSS)
-        inner = _fields(part, points, coefficients[elements] @ VALUES.T, z).tangent
-        starts = np.zeros((len(elements) + 1, 2))
+    for k in np.unique(own):
+        part, inside, here = layout.parts[k], own == k, mesh.part == k
+        (first, _), extent = part.ends(z), part.extent(z)
+        start, half, rotation = mesh.start[here], mesh.share[here] * extent / 2.0, coefficients[here]
+        points = first + extent * start[:, None] + half[:, None] * (1.0 + GAUSS)
+        within = places(layout, mesh.part[here], points, z[mesh.local[here, 2:4]])
+        inner = within.in_chord(fields(rotation @ VALUES.T, within)[2])
+        starts = np.zeros((len(start) + 1, 2))
         np.cumsum(half[:, None] * (WEIGHTS @ inner), axis=0, out=starts[1:])
         share = (s[inside] - first) / extent
-        e = np.clip(np.searchsorted(mesh.start[elements], share, side="right") - 1, 0, len(elements) - 1)
-        xi = 2.0 * (share - mesh.start[elements][e]) / mesh.share[elements][e] - 1.0
+        e = np.clip(np.searchsorted(start, share, side="right") - 1, 0, len(start) - 1)
+        xi = 2.0 * (share - start[e]) / mesh.share[here][e] - 1.0
         values, slopes = shapes(xi)
-        theta = np.einsum("mi,mi->m", values, coefficients[elements][e])
-        bent = np.einsum("mi,mi->m", slopes, coefficients[elements][e]) / half[e]
-        N, Q, tangent = _fields(part, s[inside], theta, z)
+        theta, bent = (np.einsum("mi,mi->m", item, rotation[e]) for item in (values, slopes))
+        there = places(layout, np.array([k]), s[None, inside], part.constant(z)[None])
+        N, Q, tangent = (item[0] for item in fields(theta[None], there))
         along = starts[e] + half[e][:, None] * np.einsum("mq,mqk->mk", up_to(xi), inner[e])
-        if part.rod.turn:
-            along += np.array([part.rod.between(first, float(x)) for x in s[inside]])
-            tangent += np.array([part.rod.direction(float(x)) for x in s[inside]])
-        else:
-            along[:, 0] += s[inside] - first
-            tangent[:, 0] += 1.0
-        position = layout.position(z, part.first) + along @ part.axes.T
-        moment = part.rod.flexibility(s[inside]).EI * bent
-        table[inside] = np.column_stack([position, tangent @ part.axes.T, theta, moment, N, Q])
+        along = (
+            layout.position(z, part.first) + (along + part.rod.between(first, s[inside])) @ part.rod.axes.T
+        )
+        tangent = there.in_chord(tangent[None])[0] + part.rod.direction(s[inside])
+        moment = there.EI[0] * bent / half[e]
+        table[inside] = np.column_stack([along, tangent @ part.rod.axes.T, theta, moment, N, Q])
     unit = layout.force * layout.length
     return Shape(
         position=np.array(layout.scene.beams[0].start) + layout.length * table[:, :2],
@@ -298,10 +269,3 @@ def _shape(solution: Solution, beam: str, arc: Array) -> Shape:
         N=layout.force * table[:, 6],
         Q=layout.force * table[:, 7],
     )
-
-
-def _fields(part: Part, s: Array, theta: Array, z: Array) -> Fields:
-    """Fields of a part at arc positions (...), with the tangent in the frame of the chord."""
-    _, stretch, shear = part.rod.flexibility(s)
-    N, Q, tangent = fields(theta, part.local(z[part.force : part.force + 2], s), stretch, shear)
-    return Fields(N, Q, part.rod.turned(tangent, s, back=True))

@@ -75,11 +75,18 @@ def stated(scene: Scene, path: list[Equilibrium], model: str = "tsm") -> Respons
     )
 
 
+def seen(
+    scene: Scene, t: float = 1.0, axes: dict[str, np.ndarray] | None = None, **more: dict[str, object]
+) -> AnswerState:
+    """Return an answer with points of the beams' axes, undeformed ones by default, without contact unless `more` says."""
+    parts, given = np.linspace(0.0, 1.0, 41), axes or {}
+    lines = {
+        beam.name: given.get(beam.name, np.array([beam.place(x) for x in parts])) for beam in scene.beams
+    }
+    arcs = {beam.name: np.linspace(0.0, beam.length, len(lines[beam.name])) for beam in scene.beams}
+    return AnswerState(load_parameter=t, axes={name: (arcs[name], lines[name]) for name in lines}, **more)  # type: ignore[arg-type]
+
+
 def bent(scene: Scene, t: float, axes: dict[str, np.ndarray]) -> Equilibrium:
     """Return the equilibrium next to given axes, without contact."""
-    arcs = {beam.name: np.linspace(0.0, beam.length, len(axes[beam.name])) for beam in scene.beams}
-    given = AnswerState(
-        load_parameter=t, arcs={}, forces={}, axes={name: (arcs[name], line) for name, line in axes.items()},
-        reactions={}, tips={},
-    )  # fmt: skip
-    return equilibrium(scene, given)
+    return equilibrium(scene, seen(scene, t, axes))

@@ -13,15 +13,7 @@ from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.referee import Verdict, certify
 from comparisons.response import Response, Sections
-from comparisons.scene import (
-    ContactSpec,
-    PinMove,
-    PinSpec,
-    Scene,
-    StageSpec,
-    load_scene,
-    to_toml,
-)
+from comparisons.scene import ContactSpec, PinMove, PinSpec, Scene, StageSpec, load_scene, to_toml
 from tests.comparisons.referee.forged import bent, contact, scene_of, stated
 from tests.fuzz.world import drawn
 

@@ -12,9 +12,8 @@ from comparisons.models.options import Options
 from comparisons.referee import Certificate, Equilibrium, Verdict, answer_state, certify, equilibrium
 
 # the states of slip and stick that the referee finds are no part of a certificate, and equilibria of others are made from them
-from comparisons.referee.energy import dissipated
-from comparisons.referee.friction import Grip
-from comparisons.referee.history import History
+from comparisons.referee.friction import History, dissipated
+from comparisons.referee.grip import Grip
 from comparisons.response import Response
 from comparisons.scene import ContactSpec, PinSpec, Scene, load_scene
 from tests.comparisons.referee.forged import contact, scene_of, stated

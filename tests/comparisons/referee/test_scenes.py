@@ -7,22 +7,9 @@ import pytest
 
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.referee import (
-    AnswerState,
-    SearchStatus,
-    Verdict,
-    answer_state,
-    certify,
-    equilibrium,
-)
-from comparisons.scene import (
-    LoadSpec,
-    PinSpec,
-    Scene,
-    StageSpec,
-    load_scene,
-)
-from tests.comparisons.referee.forged import bent, scene_of, stated, support
+from comparisons.referee import SearchStatus, Verdict, answer_state, certify, equilibrium
+from comparisons.scene import LoadSpec, PinSpec, Scene, StageSpec, load_scene
+from tests.comparisons.referee.forged import bent, scene_of, seen, stated, support
 
 EXACT = Options(element="exact")
 
@@ -88,10 +75,8 @@ def test_round_off_of_an_unloaded_beam_is_no_error(element):
 def test_two_contacts_at_one_place_are_no_equilibrium(apart, to, words):
     scene = scene_of("one-place")
     scene = replace(scene, pins=(scene.pins[0], replace(scene.pins[1], path=((0.5, 0.0), (0.5, to)))))
-    given = AnswerState(
-        load_parameter=0.5, arcs={"p->b": 0.5, "q->b": 0.5 + apart}, forces={"p->b": (0.0, 0.0), "q->b": (0.0, 0.0)},
-        axes={"b": (np.array([0.0, 1.0]), np.array([[0.0, 0.0], [1.0, 0.0]]))}, reactions={}, tips={},
-    )  # fmt: skip
+    arcs, forces = {"p->b": 0.5, "q->b": 0.5 + apart}, {"p->b": (0.0, 0.0), "q->b": (0.0, 0.0)}
+    given = seen(scene, 0.5, arcs=arcs, forces=forces)
     found = equilibrium(scene, given)
     assert found.status is (SearchStatus.NO_EQUILIBRIUM if apart else SearchStatus.NOT_JUDGED)
     assert words in found.message
@@ -106,13 +91,8 @@ def test_both_branches_of_a_symmetric_bifurcation_are_right():
     for t in scene.times:
         # the shortening beyond the critical one, .0298, is (pi a)^2/4 of a wave a/2 (1 - cos 2 pi x)
         a = 2.0 / np.pi * np.sqrt(max(0.0626 * t - 0.0298, 0.0))
-        path.append(
-            bent(
-                scene,
-                t,
-                {"b": np.stack([x * (1.0 - 0.0626 * t), a / 2.0 * (1.0 - np.cos(2.0 * np.pi * x))], axis=1)},
-            )
-        )
+        wave = np.stack([x * (1.0 - 0.0626 * t), a / 2.0 * (1.0 - np.cos(2.0 * np.pi * x))], axis=1)
+        path.append(bent(scene, t, {"b": wave}))
     assert path[-1].shape("b", np.array([0.5])).position[0, 1] > 0.1
     for at in (None, range(3)):
         found = certify(stated(scene, path), scene, at=at)

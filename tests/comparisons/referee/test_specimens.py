@@ -28,7 +28,7 @@ from comparisons.scene import (
     SupportSpec,
     load_scene,
 )
-from tests.comparisons.referee.forged import scene_of, stated
+from tests.comparisons.referee.forged import scene_of, seen, stated
 from tests.verification.rod_by_shooting import Rod, free, pinned
 
 MATERIAL = {"youngs_modulus": 1e6, "poissons_ratio": 0.3}
@@ -47,17 +47,8 @@ def strip(**more: object) -> BeamSpec:
     return BeamSpec(**(given | MATERIAL | more))
 
 
-def undeformed(scene: Scene, t: float = 1.0, **more: dict) -> AnswerState:
-    parts = np.linspace(0.0, 1.0, 41)
-    axes = {
-        beam.name: (parts * beam.length, np.array([beam.place(x) for x in parts])) for beam in scene.beams
-    }
-    nothing = {"arcs": {}, "forces": {}, "reactions": {}, "tips": {}}
-    return AnswerState(load_parameter=t, axes=axes, **(nothing | more))
-
-
 def found(scene: Scene, given: AnswerState | None = None) -> Equilibrium:
-    exact = equilibrium(scene, given or undeformed(scene))
+    exact = equilibrium(scene, given or seen(scene))
     assert exact.status is SearchStatus.FOUND, exact.message
     return exact
 
@@ -86,7 +77,7 @@ def nearest(scene: Scene) -> Equilibrium:
     """The equilibrium at the end next to the undeformed beam under a push, or to the answer of a model."""
     if scene.name == "everything":
         push = (-10.0, 60.0) if scene.pins[0].radius else (-3.0, 10.0)
-        return found(scene, undeformed(scene, arcs={"pin->a": 0.62}, forces={"pin->a": push}))
+        return found(scene, seen(scene, arcs={"pin->a": 0.62}, forces={"pin->a": push}))
     answer = solve(scene, "tsm", Options(element="exact"))
     return found(scene, answer_state(answer, scene, -1))
 
@@ -154,7 +145,7 @@ def scene(**given: object) -> Scene:
 
 def exactly(scene: Scene) -> Response:
     """The exact answer to a scene, by continuation from the undeformed state."""
-    return stated(scene, [found(scene, undeformed(scene, t)) for t in scene.times])
+    return stated(scene, [found(scene, seen(scene, t)) for t in scene.times])
 
 
 ROLLER = SupportSpec(beam="a", end="end", kind="roller", free="x")

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 # the equations off equilibrium are no answer of `equilibrium`, and an error of their tangent shows there as a few more iterations only
-from comparisons.referee.basis import DEGREE
-from comparisons.referee.elements import mesh_of, properties
+from comparisons.referee.elements import DEGREE, mesh_of
 from comparisons.referee.equations import System, assemble
-from comparisons.referee.friction import Grip, Hold
-from comparisons.referee.layout import Layout, lay_out
-from comparisons.referee.march import tangent
+from comparisons.referee.grip import Grip, Hold
+from comparisons.referee.layout import Layout
+from comparisons.referee.numbering import lay_out
+from comparisons.referee.path import tangent
 from comparisons.referee.stability import _directions
 from comparisons.referee.state import _tangents
 from comparisons.scene import ContactSpec, HingeSpec, LoadSpec, PinSpec, Scene, StageSpec
+from tests.comparisons.referee.forged import seen
 from tests.comparisons.referee.test_specimens import (
     GRAVITY,
     HEAVY_TAPER,
@@ -26,7 +27,6 @@ from tests.comparisons.referee.test_specimens import (
     nearest,
     on_its_face,
     strip,
-    undeformed,
 )
 
 FIRST = strip(turn=1.1, end=(1.0, 0.2), height=(0.1, 0.06), width=(1.0, 1.4), density=2.0)
@@ -68,7 +68,7 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
     """At drawn unknowns, off equilibrium, with the unknowns inside the elements condensed."""
     layout = LAYOUTS[name]
     mesh = mesh_of(layout, [np.linspace(0.0, 1.0, 2) for _ in layout.parts])
-    random, rods = np.random.default_rng(1), properties(layout, mesh)
+    random = np.random.default_rng(1)
     z = 0.1 * random.normal(size=mesh.unknowns)
     for touch, arc in zip(layout.touches, (0.45, 0.6) if name == "every key" else (0.72,), strict=True):
         z[touch.arc] = arc / layout.length
@@ -77,7 +77,7 @@ def test_the_hessian_is_the_derivative_of_the_gradient(name):
     def condensed(z: np.ndarray, iterations: int = 3) -> System:
         nonlocal bubbles
         for _ in range(iterations):
-            system = assemble(layout, mesh, rods, z, bubbles)
+            system = assemble(layout, mesh, z, bubbles)
             bubbles = bubbles - system.shift
         return system
 
@@ -115,5 +115,5 @@ def test_nothing_moves_in_a_stage_that_changes_nothing():
     """The round-off of an equilibrium does not count as a rate: over a short step it would lead the path elsewhere."""
     rest = StageSpec(load_parameters=1, load=(LoadSpec(beam="a", end="start", force=(0.0, 1.0)),))
     idle = Scene(name="idle", load_parameters=2, stages=(rest,), **HEAVY_TAPER)
-    for rate in tangent(idle, found(idle, undeformed(idle, 1.5)).solution, 1e-7):
+    for rate in tangent(idle, found(idle, seen(idle, 1.5)).solution, 1e-7):
         assert not np.any(rate)

@@ -2,18 +2,21 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from comparisons.referee.certificate import Judgement
-from comparisons.referee.distance import LEAST, least_force
-from comparisons.referee.energy import dissipated
-from comparisons.referee.history import History, UnknownFrictionError, at_rest
+from comparisons.referee.friction.dissipation import dissipated
+from comparisons.referee.friction.history import History, at_rest
+from comparisons.referee.friction.phases import OPEN, UNKNOWN, Phase
+from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.grip import UnknownFrictionError
 from comparisons.referee.layout import Touch
-from comparisons.referee.march import corners, place, rates, slip_rate, speed
-from comparisons.referee.phases import OPEN, PASSES, UNKNOWN
+from comparisons.referee.path import corners
 from comparisons.referee.state import Equilibrium
 from comparisons.response import FrictionHistory, Response
+from comparisons.response.round_off import LEAST, least_force
 from comparisons.scene import ContactSpec, Scene
 
 LAW = 1e-6
@@ -30,58 +33,45 @@ _MOST = 6
 
 def unlawful(response: Response, scene: Scene, k: int, allowed: float) -> Iterator[str]:
     """Yield violations of Coulomb's law by the forces and signs that an answer states up to a load parameter, the latest first."""
+    rubbing = [(spec, response.contacts[spec.pair]) for spec in scene.contacts if spec.friction]
     for earlier in range(k, -1, -1):
-        for sentence in _unlawful_at(response, scene, earlier, allowed):
-            where = "" if earlier == k else f" at load parameter {response.load_parameter[earlier]:.6g}"
-            yield sentence + where
-
-
-def _unlawful_at(response: Response, scene: Scene, k: int, allowed: float) -> Iterator[str]:
-    """Yield the violations at one load parameter."""
-    law = _law(response, allowed)
-    for spec in scene.contacts:
-        contact = response.contacts[spec.pair]
-        if not spec.friction or contact.friction is None or contact.force[k] == 0.0:
-            continue
-        yield from _unlawful(spec, contact.friction, abs(float(contact.force[k])), k, law, least_force(scene))
+        where = "" if earlier == k else f" at load parameter {response.load_parameter[earlier]:.6g}"
+        for spec, contact in rubbing:
+            force = abs(float(contact.force[earlier]))
+            if contact.friction is not None and force:
+                law = _law(response, allowed)
+                for sentence in _unlawful(
+                    spec, contact.friction, force, earlier, law, least_force(scene) / LEAST
+                ):
+                    yield sentence + where
 
 
 def _unlawful(
     spec: ContactSpec, friction: FrictionHistory, force: float, k: int, law: float, least: float
 ) -> Iterator[str]:
+    """Yield the violations of one contact at one load parameter."""
     drag, push, slip = (float(x[k]) for x in (friction.tangential, friction.normal, friction.slip))
     if not abs(np.hypot(drag, push) - force) <= law * force:
         yield f"the force of {spec.pair} and its tangential and normal components differ"
     beyond = abs(drag) - spec.friction * push if slip == 0.0 else abs(drag - slip * spec.friction * push)
-    if beyond <= law * max(force, least):
-        return
-    if slip == 0.0:
-        yield f"{spec.pair} sticks with a force outside its cone, F_t = {drag / push:.6g} F_n"
-    else:
-        yield f"{spec.pair} slips with F_t = {drag / push:.6g} F_n, not {slip * spec.friction:.6g} F_n"
+    if beyond > law * max(force, least):
+        does = "sticks with a force outside its cone," if slip == 0.0 else "slips with"
+        end = "" if slip == 0.0 else f", not {slip * spec.friction:.6g} F_n"
+        yield f"{spec.pair} {does} F_t = {drag / push:.6g} F_n{end}"
 
 
 def rubs_wrongly(history: History, k: int, exact: Equilibrium, allowed: float) -> Iterator[str]:
     """Yield violations of Coulomb's law by the exact equilibrium next to an answer, and moves of the answer in stick.
 
-    Parameters
-    ----------
-    history : History
-        States of friction in the answer.
-    k : int
-        Number of the load parameter.
-    exact : Equilibrium
-        The exact equilibrium.
-    allowed : float
-        Largest difference allowed, which also bounds a slip the wrong way and a force outside the cone: the answer may change its state
-        a little earlier or later than the exact one.
+    The difference `allowed` also bounds a slip the wrong way and a force outside the cone: the answer may change its state a little
+    earlier or later than the exact one.
     """
     for touch in exact.solution.layout.touches:
         if touch.grip is None:
             continue
         contact, pair = exact.contacts[touch.spec.pair], touch.spec.pair
         outside = abs(contact.drag) - touch.grip.friction * contact.push
-        size = max(float(np.hypot(*contact.force)), LEAST * least_force(history.scene))
+        size = max(float(np.hypot(*contact.force)), least_force(history.scene))
         if touch.grip.slip == 0 and outside > allowed * size:
             yield f"{pair} sticks with an exact force outside its cone, F_t = {contact.drag / contact.push:.6g} F_n"
         if touch.grip.slip == 0:
@@ -94,8 +84,7 @@ def wanders(history: History, k: int, allowed: float) -> Iterator[str]:
     """Yield contacts that stick and move along the beam by more than they could roll, by the stated arc positions alone."""
     scene = history.scene
     for spec in scene.contacts:
-        number = history.numbers[spec.pair][k]
-        if spec.friction and history.phases[spec.pair][number].slip == 0:
+        if spec.friction and history.phase(spec.pair, k).slip == 0:
             length = scene.beam(spec.beam).length
             moved = _moved(history, spec, k)
             if abs(moved) > _law(history.response, allowed) * length + math.pi * scene.offset(spec):
@@ -124,8 +113,8 @@ def _creeps(history: History, k: int, touch: Touch, exact: Equilibrium, allowed:
 
 def _moved(history: History, spec: ContactSpec, k: int) -> float:
     """Change of the stated arc position since the event at which a stick began, or since the start; nan without an event."""
-    number = history.numbers[spec.pair][k]
-    began = history.stated_arc(spec.pair, number) if number else at_rest(history.scene, spec).arc_position
+    phase = history.phase(spec.pair, k)
+    began = at_rest(history.scene, spec).arc_position if phase.before is None else history.stated_arc(phase)
     return float(history.response.contacts[spec.pair].arc_position[k]) - began
 
 
@@ -148,35 +137,33 @@ def _backwards(scene: Scene, exact: Equilibrium, touch: Touch) -> float:
     return min(sizes)
 
 
+def _spent(history: History, k: int, exact: Equilibrium) -> tuple[float, float]:
+    """Return the stated dissipation, and the largest energy up to a load parameter, to which the error of a sum over the path is relative."""
+    response = history.response
+    spent = sum(float(item.friction.dissipated[k]) for item in response.contacts.values() if item.friction)
+    work = 0.0 if response.work is None else float(np.abs(response.work[: k + 1]).max())
+    return spent, max(work, exact.strain_energy, spent, _least_energy(history.scene))
+
+
 def _unpaid(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
     """Yield an answer whose work is not its dissipation and the exact strain energy; jumps release energy, and end the comparison."""
     response, t = history.response, history.response.load_parameter[k]
     jumped = any(event.kind == "slip-off" and event.load_parameter <= t for event in response.events or ())
-    rubbing = [item.friction for item in response.contacts.values() if item.friction is not None]
-    if response.work is None or jumped or not rubbing:
+    if response.work is None or jumped or not any(item.friction for item in response.contacts.values()):
         return
-    spent = sum(float(item.dissipated[k]) for item in rubbing)
+    spent, largest = _spent(history, k, exact)
     missing = float(response.work[k]) - spent - exact.strain_energy
-    largest = max(_most_work(response, k), exact.strain_energy, spent, _least_energy(history.scene))
     if abs(missing) > tolerance * largest:
         yield f"the work is not strain energy and dissipation at load parameter {t:.6g}, off by {missing / largest:.2g}"
 
 
-def _most_work(response: Response, k: int) -> float:
-    """Largest work up to load parameter number k, to which the error of a sum over the path is relative; 0 if no work is stated."""
-    return 0.0 if response.work is None else float(np.abs(response.work[: k + 1]).max())
-
-
 def _misspent(history: History, k: int, exact: Equilibrium, tolerance: float) -> Iterator[str]:
     """Yield contacts whose dissipation since the load parameter before is not that of the exact equilibria."""
-    response = history.response
-    stated = {pair: item.friction for pair, item in response.contacts.items() if item.friction is not None}
-    # where the work is not stated, it is at least the dissipation
-    whole = sum(float(item.dissipated[k]) for item in stated.values())
-    largest = max(_most_work(response, k), whole, exact.strain_energy, _least_energy(history.scene))
+    response, (_, largest) = history.response, _spent(history, k, exact)
     for pair, own in dissipated(history, k, exact).items():
-        if pair in stated:
-            spent = stated[pair].dissipated
+        friction = response.contacts[pair].friction
+        if friction is not None:
+            spent = friction.dissipated
             missing = float(spent[k] - (spent[k - 1] if k else 0.0)) - own
             if abs(missing) > tolerance * largest:
                 t = response.load_parameter[k]
@@ -209,7 +196,7 @@ def rubs_wrongly_on_the_way(
 
 def _least_energy(scene: Scene) -> float:
     """Energy below which differences are round-off: of the least force that differences are relative to, ``LEAST^2 EI/L``."""
-    return LEAST**2 * least_force(scene) * min(beam.length for beam in scene.beams)
+    return LEAST * least_force(scene) * min(beam.length for beam in scene.beams)
 
 
 def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, least: float) -> Iterator[str]:
@@ -221,40 +208,33 @@ def _falls(spec: ContactSpec, friction: FrictionHistory, response: Response, lea
         yield f"the dissipation of {spec.pair} falls up to load parameter {response.load_parameter[np.argmax(falls)]:.6g}"
 
 
+def _changes(history: History, spec: ContactSpec) -> list[tuple[Phase, Phase]]:
+    """Return the changes between slip and stick: the phases before and behind."""
+    changes = pairwise(history.phases[spec.pair])
+    return [(before, phase) for before, phase in changes if OPEN not in (before.slip, phase.slip)]
+
+
 def _unstated(history: History, spec: ContactSpec) -> Iterator[str]:
     """Yield changes between slip and stick without an event, or against it, if the answer records events."""
-    events = history.response.events
-    for before, phase in zip(history.phases[spec.pair], history.phases[spec.pair][1:], strict=False):
-        if events is None or OPEN in (before.slip, phase.slip):
-            continue
-        kinds = [
-            event.kind
-            for event in events
-            if event.pair == spec.pair and event.load_parameter == phase.stated and event.kind != PASSES
-        ]
-        what = "slips" if phase.slip else "sticks"
-        if not kinds:
-            yield f"{spec.pair} {what} without an event up to load parameter {phase.high:.6g}"
-        elif (kinds[-1] == "stick") != (phase.slip == 0):
-            yield f"{spec.pair} {what} after an event of kind {kinds[-1]} at load parameter {phase.stated:.6g}"
+    for _, phase in _changes(history, spec) if history.response.events is not None else ():
+        events = history.events_at(phase)
+        if not events:
+            yield f"{spec.pair} {phase.does} without an event up to load parameter {phase.high:.6g}"
+        elif (events[-1].kind == "stick") != (phase.slip == 0):
+            yield f"{spec.pair} {phase.does} after an event of kind {events[-1].kind} at load parameter {phase.stated:.6g}"
 
 
 def _elsewhere(history: History, spec: ContactSpec, allowed: float) -> Iterator[str]:
     """Yield changes between slip and stick that are not where the referee's own equilibria change."""
-    own = list(enumerate(history.phases[spec.pair]))[1:]
-    changes = [
-        (n, phase) for n, phase in own if OPEN not in (phase.slip, history.phases[spec.pair][n - 1].slip)
-    ]
-    for n, phase in changes[-_MOST:]:
-        if UNKNOWN in (phase.slip, history.phases[spec.pair][n - 1].slip):
+    for before, phase in _changes(history, spec)[-_MOST:]:
+        if UNKNOWN in (phase.slip, before.slip):
             continue
         try:
-            begin = history.begin(spec.pair, n).load_parameter
+            begin = history.begin(phase).layout.load_parameter
         except UnknownFrictionError as error:
             if error.wrong:
                 yield str(error)
             continue
         width = phase.high - phase.low if math.isnan(phase.stated) else 0.0
         if abs(begin - phase.begin) > max(allowed, width):
-            what = "slips" if phase.slip else "sticks"
-            yield f"{spec.pair} {what} from load parameter {phase.begin:.6g}, exactly from {begin:.6g}"
+            yield f"{spec.pair} {phase.does} from load parameter {phase.begin:.6g}, exactly from {begin:.6g}"

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.path import changes_of
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene
 
 Ints = NDArray[np.int64]
 
-PASSES = "pass-through"
 OPEN, UNKNOWN = 9, 8
 """Numbers of an open contact and of a slip whose sign an answer does not state, next to the signs -1, 0 and 1 of the slip rate."""
 _EDGE = 0.05
@@ -21,24 +21,23 @@ SAME = 1e-9
 """Load parameters of one event."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Phase:
-    """A phase of a contact.
+    """A phase of a contact, which begins between the load parameters `low` and `high`, with the phase before it."""
 
-    Attributes
-    ----------
-    low, high : float
-        Load parameters between which it begins.
-    stated : float
-        Where it begins by the answer's events; nan without an event.
-    slip : int
-        Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact.
-    """
-
-    low: float
-    high: float
+    spec: ContactSpec
+    low: float = 0.0
+    high: float = 0.0
     stated: float
+    """Where it begins by the answer's events; nan without an event."""
     slip: int
+    """Sign of the slip rate, 0 in stick, `UNKNOWN` for a slip between two load parameters; `OPEN` for an open contact."""
+    before: "Phase | None"
+
+    @property
+    def does(self) -> str:
+        """What the contact does in it."""
+        return {0: "sticks", OPEN: "opens"}.get(self.slip, "slips")
 
     @property
     def begin(self) -> float:
@@ -90,7 +89,7 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
     between two load parameters. At an event an answer may state the state before or behind it.
     """
     times = np.concatenate([[0.0], response.load_parameter])
-    events = [event for event in response.events or () if event.pair == spec.pair and event.kind != PASSES]
+    events = changes_of(response, spec.pair)
     found: list[Phase] = []
     numbers: list[int] = []
     for k, now in enumerate(map(int, column)):
@@ -101,13 +100,13 @@ def phases(response: Response, spec: ContactSpec, column: Ints) -> tuple[tuple[P
             between = [event for event in between if event.load_parameter < high - SAME]
         events = events[len(between) :]
         if not found:
-            found.append(Phase(low=0.0, high=0.0, stated=0.0, slip=_before(between, now)))
+            found.append(Phase(spec=spec, stated=0.0, slip=_before(between, now), before=None))
         for n, event in enumerate(between):
             slip = now if event is between[-1] else _after(event, between[n + 1])
             t = event.load_parameter
-            found.append(Phase(low=low, high=high, stated=t, slip=slip))
+            found.append(Phase(spec=spec, low=low, high=high, stated=t, slip=slip, before=found[-1]))
         if found[-1].slip != now:
-            found.append(Phase(low=low, high=high, stated=np.nan, slip=now))
+            found.append(Phase(spec=spec, low=low, high=high, stated=np.nan, slip=now, before=found[-1]))
         numbers.append(len(found) - 1)
     return tuple(found), tuple(numbers)
 

@@ -16,8 +16,9 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.friction import Grip, Hold
-from comparisons.referee.march import place, reach
+from comparisons.referee.friction.slip import place
+from comparisons.referee.grip import Grip, Hold
+from comparisons.referee.path import reach
 from comparisons.scene import Scene
 
 _PLACES = (1.0 - np.cos(np.pi * np.arange(9) / 8.0)) / 2.0
@@ -38,19 +39,8 @@ def roll(
 ) -> tuple[Holds, Holds] | None:
     """Follow contacts that stick between two load parameters without a change.
 
-    Parameters
-    ----------
-    scene, near, span
-        The scene, an equilibrium with the same contacts next to the end, and the two load parameters.
-    grips : dict of Grip
-        How friction holds all closed contacts.
-    begins : dict of Hold
-        Places of the contacts that stick at the first load parameter.
-
-    Returns
-    -------
-    tuple of dict of Hold, or None
-        Where the sticks began, with the areas up to the second load parameter, and the places there. None without equilibria.
+    From an equilibrium with the same contacts `near` the end, with the `grips` of all closed contacts and the places of those that stick
+    where they begin. Return where the sticks began, with the areas up to the end, and the places there; None without equilibria.
     """
     first, last = span
     times, found = first + (last - first) * _PLACES, [near] * len(_PLACES)

@@ -8,9 +8,10 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from comparisons.referee.equilibrium import SearchStatus, Solution
-from comparisons.referee.friction import Grip
-from comparisons.referee.history import History, UnknownFrictionError
-from comparisons.referee.march import corners, rates, reach, slip_rate
+from comparisons.referee.friction.history import History
+from comparisons.referee.friction.slip import rates, slip_rate
+from comparisons.referee.grip import Grip, UnknownFrictionError
+from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 
 Array = NDArray[np.float64]
@@ -54,10 +55,10 @@ def _cuts(history: History, k: int) -> dict[float, Solution | None]:
     found: dict[float, Solution | None] = {}
     for pair, own in history.phases.items():
         before = history.numbers[pair][k - 1] if k else 0
-        for number in range(before + 1, history.numbers[pair][k] + 1):
-            if own[number].slip != own[number - 1].slip:
-                begin = history.begin(pair, number)
-                found[begin.load_parameter] = begin.solution
+        for phase in own[before + 1 : history.numbers[pair][k] + 1]:
+            if phase.before is not None and phase.slip != phase.before.slip:
+                begin = history.begin(phase)
+                found[begin.layout.load_parameter] = begin
     return found
 
 

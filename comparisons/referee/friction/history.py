@@ -1,0 +1,377 @@
+"""How friction holds the contacts of an answer at its load parameters, with the places of stick from the referee's own equilibria.
+
+A slip has no memory. A stick holds the place at which it began: where the referee's own slip rate is zero, or its own contact force begins.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from comparisons.referee.equilibrium import SearchStatus, Solution, solve
+from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
+from comparisons.referee.friction.rolling import roll
+from comparisons.referee.friction.slip import place, rates, slip_rate, speed
+from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
+from comparisons.referee.path import changes_of, closed_pairs, corners, reach
+from comparisons.referee.rod import face_slope, touching_distance
+from comparisons.referee.start import answer_state
+from comparisons.referee.state import touching
+from comparisons.response import ContactEvent, Response
+from comparisons.scene import BeamSpec, ContactSpec, Scene
+from comparisons.scene.consistency import signed_gap
+
+_ITERATIONS = 60
+"""Largest number of steps of a root."""
+_FIRST = 1e-4
+"""First step of a secant, in load parameters."""
+_BEFORE = 0.01
+"""Part of a slip's interval of load parameters before its end at which its sign is compared with the slip rate."""
+_FEET = 40
+"""Number of corrections of a place on a face whose height tapers."""
+_CLOSE = 1e-13
+"""Change of a load parameter at which a root is found."""
+_ZERO = 1e-12
+"""Dimensionless margin that is zero."""
+
+
+class History:
+    """The phases of the contacts of an answer, and where they begin.
+
+    Attributes
+    ----------
+    response, scene
+        The answer and its scene.
+    taken : str
+        What was taken for the states of friction if the answer does not state them; empty if it does.
+    """
+
+    def __init__(self, response: Response, scene: Scene) -> None:
+        self.response, self.scene = response, scene
+        self.phases: dict[str, tuple[Phase, ...]] = {}
+        self.numbers: dict[str, tuple[int, ...]] = {}
+        how: list[str] = []
+        for spec in scene.contacts:
+            column, taken = states(response, scene, spec)
+            self.phases[spec.pair], self.numbers[spec.pair] = phases(response, spec, column)
+            how += [f"friction of {spec.pair} taken from {taken}"] if taken else []
+        self.taken = "; ".join(how)
+        self._begins: dict[Phase, Solution] = {}
+        self._holds: dict[Phase, Hold] = {}
+        self._reached: dict[Phase, Hold] = {}
+        self._followed: set[tuple[Phase, float]] = set()
+        """Where sticks began, the places up to which they were followed, and from where they were."""
+        changes = [phase.begin for own in self.phases.values() for phase in own[1:]]
+        times = sorted([0.0, *changes, *corners(scene), float(np.max(response.load_parameter, initial=0.0))])
+        self._cuts = [t for t, after in pairwise([*times, math.inf]) if after > t + SAME]
+        self._sought: set[Phase] = set()
+
+    def phase(self, pair: str, k: int) -> Phase:
+        """Return the phase of a contact at load parameter number k."""
+        return self.phases[pair][self.numbers[pair][k]]
+
+    def grips(self, k: int) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts at load parameter number k.
+
+        Raises
+        ------
+        UnknownFrictionError
+            If no equilibrium is found where a stick begins; so do the following methods.
+        """
+        t = float(self.response.load_parameter[k])
+        now = {spec.pair: self.phase(spec.pair, k) for spec in self.scene.contacts if spec.friction}
+        return {pair: self.grip(phase, t) for pair, phase in now.items() if phase.slip != OPEN}
+
+    def closed(self, t: float) -> set[str]:
+        """Return the contacts that are closed at load parameter t, those that touch there included."""
+        return {pair for pair in self.phases if self._phase_at(pair, t).slip != OPEN}
+
+    def begin(self, phase: Phase) -> Solution:
+        """Return the equilibrium where a phase of a contact begins, in the state before it; not for the first phase, nor for a slip-off."""
+        if phase not in self._begins:
+            if phase in self._sought:
+                raise UnknownFrictionError(
+                    f"the changes of {phase.spec.pair} and of another contact depend on each other"
+                )
+            self._sought.add(phase)
+            try:
+                self._begins[phase] = self._found(phase)
+            finally:
+                self._sought.discard(phase)
+        return self._begins[phase]
+
+    def grip(self, phase: Phase, until: float) -> Grip:
+        """Return how friction holds a contact in a closed phase, up to a load parameter in it."""
+        spec, slip = phase.spec, self._sign(phase) if phase.slip == UNKNOWN else phase.slip
+        if slip:
+            return Grip(friction=spec.friction, slip=slip)
+        if phase not in self._holds:
+            begin = at_rest(self.scene, spec)
+            if phase.before is not None:
+                solution = self.begin(phase)
+                begin = place(solution, solution.layout.touch(spec.pair))
+            self._holds[phase] = self._reached[phase] = begin
+        if spec.surface == "face" or self.scene.radius(spec):
+            for first, last in pairwise(self._cuts):
+                if phase.begin <= first + SAME and first < until - SAME:
+                    self._roll(phase, first, last)
+        return Grip(friction=spec.friction, slip=0, hold=self._holds[phase])
+
+    def _roll(self, phase: Phase, first: float, last: float) -> None:
+        """Follow the contacts that stick between two neighbouring changes, as far as this has not been done."""
+        if (phase, first) in self._followed:
+            return
+        middle = (first + last) / 2.0
+        grips = self.around(middle, until=first)
+        sticking = {pair: self._phase_at(pair, middle) for pair, grip in grips.items() if not grip.slip}
+        begins = {pair: self._reached[item] for pair, item in sticking.items()}
+        begin = max(item.load_parameter for item in begins.values())
+        if begin >= last:
+            return
+        closed = self.closed(middle)
+        began = [self._begins[item] for item in sticking.values() if item in self._begins]
+        began = [item for item in began if closed_pairs(item).keys() == closed]
+        # a stick is followed from its begin: at the load parameters of the answer it may have no equilibrium
+        latest = max(began, key=lambda item: item.layout.load_parameter, default=None)
+        near = self.near(middle, closed, grips) if latest is None else latest
+        rolled = roll(self.scene, near, (begin, last), grips, begins)
+        if rolled is None:
+            raise UnknownFrictionError(f"no equilibria in stick were found up to load parameter {last:.6g}")
+        for pair, item in sticking.items():
+            self._holds[item], self._reached[item] = rolled[0][pair], rolled[1][pair]
+            self._followed.add((item, first))
+
+    def _sign(self, phase: Phase) -> int:
+        """Sign of a slip between two load parameters: of the force where it begins, or of the slip that ends where it does."""
+        pair = phase.spec.pair
+        if phase.before is not None and phase.before.slip == 0:
+            solution = self.begin(phase)
+            return 1 if touching(solution, solution.layout.touch(pair)).drag > 0.0 else -1
+        for after in self.phases[pair]:
+            if after.before is phase and after.slip == 0:
+                return self.begin(after).layout.grips[pair].slip
+        raise UnknownFrictionError(f"{pair} slips between two load parameters, and its sign is not stated")
+
+    def _found(self, phase: Phase) -> Solution:
+        """Find the root of a phase's margin, in each state that the contact may have been in before."""
+        before, friction = phase.before, phase.spec.friction
+        assert before is not None, "the first phase has no begin"
+        if before.slip == OPEN:
+            return self._root(phase, LOOSE)
+        if math.isnan(phase.stated) and before.slip == -phase.slip != 0:
+            raise UnknownFrictionError(
+                f"the slip of {phase.spec.pair} turns between two load parameters, and a stick in between is not stated"
+            )
+        if before.slip != UNKNOWN or (before.before is not None and before.before.slip == 0):
+            return self._root(phase, self.grip(before, phase.begin))
+        found, reasons = [], []
+        for sign in (1, -1):
+            own = Grip(friction=friction, slip=sign)
+            try:
+                begin = self._root(phase, own)
+                found.append((self._unlike(phase, before, own, begin), begin))
+            except UnknownFrictionError as error:
+                reasons.append(error)
+        if not found:
+            raise reasons[0]
+        # at a corner of a pin's path, and where another contact changes, a slip of either sign can end
+        return min(found, key=lambda item: item[0])[1]
+
+    def _unlike(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> tuple[bool, float, float]:
+        """How unlikely it is that the slip `own` ends where a phase begins: a slip rate of the other sign, and distances from the stated place."""
+        off = abs(closed_pairs(begin)[phase.spec.pair] - self.stated_arc(phase))
+        slipped, t = self._slipped(phase, before, own, begin), begin.layout.load_parameter
+        return not slipped, 0.0 if math.isnan(off) else off, abs(t - phase.begin)
+
+    def events_at(self, phase: Phase) -> list[ContactEvent]:
+        """Return the events at which the answer states that a phase of a contact begins."""
+        events = changes_of(self.response, phase.spec.pair)
+        return [event for event in events if event.load_parameter == phase.stated]
+
+    def stated_arc(self, phase: Phase) -> float:
+        """Return the arc position that the answer states where a phase of a contact begins; nan without an event."""
+        return next((event.arc_position for event in reversed(self.events_at(phase))), math.nan)
+
+    def _slipped(self, phase: Phase, before: Phase, own: Grip, begin: Solution) -> bool:
+        """Whether the slip rate before the beginning of a phase has the sign of the slip `own`, where the same contacts are closed there."""
+        pair, t = phase.spec.pair, begin.layout.load_parameter
+        t = t - _BEFORE * (t - before.begin)
+        if self.closed(t) != closed_pairs(begin).keys():
+            return True
+        now = reach(self.scene, begin, t, {**self.around(t, phase.spec), pair: own})
+        if now.status is not SearchStatus.FOUND:
+            return False
+        return own.slip * slip_rate(now, now.layout.touch(pair), rates(self.scene, now)) > 0.0
+
+    def _root(self, phase: Phase, own: Grip) -> Solution:
+        """Return the equilibrium at which the state `own` of a contact ends."""
+        state = {**self.around(phase.begin, phase.spec), phase.spec.pair: own}
+        now = self._start(phase, state)
+
+        def margin(t: float) -> float:
+            nonlocal now
+            now = _found_at(reach(self.scene, now, t, state), phase, t)
+            return _margin(self.scene, now, phase, own)
+
+        # each way evaluates the margin at the root last
+        if self._jumps(phase, phase.begin):
+            margin(phase.begin)
+        elif math.isfinite(phase.stated):
+            _secant(margin, phase)
+        elif not (
+            # the slip rate changes its sign by a jump, and the margin has the rate behind it
+            own.friction and own.slip and self._jumps(phase, phase.low) and margin(phase.low) < 0.0
+        ):
+            _bisected(margin, phase)
+        return now
+
+    def _start(self, phase: Phase, state: dict[str, Grip]) -> Solution:
+        """Return an equilibrium from which the beginning of a phase is sought, in the state before: near an answer, or where that state began."""
+        t, found, before = phase.begin, None, phase.before
+        closed = self.closed(t) | {phase.spec.pair}
+        later = before is not None and before.before is not None
+        try:
+            found = reach(self.scene, self.near(t, closed, state), t, state)
+        except UnknownFrictionError:
+            if not later:
+                raise
+        if before is not None and later and (found is None or found.status is not SearchStatus.FOUND):
+            began = self.begin(before)
+            found = reach(self.scene, began, t, state) if closed == closed_pairs(began).keys() else None
+        return _found_at(found, phase, t)
+
+    def _jumps(self, phase: Phase, t: float) -> bool:
+        """Whether rates jump at load parameter t: at a corner of a pin's path, at the end of a stage, and where another contact changes."""
+        others = [
+            one.stated for pair, own in self.phases.items() if pair != phase.spec.pair for one in own[1:]
+        ]
+        return any(abs(t - other) <= SAME for other in (*corners(self.scene), *others))
+
+    def _phase_at(self, pair: str, t: float) -> Phase:
+        """Phase of a contact at a load parameter; the later one where it changes."""
+        first, *others = self.phases[pair]
+        return next((phase for phase in reversed(others) if phase.begin <= t + SAME), first)
+
+    def around(
+        self, t: float, spec: ContactSpec | None = None, until: float | None = None
+    ) -> dict[str, Grip]:
+        """Return how friction holds the closed contacts but one at load parameter t; those that change there, as before.
+
+        A contact that touches there is `LOOSE`. Sticks are followed `until` a load parameter, by default t.
+        """
+        held, until = {}, t if until is None else until
+        for other in self.scene.contacts:
+            now = self._phase_at(other.pair, t)
+            if other is spec or not other.friction or now.slip == OPEN:
+                continue
+            if now.before is not None and abs(now.begin - t) <= SAME:
+                now = now.before
+            held[other.pair] = LOOSE if now.slip == OPEN else self.grip(now, until)
+        return held
+
+    def near(self, t: float, closed: set[str], state: dict[str, Grip]) -> Solution:
+        """Return an equilibrium with given contacts and state, at a load parameter of the answer that is near t."""
+        times = self.response.load_parameter
+        after = int(np.searchsorted(times, t))
+        for k in (after - 1, after, after + 1):
+            answer = answer_state(self.response, self.scene, k) if 0 <= k < len(times) else None
+            if answer is None or not closed <= answer.arcs.keys():
+                continue
+            kept = {pair: arc for pair, arc in answer.arcs.items() if pair in closed}
+            # far from t there may be no equilibrium in this state, while frictionless contacts lead to t
+            loose = dict.fromkeys(state, LOOSE)
+            for first in (state, loose):
+                found = solve(self.scene, replace(answer, arcs=kept, grips=first))
+                for then in (loose, state) if first is loose else ():
+                    if found.status is SearchStatus.FOUND:
+                        found = reach(self.scene, found, t, then)
+                if found.status is SearchStatus.FOUND:
+                    return found
+        raise UnknownFrictionError(
+            f"no equilibrium near load parameter {t:.6g} was found in the contacts there"
+        )
+
+
+def _found_at(solution: Solution | None, phase: Phase, t: float) -> Solution:
+    """Return an equilibrium that was found where a phase begins, or raise `UnknownFrictionError`."""
+    if solution is None or solution.status is not SearchStatus.FOUND:
+        raise UnknownFrictionError(
+            f"no equilibrium was found where {phase.spec.pair} {phase.does} at {t:.6g}"
+        )
+    return solution
+
+
+def at_rest(scene: Scene, spec: ContactSpec) -> Hold:
+    """The place of a contact with the undeformed beam."""
+    beam = scene.beam(spec.beam)
+    x, y = beam.direction
+    there = scene.place(spec.node) if "." in spec.node else scene.pin(spec.node).position(0.0)
+    left, steep = 1.0 if spec.side == "left" else -1.0, face_slope(scene, spec)
+    arc = _foot(beam, there)
+    for _ in range(_FEET if steep else 0):
+        apart = np.array(there) - np.array(beam.place(arc / beam.length))
+        ahead = float(apart @ beam.tangent(arc / beam.length)) + steep * touching_distance(scene, spec, arc)
+        arc = min(max(arc + ahead, 0.0), beam.length)
+    angle, tilt = math.atan2(y, x), left * math.asin(steep)
+    lever = left * (scene.radius(spec) - touching_distance(scene, spec, arc))
+    return Hold(
+        load_parameter=0.0,
+        arc_position=arc,
+        stretch=math.sqrt(1.0 - steep**2) + lever * beam.curvature,
+        shear=angle - beam.turn / 2.0 + tilt,
+        direction=angle + beam.turn * (arc / beam.length - 0.5) + tilt,
+    )
+
+
+def _foot(beam: BeamSpec, point: tuple[float, float]) -> float:
+    """Arc position of the point of the undeformed axis that is nearest to `point`."""
+    x, y = beam.direction
+    if not beam.turn:
+        return float(np.clip((np.array(point) - np.array(beam.start)) @ np.array([x, y]), 0.0, beam.length))
+    _, fraction = signed_gap(beam, "left", 0.0, point)
+    return float(np.clip(fraction, 0.0, 1.0)) * beam.length
+
+
+def _margin(scene: Scene, now: Solution, phase: Phase, own: Grip) -> float:
+    """A dimensionless number that is zero where a state ends: push at a touch or release, slip rate in slip, distance from the cone in stick."""
+    touch, opens = now.layout.touch(phase.spec.pair), phase.slip == OPEN
+    if own.friction and own.slip and not opens:
+        rate = rates(scene, now)
+        return own.slip * slip_rate(now, touch, rate) / speed(scene, now, rate)
+    contact = touching(now, touch)
+    if opens or not own.friction:
+        return contact.push / now.layout.force
+    return (own.friction * contact.push - abs(contact.drag)) / now.layout.force
+
+
+def _secant(margin: Callable[[float], float], phase: Phase) -> None:
+    """Find the root of a margin near a stated load parameter; the margin is evaluated there last."""
+    low, high = max(0.0, 2.0 * phase.low - phase.high), 2.0 * phase.high - phase.low
+    first, value = phase.stated, margin(phase.stated)
+    if abs(value) <= _ZERO:
+        return
+    second = first + _FIRST * (phase.high - phase.low)
+    for _ in range(_ITERATIONS):
+        other = margin(second)
+        if abs(other) <= _ZERO or abs(second - first) <= _CLOSE or other == value:
+            return
+        ahead = second - other * (second - first) / (other - value)
+        if not low <= ahead <= high:
+            break
+        first, value, second = second, other, ahead
+    raise UnknownFrictionError(f"no change of a contact was found near load parameter {phase.stated:.6g}")
+
+
+def _bisected(margin: Callable[[float], float], phase: Phase) -> None:
+    """Find the root of a margin between two load parameters; the margin is evaluated there last."""
+    from scipy.optimize import brentq
+
+    low, high = max(phase.low, 1e-3 * phase.high), phase.high
+    if margin(low) * margin(high) > 0.0:
+        raise UnknownFrictionError(
+            f"{phase.spec.pair} {phase.does} from between load parameters {phase.low:.6g} and {phase.high:.6g}, where it does not begin to",
+            wrong=True,
+        )
+    margin(float(brentq(margin, low, high, xtol=_CLOSE)))

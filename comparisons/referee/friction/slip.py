@@ -1,0 +1,66 @@
+"""The place of a contact with friction, and its slip rate, by the referee's own equilibria."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparisons.referee.equations import element_before
+from comparisons.referee.equilibrium import Solution
+from comparisons.referee.grip import Hold, rows
+from comparisons.referee.layout import NONE, Touch
+from comparisons.referee.path import corners, tangent
+from comparisons.scene import Scene
+
+Array = NDArray[np.float64]
+
+_AHEAD, _AHEAD_TURNED = 1e-4, 1e-6
+"""Load parameters over which rates are differences. The equations are linear in pins and loads, but not in prescribed rotations."""
+_CORNER = 1e-9
+"""Distance from a corner, in load parameters, that counts as none."""
+
+
+def rates(scene: Scene, now: Solution, *, behind: bool = False) -> Array:
+    """Rates of the unknowns ahead, or behind, up to the next of the `corners`."""
+    t, sign = now.layout.load_parameter, -1.0 if behind else 1.0
+    turned = any(change[2] for motion in scene.prescribed_motions.values() for change in motion.increments)
+    apart = [sign * (corner - t) for corner in corners(scene)]
+    little = [part / 2.0 for part in apart if part > _CORNER]
+    return tangent(scene, now, sign * min([_AHEAD_TURNED if turned else _AHEAD, *little]))[0]
+
+
+def speed(scene: Scene, now: Solution, rate: Array) -> float:
+    """Largest rate of a position per load parameter, in units of `Layout`; rates of slip are measured against it."""
+    layout = now.layout
+    moved = [k for item in layout.stations for k in item.place.unknown if k != NONE]
+    moved += [touch.arc for touch in layout.touches]
+    ways = [float(np.hypot(*np.diff(pin.points, axis=0).T).sum()) / layout.length for pin in scene.pins]
+    return max([float(np.abs(rate[moved]).max(initial=0.0)), *ways, 1e-300])
+
+
+def place(solution: Solution, touch: Touch) -> Hold:
+    """The place of a contact with friction, at which it may begin to stick."""
+    layout, z = solution.layout, solution.z
+    before, _ = layout.beside(touch)
+    theta = layout.stations[before.last].rotation(z)
+    phi = 0.0 if touch.angle == NONE else float(z[touch.angle])
+    assert solution.system is not None, "an equilibrium has its equations"
+    moment = float(solution.system.ends[element_before(solution.mesh, touch), 1])
+    return Hold(
+        load_parameter=layout.load_parameter,
+        arc_position=float(z[touch.arc]) * layout.length,
+        stretch=rows(layout, touch, z, moment).stretch,
+        shear=phi - theta - before.rod.curvature * float(z[touch.arc]),
+        direction=phi,
+    )
+
+
+def slip_rate(solution: Solution, touch: Touch, rate: Array) -> float:
+    """Slip rate of a contact with friction from the rates of the unknowns, in units of the layout."""
+    layout = solution.layout
+    before, _ = layout.beside(touch)
+    slipping = place(solution, touch).stretch * float(rate[touch.arc])
+    if touch.angle == NONE:
+        return slipping
+    theta, phi = float(rate[layout.stations[before.last].rotation_unknown]), float(rate[touch.angle])
+    theta += before.rod.curvature * float(rate[touch.arc])
+    lever = float(touch.lever(float(solution.z[touch.arc])))
+    return slipping + lever * (phi - theta) + touch.roll * phi
