@@ -42,8 +42,8 @@ def run(given: "argparse.Namespace") -> int:
     writable_folder(given.out, "report.html")
     from comparisons.claims.paper.reproduce import reproduce
 
-    done = reproduce(given.figure, given.out, quick=given.quick, report=report)
-    print("files:", *(f"  {path}" for path in done.files), sep="\n")
-    for reason in done.stopped:
+    files, stopped = reproduce(given.figure, given.out, quick=given.quick, report=report)
+    print("files:", *(f"  {path}" for path in files), sep="\n")
+    for reason in stopped:
         report(f"crossval: {reason}")
-    return STOPPED if done.stopped else DONE
+    return STOPPED if stopped else DONE

@@ -66,7 +66,7 @@ def _answer(given: "argparse.Namespace") -> int:
     from comparisons.claims.solid.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 
-    rows = STUDIES[given.study](report)
+    rows = list(STUDIES[given.study](report))
     print(tabulated(rows))
     print("file:", write_rows(given.out / f"{given.study}.csv", rows))
     return DONE

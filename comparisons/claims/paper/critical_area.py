@@ -40,11 +40,10 @@ FITTED = (1e-13, 1e-2)
 BESIDE = {"textcoords": "offset points", "fontsize": "small"}
 """Words at a distance from their place."""
 
-_END: Literal["end"] = "end"
-_ENDS: tuple[Literal["start"], Literal["end"]] = ("start", _END)
+_ENDS: tuple[Literal["start", "end"], ...] = ("start", "end")
 _FLOOR_CASES = (
     *((element, end, PSI) for element in (*LABELS, turned_frame.NAME) for end in _ENDS),
-    (TIMOSHENKO, _END, PRINTED_SHEAR_PSI),
+    (TIMOSHENKO, _ENDS[1], PRINTED_SHEAR_PSI),
 )
 
 
@@ -240,7 +239,7 @@ def plot_floors(floors: list[Row], slopes: Mapping[str, list[float]], *paths: Pa
     }
     shown[TIMOSHENKO, PRINTED_SHEAR_PSI] = "Timoshenko, printed G of section 4.2"
     for case, label in shown.items():
-        own = [row for row in floors if (row["element"], row["psi"]) == case and row["end"] == _END]
+        own = [row for row in floors if (row["element"], row["psi"]) == case and row["end"] == "end"]
         style = {**line(case[0]), "markersize": 5.0}
         style |= {"markersize": 9.0, "markerfacecolor": "none"} if case[0] == SIMPLE else {}
         style |= {"marker": "v", "linestyle": "-."} if case[1] == PRINTED_SHEAR_PSI else {}

@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.cases.settings import changed
-from comparisons.claims.paper.double_beam_plot import NAMES, plot_histories, plot_stages
-from comparisons.claims.paper.figure_study import Study
+from comparisons.claims.paper.figure_study import Study, legend, shape_panels
 from comparisons.claims.paper.formulations import CANTILEVER, SIMPLE, TIMOSHENKO
 from comparisons.claims.problems.double_beam import EVENTS, HAND_OVER, LOWER, TIP, UPPER
 from comparisons.models import ROD, TSM, solve
@@ -17,12 +18,26 @@ from comparisons.models.options import Options
 from comparisons.output import Report, Row
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
+from comparisons.show import palette
 from comparisons.show.pages import Section, Track, motion_section
+from comparisons.show.plot import WIDTH, figure, save
 
 FINER = 10
 """Load parameters of the picture per load parameter of the scene."""
 BEAMS, RODS = "TSM mixed, 10 elements a beam", "exact rods, coupled"
 """The runs on the page."""
+COLOURS = {"upper": palette.BLUE, "lower": palette.SKY}
+NAMES = {UPPER: "pin on upper", TIP: "upper's tip on lower", LOWER: "pin on lower"}
+"""The contact pairs in words."""
+STYLES: dict[str, dict[str, Any]] = {
+    UPPER: {"color": palette.VERMILION, "linestyle": "-"},
+    TIP: {"color": palette.PURPLE, "linestyle": (0, (6, 1))},
+    LOWER: {"color": palette.GREEN, "linestyle": (0, (2, 1))},
+}
+ROOM = 1.7
+"""Height of the forces' diagram over the largest force; the list of the events stands above."""
+ARROW = 0.16
+"""Length of an arrow per force [m/N]."""
 Columns = Mapping[str, Array]
 """The depth of the pin [m]; by pair, forces [N] and arc positions [m] of the beams and the exact rods, nan where the pair is open."""
 
@@ -39,14 +54,10 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     travel = abs(scene.pins[0].points[1][1])
     columns = {"depth": travel * response.load_parameter}
     for pair in NAMES:
-        beams, rods = response.contacts[pair], exact.contacts[pair]
-        closed, touching = np.isfinite(beams.arc_position), np.isfinite(rods.arc_position)
-        columns |= {
-            f"{pair} force": np.where(closed, beams.force, np.nan),
-            f"{pair} arc": beams.arc_position,
-            f"{pair} exact_force": np.where(touching, rods.force, np.nan),
-            f"{pair} exact_arc": rods.arc_position,
-        }
+        for prefix, contact in (("", response.contacts[pair]), ("exact_", exact.contacts[pair])):
+            closed = np.isfinite(contact.arc_position)
+            columns[f"{pair} {prefix}force"] = np.where(closed, contact.force, np.nan)
+            columns[f"{pair} {prefix}arc"] = contact.arc_position
     events = [
         {
             "kind": event.kind,
@@ -98,19 +109,13 @@ def _checks(columns: Columns) -> Iterator[Row]:
         ("the other rod under the pin", LOWER, after),
     )
     for stage, pair, part in parts:
-        force, arc, exact_force, exact_arc = (
-            columns[f"{pair} {name}"] for name in ("force", "arc", "exact_force", "exact_arc")
+        exact = columns[f"{pair} exact_force"]
+        force, arc = (
+            np.abs(columns[f"{pair} {name}"] - columns[f"{pair} exact_{name}"]) for name in ("force", "arc")
         )
-        both = part & np.isfinite(arc) & np.isfinite(exact_arc)
-        differences = (
-            (
-                np.abs(force - exact_force)[both].max() / exact_force[both].max(),
-                np.abs(arc - exact_arc)[both].max(),
-            )
-            if both.any()
-            else (np.nan, np.nan)
-        )
-        yield {"stage": stage, "pair": pair, "force": differences[0], "arc": differences[1]}
+        both = part & np.isfinite(arc)
+        largest = (force[both].max() / exact[both].max(), arc[both].max()) if both.any() else (np.nan, np.nan)
+        yield {"stage": stage, "pair": pair, **dict(zip(("force", "arc"), largest, strict=True))}
 
 
 def _stages(depth: Array) -> Iterator[Row]:
@@ -162,3 +167,89 @@ def _moving(scene: Scene, response: Response, columns: Columns) -> Section:
     ]
     title = "Double beam: shapes and histories"
     return motion_section(title, scene, {BEAMS: response}, histories, focus=BEAMS)
+
+
+def plot_stages(scene: Scene, response: Response, stages: list[Row], *paths: Path) -> None:
+    """Draw both beams, the pin and the contact forces at the six stages."""
+    fig, grid = shape_panels(len(stages), 2.8)
+    for axes, stage in zip(grid.flat, stages, strict=True):
+        _draw_stage(axes, scene, response, stage["index"])
+        words = f"({stage['key']}) {stage['title']},\ndepth {stage['depth']:.3f} m"
+        axes.set_title(words, fontsize="small")
+        axes.set(xlim=(-0.05, 1.08), ylim=(-0.8, 0.2))
+    legend(fig, grid, 3)
+    fig.suptitle(
+        "Mixed elements, 10 + 10;\narrows are the forces on the touched beams, grey the beams at rest",
+        fontsize="medium",
+    )
+    save(fig, *paths)
+
+
+def _draw_stage(axes: Any, scene: Scene, response: Response, k: int) -> None:
+    for beam in scene.beams:
+        rest, color = np.array([beam.start, beam.end]), COLOURS[beam.name]
+        line = rest if k < 0 else response.axis_line(beam.name, k)[1]
+        nodes = np.linspace(0, len(line) - 1, beam.elements + 1).round().astype(int)
+        axes.plot(*rest.T, color="0.75", linewidth=0.8)
+        axes.plot(*line.T, color=color, linewidth=1.8, label=f"{beam.name} beam")
+        if k >= 0:
+            axes.plot(*line[nodes].T, color=color, marker="o", markersize=3, linestyle="none")
+    pin = np.array(scene.pins[0].position(0.0 if k < 0 else float(response.load_parameter[k])))
+    for row, pair in enumerate(NAMES if k >= 0 else ()):
+        point = response.tips["upper"][k] if pair == TIP else pin
+        _draw_force(axes, response, pair, k, point, -0.62 - 0.07 * row)
+    mark = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "linestyle": "none", "zorder": 6}
+    axes.plot(*pin, color="black", label="pin", **mark)
+
+
+def _draw_force(axes: Any, response: Response, pair: str, k: int, point: Array, height: float) -> None:
+    contact, color = response.contacts[pair], STYLES[pair]["color"]
+    if not np.isfinite(contact.arc_position[k]) or contact.vector is None:
+        return
+    arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.8, "shrinkA": 0.0, "shrinkB": 0.0}
+    axes.annotate("", point, point - ARROW * contact.vector[k], arrowprops=arrow)
+    axes.plot([], [], color=color, linewidth=1.8, label=f"force of {NAMES[pair]}")
+    axes.annotate(f"{NAMES[pair]}: {contact.force[k]:.3f} N", (0.0, height), color=color, fontsize="small")
+
+
+def plot_histories(scene: Scene, columns: Columns, events: list[Row], *paths: Path) -> None:
+    """Draw forces and places of all contacts against the depth, with the exact rods and the events."""
+    fig = figure(figsize=(WIDTH, 8.0))
+    forces, places = fig.subplots(2, 1, sharex=True, height_ratios=(1.5, 1.0))
+    depth = columns["depth"]
+    for axes, quantity in ((forces, "force"), (places, "arc")):
+        for pair, name in NAMES.items():
+            exact = "exact rods" if pair == UPPER else "_"
+            axes.plot(depth, columns[f"{pair} exact_{quantity}"], color="0.7", linewidth=5.0, label=exact)
+            axes.plot(depth, columns[f"{pair} {quantity}"], **STYLES[pair], linewidth=1.6, label=name)
+    _mark_events(events, forces, places)
+    beam = scene.beams[0]
+    for node in np.linspace(0.0, beam.length, beam.elements + 1)[-4:]:
+        places.axhline(node, color="0.8", linewidth=0.6, zorder=0)
+    forces.set(ylabel="contact force [N]", ylim=(0.0, ROOM * forces.dataLim.y1))
+    places.set(xlabel="depth of the pin [m]", ylabel="arc position [m]", xlim=(0.0, depth[-1]))
+    forces.legend(loc="lower right", fontsize="small")
+    forces.set_title("Double beam, 10 + 10 mixed elements", pad=20)
+    save(fig, *paths)
+
+
+def _mark_events(events: list[Row], forces: Any, places: Any) -> None:
+    """Draw a numbered line per event, those at one depth together, and the list of the events."""
+    groups: dict[float, list[str]] = {}
+    for event in events:
+        near = next((depth for depth in groups if abs(depth - event["depth"]) < 2e-3), event["depth"])
+        if event["depth"] > 0.0:
+            groups.setdefault(near, []).append(f"{event['kind']}, {NAMES[event['pair']]}")
+    lines = []
+    for number, (depth, texts) in enumerate(groups.items(), 1):
+        for axes in (forces, places):
+            axes.axvline(depth, color="0.4", linewidth=0.8, linestyle=":")
+        forces.annotate(
+            f"{number}", (depth, 1.0), (0, 4), xycoords=("data", "axes fraction"), textcoords="offset points",
+            ha="center",
+        )  # fmt: skip
+        lines += [f"{number}   {depth:.4f} m   {texts[0]}", *(f"{'':20}{text}" for text in texts[1:])]
+    forces.annotate(
+        "\n".join(lines), (0.012, 0.975), xycoords="axes fraction", va="top", fontsize="small",
+        bbox={"facecolor": "white", "edgecolor": "0.8"},
+    )  # fmt: skip

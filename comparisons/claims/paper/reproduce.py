@@ -1,7 +1,6 @@
 """The figures of [P] and the verdicts on its claims, as files and a page."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from comparisons.claims.paper.cantilever_shapes import cantilever_shapes
@@ -25,15 +24,7 @@ STUDIES: dict[str, Callable[..., Study]] = {
 """How each figure of `FIGURES` is computed."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Reproduced:
-    """The files written, and the runs that a figure needs and that did not go through."""
-
-    files: tuple[Path, ...]
-    stopped: tuple[str, ...]
-
-
-def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> Reproduced:
+def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
     """Compute and draw one figure or all of them, and judge the claims that they bear on.
 
     Parameters
@@ -47,6 +38,11 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> Reprod
         Whether to take coarse settings.
     report : callable
         Takes lines about the progress.
+
+    Returns
+    -------
+    files, stopped : list of Path, list of str
+        What was written, and the runs that a figure needs and that did not go through.
 
     Raises
     ------
@@ -74,7 +70,7 @@ def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> Reprod
     stopped = [
         f"{figure}: {one}" for figure, study in found.items() for one in study.numbers.get("stopped", ())
     ]
-    return Reproduced(files=(page, *files), stopped=tuple(stopped))
+    return [page, *files], stopped
 
 
 def _claims(judgements: Sequence[tuple[Claim, Judgement]]) -> Section:
