@@ -36,16 +36,9 @@ _BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in elemen
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Approach:
-    """Equilibria on the way to a beam node.
+    """Equilibria on the way to a beam node, or to the tip, at an arc position.
 
-    Attributes
-    ----------
-    node : float
-        Arc position of the beam node, or of the tip.
-    load_parameter : ndarray, shape (k,)
-        Where equilibrium was found; empty if it was not found anywhere in the element.
-    ratio : ndarray, shape (k,)
-        Distance of the contact from the node in element lengths: l_i/l of [P].
+    Load parameters and distances from the node in element lengths, l_i/l of [P], shape (k,); empty if there is none in the element.
     """
 
     node: float
@@ -59,19 +52,9 @@ class Approach:
 
 
 def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
-    """Lead the only contact of a structure towards every beam node on its way to the beam's end.
+    """Lead the only contact of a structure, one beam under one pin, towards every beam node on its way to the tip, the last one.
 
-    Parameters
-    ----------
-    structure : Structure
-        One beam under one pin, in contact from the start.
-    tolerance : float
-        Bound on the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
-
-    Returns
-    -------
-    tuple of Approach
-        One per node, the tip last.
+    The tolerance bounds the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
     """
     contact = _Contact(structure, tolerance)
     history = [initial_state(contact.model)]

@@ -72,12 +72,11 @@ def double_beam(*, quick: bool, report: Report) -> Study:
     ]
     report("the paper's elements")
     tried = (TIMOSHENKO,) if quick else (TIMOSHENKO, SIMPLE, CANTILEVER)
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     stages = list(_stages(columns["depth"]))
     pictures = {"fig9": partial(plot_stages, finer, response, stages)} if stages else {}
     return Study(
-        tables={
-            "fig9": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        },
+        tables={"fig9": rows},
         numbers={
             "exact_events": EVENTS,
             "events": events,
@@ -143,7 +142,7 @@ def _attempt(scene: Scene, element: str, place: float) -> Row:
     moved = changed(scene, {("pin", "start"): (place, scene.pins[0].points[0][1])})
     response = solve(moved, TSM.name, Options(element=element))
     travel = abs(moved.pins[0].points[1][1])
-    reached = float(response.load_parameter[-1]) if len(response.load_parameter) else 0.0
+    reached = float(max(response.load_parameter, default=0.0))
     over = HAND_OVER[place] / travel
     return {
         "element": element,

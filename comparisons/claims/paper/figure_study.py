@@ -19,20 +19,10 @@ COLUMNS = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What is found for a figure.
+    """What is found for a figure: its scenes, rows and numbers, pictures, and moving shapes for the page.
 
-    Attributes
-    ----------
-    tables : dict of lists of rows
-        By the names of the CSV files.
-    numbers : dict
-        What the JSON file has. ``stopped`` names the runs that the figure needs and that did not go through.
-    pictures : dict of callables
-        By the names of the PNG and SVG files; each draws to the paths that it is given.
-    scenes : tuple of Scene
-        The input.
-    moving : tuple of Section
-        Shapes and histories for the page.
+    `tables` and `pictures` go by the names of their files; a picture draws to the paths that it is given. ``numbers["stopped"]`` names
+    the runs that the figure needs and that did not go through.
     """
 
     tables: dict[str, list[Row]]

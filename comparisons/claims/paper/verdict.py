@@ -33,17 +33,7 @@ Judge = Callable[[Study], Judgement]
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One claim, however often the paper makes it.
-
-    Attributes
-    ----------
-    figure : str
-        The figure whose study decides it.
-    stated : tuple of (str, str)
-        Where it stands in [P], and what it says there.
-    judge : callable
-        From that study to the judgement.
-    """
+    """One claim, however often the paper makes it: places with what is said there, and the judge of the study of a figure."""
 
     figure: str
     stated: tuple[tuple[str, str], ...]
@@ -76,23 +66,10 @@ def claim(figure: str, *places: str) -> Callable[[Judge], Judge]:
 
 
 def holds(cases: bool | Sequence[bool | None], number: str, why: str, *, in_size: bool = True) -> Judgement:
-    """Judge a claim that the numbers decide.
+    """Judge a claim that the numbers decide: whether it holds, or `cases` of it in every reading of what the paper does not say.
 
-    Parameters
-    ----------
-    cases : bool or sequence of bool or None
-        Whether it holds. Where it depends on what the paper does not say: whether it holds in every reading, None where this
-        program ends before the reading does.
-    number, why : str
-        Measured numbers and reason of the judgement.
-    in_size : bool
-        Whether the size that the paper prints is reached.
-
-    Returns
-    -------
-    Judgement
-        Reproduced where it holds in all readings, in direction only unless `in_size`; not reproduced where it fails in all of them;
-        otherwise it cannot be told.
+    A case is None where this program ends before the reading does. The claim is reproduced where it holds in all readings, in
+    direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
     """
     readings = [cases] if isinstance(cases, bool) else list(cases)
     if not readings:
