@@ -146,7 +146,7 @@ def compare(
     report: Report,
     watching: Watching = _silent,
     staging: Staging = _unsaid,
-    others: Sequence[str] = (),
+    more: Sequence[Run] = (),
 ) -> Comparison:
     """Solve `scene` with every model that can state it and write the results to `folder`.
 
@@ -162,8 +162,8 @@ def compare(
         ``watching(label)`` gives a context with the `Watch` of a run.
     staging : callable
         ``staging(label)`` gives a context with the `Count` of a stage of the work after the runs.
-    others : sequence of str
-        Programs of others that run as well, by their names or program files.
+    more : sequence of Run
+        Runs beside those of every comparison, such as programs of others.
 
     Raises
     ------
@@ -178,13 +178,12 @@ def compare(
     folder = writable_folder(folder, *NAMES)
     for run in (MIXED, SOLID):
         check_series(folder / run.model, run.model, scene)
-    runs = [run_of(model, options) for model in map(find, others) for options in model.compared()]
     left_out: dict[str, str] = {}
 
     def leave_out(name: str, reason: str) -> None:
         left_out[name] = reason
 
-    runs = [*runs, *RUNS]
+    runs = [*more, *(run for run in RUNS if run not in more)]
     responses = _solve_all(scene, runs, report, watching, leave_out)
     rows = [_row(run, responses, scene) for run in runs if run.label in responses]
     with staging("measuring the error budget") as count:

@@ -113,7 +113,7 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     """Return the largest error of a quantity over the load parameters that both responses reached.
 
     Forces and moments are relative to the largest value of the reference at these load parameters. The error is infinite if the
-    responses share no load parameter. It is zero if neither response has the quantity: a scene without contact has no arc position.
+    responses share no load parameter. It is nan if neither response has the quantity: a scene without contact has no arc position.
     """
     _, _, steps = _shared(response, reference)
     if not len(steps):
@@ -121,8 +121,7 @@ def difference(response: Response, reference: Response, scene: Scene, quantity: 
     _, found = error_histories(
         response, reference, scene, scale=scales(reference, steps), quantities=[quantity]
     )
-    worst = largest(found[quantity])
-    return 0.0 if np.isnan(worst) else worst
+    return largest(found[quantity])
 
 
 def worst_place(response: Response, reference: Response, scene: Scene, quantity: str) -> str:

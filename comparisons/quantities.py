@@ -10,12 +10,12 @@ QUANTITIES = {
     "shape_mean": "deflected axes at equal arc lengths, the mean distance over the length",
     "stress": "stress at the faces over the largest, away from clamp, tip and contacts; of one beam, by the solid",
 }
-"""Quantities by name. `crossval solve --accuracy` takes each of them, and `crossval gate` can bound each."""
+"""Quantities by name. `crossval solve --accuracy` takes each of them, and `crossval compare --max-error` can bound each."""
 PATH = {
     "gap": "gaps of contacts that are open in one of the two, over the length",
     "event": "load parameters of events and slip-offs, as absolute differences; infinite where one of the two has no such event",
 }
-"""Quantities that tell whether two responses follow one path. `crossval gate` can bound them too, and `crossval compare` writes them."""
+"""Quantities that tell whether two responses follow one path. `crossval compare` writes them, and can bound them too."""
 COMPARED = {**QUANTITIES, **PATH}
 KEPT = tuple(name for name in QUANTITIES if name != "stress")
 """The quantities that every model states and that a stored response keeps."""

@@ -87,7 +87,7 @@ def graded_to(scene: Scene, accuracy: float, quantity: str, kind: ClosedForm) ->
     mesh = _with(scene, {beam.name: _equal(FIRST) for beam in scene.beams})
     for _ in range(ROUNDS):
         coarse, fine = (_solve(short, one, element) for one in (mesh, _halved(mesh)))
-        apart = difference(coarse, fine, scene, quantity)
+        apart = float(np.fmax(difference(coarse, fine, scene, quantity), 0.0))
         stuck = _shear_limit(fine, scene, kind.shear_floor)
         estimate = SAFETY * (2**order / (2**order - 1)) * apart + stuck
         total = _count(mesh)

@@ -30,7 +30,8 @@ def solid_to(scene: Scene, accuracy: float, quantity: str) -> Discretised:
         here = _meshed(short, mesh)
         response = solve(here, SOLID.name, Options())
         if before is not None:
-            estimate = SAFETY * difference(before, response, scene, quantity) / (2**ORDER - 1)
+            apart = float(np.fmax(difference(before, response, scene, quantity), 0.0))
+            estimate = SAFETY * apart / (2**ORDER - 1)
             said.append(f"solid, {mesh[0]}x{mesh[1]}: estimate {estimate:.1e} of {quantity}")
         if estimate <= accuracy:
             break

@@ -16,7 +16,7 @@ def beam_theory(response: Response, scene: Scene) -> Theory | None:
     Plane sections of height h neglect terms of second order in the face strain ``h kappa/2`` and in ``h/l``, with l the beam's length,
     or the radius of its undeformed arc if that is smaller. A section that tapers has its own height and stiffness at every place.
     The estimate is the larger of half the first square and the second square. The effect of the material law is not included.
-    On the main scene, `crossval study thin-beams` prints the differences 8.6e-4, 2.1e-4 and 5.7e-5 for h/L = .02, .01 and .005.
+    On the main scene, `crossval run thin-beams` prints the differences 8.6e-4, 2.1e-4 and 5.7e-5 for h/L = .02, .01 and .005.
     The estimates are 1.0e-3, 2.5e-4 and 6.3e-5.
 
     Returns

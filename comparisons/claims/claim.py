@@ -159,8 +159,13 @@ class Judgement:
 
     def junit(self, classname: str) -> JUnitCase:
         """Return the judgement as a JUnit test case."""
+        measured = (f"{one.name}: error {one.error:.2g}, allowed {one.allowed:g}" for one in self.findings)
         return JUnitCase(
-            classname=classname, name=self.claim.name, seconds=self.seconds, failure=self.failure
+            classname=classname,
+            name=self.claim.name,
+            seconds=self.seconds,
+            failure=self.failure,
+            output="\n".join(measured),
         )
 
 

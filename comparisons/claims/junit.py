@@ -17,12 +17,15 @@ class JUnitCase:
         What it took.
     failure : str or None
         Why it failed, in one line with numbers; None if it passed.
+    output : str
+        What was measured.
     """
 
     classname: str
     name: str
     seconds: float = 0.0
     failure: str | None = None
+    output: str = ""
 
 
 def junit_text(suite: str, cases: Iterable[JUnitCase]) -> str:
@@ -55,5 +58,7 @@ def junit_text(suite: str, cases: Iterable[JUnitCase]) -> str:
         )
         if case.failure is not None:
             SubElement(element, "failure", message=case.failure)
+        if case.output:
+            SubElement(element, "system-out").text = case.output
     indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="unicode") + "\n"

@@ -10,20 +10,7 @@ from contextlib import contextmanager, redirect_stderr, suppress
 from pathlib import Path
 from typing import NoReturn
 
-from comparisons.cli import (
-    certify,
-    compare,
-    extremes,
-    gate,
-    league,
-    manual,
-    reproduce,
-    scene_files,
-    solve,
-    study,
-    trade,
-    view,
-)
+from comparisons.cli import certify, compare, run, scene_files, solve, view
 from comparisons.cli.outcome import BAD_INPUT, DONE, EPILOG, INTERRUPTED, STOPPED, WRONG, report
 from comparisons.extras import install
 from comparisons.files import OutputError, printable
@@ -31,25 +18,20 @@ from comparisons.models.options import ModelError
 from comparisons.models.outside.ccx import CalculixError
 from comparisons.scene import InputError
 
-COMMANDS = (
-    scene_files,
-    solve,
-    certify,
-    compare,
-    view,
-    gate,
-    league,
-    reproduce,
-    trade,
-    study,
-    manual,
-    extremes,
-)
+COMMANDS = (scene_files, solve, compare, certify, run, view)
 """The modules of the commands, in the order of the help: each adds its own to the parser."""
 GONE = {
     "doctor": "crossval --version",
     "completion": "crossval --help",
-    "results": "the CSV file that crossval study writes",
+    "results": "the CSV file that crossval run FILE.toml writes",
+    "schema": "crossval scenes --schema",
+    "gate": "crossval compare SCENE --max-error QUANTITY=X",
+    "league": "crossval compare SCENE SCENE ..., crossval compare all",
+    "reproduce": "crossval run paper, crossval run fig9",
+    "trade": "crossval run trade SCENE",
+    "study": "crossval run FILE.toml",
+    "manual": "crossval run manual",
+    "extremes": "crossval run extremes",
 }
 """Commands of earlier versions, and what does their work."""
 MARKS = {True: "ok", False: "MISSING", None: "-"}

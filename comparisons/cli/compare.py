@@ -1,38 +1,120 @@
-"""``crossval compare``: one scene, every model."""
+"""``crossval compare``: one scene by every model, one model against bounds, or several scenes by every program."""
 
+import argparse
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparisons.cli.options import add_others
-from comparisons.cli.outcome import DONE, STOPPED, exit_status, report
+from comparisons.cli.options import (
+    ModelNames,
+    add_options,
+    add_others,
+    add_workers,
+    argument,
+    chosen,
+    workers,
+)
+from comparisons.cli.outcome import DONE, STOPPED, WRONG, exit_status, report
 from comparisons.cli.progress import staging, watching
+from comparisons.files import result_file, writable_folder, write_text
+from comparisons.models import TSM
+from comparisons.models.options import ModelError
 from comparisons.models.progress import Count, Watch
-from comparisons.scene import load_scene
+from comparisons.quantities import COMPARED
+from comparisons.scene import Scene, built_in_scenes, load_scene
 
 if TYPE_CHECKING:
-    import argparse
-
     from comparisons.cli.outcome import Commands
 
-EPILOG = """exit status: 0 compared, 2 bad input, 3 the exact rods stopped, or an answer was refused by its checks or the referee.
-A model that stops with a named status is a row of the table."""
+EVERY = "all"
+"""The word for all built-in scenes."""
+MODEL = ("model", "element", "elements", "mesh")
+"""The options that say which model is meant."""
+FOREIGN = {
+    "a single scene": ("against", "junit", "quick", "workers", "cluster"),
+    "--max-error": ("others", "out", "quick", "workers", "cluster"),
+    "several scenes": (*MODEL, "against", "junit"),
+}
+"""The options that each of the three ways of comparing does not have."""
+EPILOG = """exit status: 0 compared, or every bound holds, 1 an error lies beyond its bound, 2 bad input, 3 the exact rods stopped, an
+answer was refused by its checks or the referee, or a solution that has a bound stopped, 130 interrupted. A model that stops with a named
+status is a row of the table. Of several scenes what is done is kept, and the same command goes on from there."""
 
 
 def add_to(commands: "Commands") -> None:
     """Add the command to the parser."""
-    compare = commands.add_parser("compare", help="solve a scene with every model and compare", epilog=EPILOG)
-    compare.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    add_others(compare)
-    compare.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE)")
-    compare.add_argument("--quiet", action="store_true", help="tell of no progress")
-    compare.set_defaults(run=run)
+    parser = commands.add_parser(
+        "compare",
+        help="compare models on a scene, hold errors to bounds, or measure every program on several scenes",
+        description="One scene is solved with every model. With --max-error one model is solved, and its errors, relative and the largest "
+        "over all load parameters, are held to bounds. Several scenes are solved with every program at up to five of its own resolutions: "
+        "errors, spurious friction, processor seconds, and how often a program said success and was wrong.",
+        epilog=EPILOG,
+    )
+    parser.add_argument(
+        "scenes",
+        nargs="+",
+        metavar="SCENE",
+        help=f"built-in scenes or TOML files; {EVERY}: every built-in one",
+    )
+    add_others(parser)
+    parser.add_argument("--model", choices=ModelNames(), help="a bound's model (tsm), or one more row")
+    add_options(parser, "elements", "element", "mesh")
+    parser.add_argument(
+        "--max-error",
+        action="append",
+        default=[],
+        type=_bound,
+        metavar="QUANTITY=X",
+        help="a bound, any number of them: " + ", ".join(COMPARED),
+    )
+    parser.add_argument("--against", choices=ModelNames(), help="bounds: the model to measure against (rod)")
+    parser.add_argument("--junit", metavar="FILE", help="bounds: write them as JUnit XML")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder of the results (out/SCENE, out/league)"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="several scenes: at most two resolutions of every program"
+    )
+    add_workers(parser)
+    parser.add_argument("--quiet", action="store_true", help="tell of no progress")
+    parser.set_defaults(run=run)
 
 
-def run(given: "argparse.Namespace") -> int:
-    """Compare, print the table and name the files."""
-    scene = load_scene(given.scene)
-    from comparisons.compare import ROD, compare
+def _bound(text: str) -> tuple[str, float]:
+    quantity, _, bound = text.partition("=")
+    try:
+        value = float(bound)
+    except ValueError:
+        value = -1.0
+    if quantity not in COMPARED or not value > 0:
+        raise argparse.ArgumentTypeError(
+            f"{text}: must be QUANTITY=X with X above 0 and one of {', '.join(COMPARED)}"
+        )
+    return quantity, value
+
+
+def run(given: argparse.Namespace) -> int:
+    """Compare in one of the three ways."""
+    names = list(built_in_scenes()) if given.scenes == [EVERY] else given.scenes
+    how = "--max-error" if given.max_error else "a single scene" if len(names) == 1 else "several scenes"
+    for option in FOREIGN[how]:
+        if getattr(given, option):
+            raise ModelError(f"{argument(option).replace('others', 'with')}: is no option of {how}")
+    if len(dict(given.max_error)) < len(given.max_error):
+        raise ModelError("--max-error: bounds a quantity twice")
+    scenes = [load_scene(name) for name in names]
+    if not given.max_error:
+        return _compare(scenes[0], given) if len(scenes) == 1 else _league(scenes, given)
+    if len(scenes) > 1:
+        raise ModelError("--max-error: takes a single scene")
+    return _held(scenes[0], given)
+
+
+def _compare(scene: Scene, given: argparse.Namespace) -> int:
+    """Compare all models, print the table and name the files."""
+    from comparisons.compare import ROD, Run, compare, run_of
+    from comparisons.models import find
     from comparisons.show.table import table_text
 
     def tell(line: str) -> None:
@@ -45,7 +127,12 @@ def run(given: "argparse.Namespace") -> int:
     def stage(label: str) -> AbstractContextManager[Count]:
         return staging(label, quiet=given.quiet)
 
-    found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, given.others)
+    more = [run_of(model, options) for model in map(find, given.others) for options in model.compared()]
+    if any(getattr(given, option) is not None for option in MODEL):
+        model, options = find(given.model or TSM.name), chosen(given)
+        label = f"{model.label} {model.setting(scene, options)}".rstrip()
+        more.append(Run(label=label, model=model.name, options=options))
+    found = compare(scene, given.out or Path("out") / scene.name, tell, watch, stage, more)
     print(table_text(found.rows, ROD.label))
     if found.other_events:
         print("", *found.other_events, sep="\n")
@@ -54,3 +141,44 @@ def run(given: "argparse.Namespace") -> int:
     for row in found.apart:
         report(f"crossval: {row.label}: OTHER_BRANCH: ends in another equilibrium than the {ROD.label}")
     return STOPPED if found.apart or found.wrong else DONE
+
+
+def _held(scene: Scene, given: argparse.Namespace) -> int:
+    """Measure one model, print its bounds and write them."""
+    file = None if given.junit is None else result_file(Path(given.junit))
+    from comparisons.claims.gate import gate
+
+    found = gate(scene, given.model or TSM.name, chosen(given), dict(given.max_error), given.against)
+    if file is not None:
+        write_text(file, found.junit())
+    print(f"{scene.name}: {found.response.model} against {found.reference.model}")
+    for item in found.bounds:
+        sign = "<=" if item.holds else "> "
+        print(
+            f"  {item.name:8s} {item.error:9.3g}  {sign} {item.allowed:<6g} {found.place(item.name)}".rstrip()
+        )
+    status = exit_status(scene, [("", found.response), ("reference: ", found.reference)])
+    if status != DONE or found.held:
+        return status
+    report(f"crossval: {', '.join(item.name for item in found.bounds if not item.holds)}: beyond the bound")
+    return WRONG
+
+
+def _league(scenes: list[Scene], given: argparse.Namespace) -> int:
+    """Measure every program on every scene, print the summary and name the files."""
+    written = (*(f"league.{kind}" for kind in ("csv", "json", "svg", "png")), "report.html")
+    folder = writable_folder(given.out or Path("out/league"), *written)
+    from comparisons.cases.progress import shown
+    from comparisons.league.entries import measure_league
+    from comparisons.league.page import summary, write_league
+    from comparisons.output import tabulated
+
+    with shown(quiet=given.quiet) as progress:
+        league = measure_league(
+            scenes, given.others, folder / "results", workers(given, 1), quick=given.quick, progress=progress
+        )
+    print(tabulated(summary(league)))
+    for name, program, reason in league.left_out:
+        print(f"{name}: {program}: left out, {reason}")
+    print("\nfiles:", *(f"  {path}" for path in write_league(league, folder)), sep="\n")
+    return DONE

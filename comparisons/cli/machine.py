@@ -9,7 +9,7 @@ from typing import NamedTuple
 from comparisons.extras import EXTRAS
 
 NEEDED = ("numpy", "scipy", "scikit-fem", "matplotlib", "filelock", "psutil")
-PROGRAMS = {"ccx": "Debian's calculix-ccx: --model calculix, crossval study peers"}
+PROGRAMS = {"ccx": "Debian's calculix-ccx: --model calculix, crossval run peers"}
 
 
 class Finding(NamedTuple):

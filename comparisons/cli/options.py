@@ -2,12 +2,15 @@
 
 import argparse
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from comparisons.cli import values
 from comparisons.models import MODELS
 from comparisons.models.options import BRANCHES, Options
 from comparisons.models.outside.programs import ADAPTERS, known
+
+if TYPE_CHECKING:
+    from comparisons.cases.workers import Workers
 
 ARGUMENTS: dict[str, tuple[dict[str, Any], str]] = {
     "elements": ({"type": values.count, "metavar": "N"}, "elements of every beam"),
@@ -61,6 +64,25 @@ def add_others(parser: argparse.ArgumentParser) -> None:
         metavar="MODEL",
         help="a program of others as well, any number of them: its name, or a program file NAME.toml",
     )
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Add where cases run to a command that has many."""
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers",
+        type=values.count,
+        metavar="N",
+        help="processes (one for each core; 1 where seconds are measured: cases side by side slow each other down)",
+    )
+    where.add_argument("--cluster", metavar="ADDRESS", help="the scheduler of a Dask cluster")
+
+
+def workers(given: argparse.Namespace, number: int | None = None) -> "Workers":
+    """Return where the cases run: ``--cluster``, or ``--workers`` processes, by default `number` of them or one for each core."""
+    from comparisons.cases.workers import cluster, local
+
+    return local(given.workers or number) if given.cluster is None else cluster(given.cluster)
 
 
 def chosen(given: argparse.Namespace) -> Options:

@@ -1,4 +1,4 @@
-"""``crossval new``, ``check`` and ``schema``: scene files before anything is solved."""
+"""``crossval scenes``, ``new`` and ``check``: scene files before anything is solved."""
 
 import sys
 from importlib import resources
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 
 def add_to(commands: "Commands") -> None:
     """Add the commands to the parser."""
+    scenes = commands.add_parser("scenes", help="list the built-in scenes")
+    scenes.add_argument(
+        "--schema", action="store_true", help="print the JSON Schema of scene files, for editors"
+    )
+    scenes.set_defaults(run=run_scenes)
+
     new = commands.add_parser("new", help="write a commented scene file to start from")
     new.add_argument("name", metavar="NAME", help="of the scene; the file is NAME.toml")
     new.add_argument(
@@ -29,16 +35,23 @@ def add_to(commands: "Commands") -> None:
     new.set_defaults(run=run_new)
 
     check = commands.add_parser(
-        "check", help="validate a scene file, ask all models whether they can state it, and draw it"
+        "check", help="validate a scene file, ask all models whether they can state it, draw it"
     )
     check.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
-    check.add_argument("--out", metavar="FILE", help="the picture, PNG or SVG (SCENE.png)")
+    check.add_argument("--out", metavar="FILE", help="draw it, as PNG or SVG")
     add_others(check)
-    check.add_argument("--json", metavar="FILE", help="write the resolved scene, which programs read")
+    check.add_argument(
+        "--json", metavar="FILE", help="write the resolved scene, which programs read; - is standard output"
+    )
     check.set_defaults(run=run_check)
 
-    schema = commands.add_parser("schema", help="print the JSON Schema of scene files, for editors")
-    schema.set_defaults(run=run_schema)
+
+def run_scenes(given: "argparse.Namespace") -> int:
+    """Print the names of the built-in scenes, or the schema."""
+    sys.stdout.write(
+        _shipped("scene.schema.json") if given.schema else "".join(f"{one}\n" for one in built_in_scenes())
+    )
+    return DONE
 
 
 def run_new(given: "argparse.Namespace") -> int:
@@ -63,29 +76,26 @@ def run_new(given: "argparse.Namespace") -> int:
 def run_check(given: "argparse.Namespace") -> int:
     """Say which models can state the scene, and draw it."""
     scene = load_scene(given.scene)
-    picture = result_file(Path(given.out or f"{scene.name}.png"))
-    file = None if given.json is None else result_file(Path(given.json))
-    if picture.suffix not in (".png", ".svg"):
+    picture = None if given.out is None else result_file(Path(given.out))
+    file = None if given.json in (None, "-") else result_file(Path(given.json))
+    if picture is not None and picture.suffix not in (".png", ".svg"):
         raise OutputError(f"{given.out}: must end in .png or .svg")
     from comparisons.models.options import Options
     from comparisons.models.outside.request import request
     from comparisons.show.sketch import draw, stated
 
-    for line in stated(scene, given.others):
-        print(line)
-    for line in near_ends(scene):
-        print(line)
+    if given.json is not None:
+        resolved = request(scene, Options(), scene.times)
+    if given.json == "-":
+        sys.stdout.write(resolved)
+    else:
+        print(*stated(scene, given.others), *near_ends(scene), sep="\n")
     if file is not None:
-        write_text(file, request(scene, Options(), scene.times))
+        write_text(file, resolved)
         print(f"resolved scene: {given.json}")
-    draw(scene, picture)
-    print(f"drawn: {given.out or picture.name}")
-    return DONE
-
-
-def run_schema(_: "argparse.Namespace") -> int:
-    """Print the schema."""
-    sys.stdout.write(_shipped("scene.schema.json"))
+    if picture is not None:
+        draw(scene, picture)
+        print(f"drawn: {given.out}", file=sys.stderr if given.json == "-" else sys.stdout)
     return DONE
 
 

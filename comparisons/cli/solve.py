@@ -1,4 +1,4 @@
-"""``crossval scenes`` and ``crossval solve``: one scene, one model."""
+"""``crossval solve``: one scene, one model."""
 
 import sys
 from math import isnan
@@ -14,7 +14,7 @@ from comparisons.files import OutputError, result_file, writable_folder, write_t
 from comparisons.models import TSM, find
 from comparisons.models.options import ModelError
 from comparisons.quantities import QUANTITIES
-from comparisons.scene import built_in_scenes, load_scene
+from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
     import argparse
@@ -29,10 +29,7 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 def add_to(commands: "Commands") -> None:
-    """Add the commands to the parser."""
-    scenes = commands.add_parser("scenes", help="list the built-in scenes")
-    scenes.set_defaults(run=list_scenes)
-
+    """Add the command to the parser."""
     solve = commands.add_parser("solve", help="solve a scene with one model", epilog=EPILOG)
     solve.add_argument("scene", metavar="SCENE", help="a built-in scene or a TOML file")
     solve.add_argument(
@@ -72,13 +69,6 @@ def add_to(commands: "Commands") -> None:
     solve.add_argument("--times", action="store_true", help="print the time of each stage")
     solve.add_argument("--quiet", action="store_true", help="no progress bar")
     solve.set_defaults(run=run)
-
-
-def list_scenes(_: "argparse.Namespace") -> int:
-    """Print the names of the built-in scenes."""
-    for name in built_in_scenes():
-        print(name)
-    return DONE
 
 
 def run(given: "argparse.Namespace") -> int:

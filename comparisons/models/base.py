@@ -146,7 +146,7 @@ class Model(ABC):
         return (Options(),)
 
     def resolutions(self, *, quick: bool) -> Iterable[Options]:  # noqa: ARG002 - others have meshes
-        """Return the settings whose accuracy and cost `crossval trade` measures, each with several numbers of load steps; fewer if quick."""
+        """Return the settings whose accuracy and cost `crossval run trade` measures, each with several numbers of load steps; fewer if quick."""
         return (Options(),)
 
     def error_parts(self, scene: Scene, options: Options, bent: Bending) -> dict[str, float]:

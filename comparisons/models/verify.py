@@ -1,7 +1,7 @@
 """Checks of a response against its scene, without any other solution."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -62,34 +62,37 @@ def _failed(response: Response, reason: str) -> Response:
 
 
 def failures(response: Response, scene: Scene) -> Iterator[str]:
-    """Yield one sentence for every check that a completed `response` breaks.
-
-    The checks are:
-
-    - all load parameters of the scene are reached, and all numbers are finite;
-    - contact forces push, and closed contacts have no gap;
-    - open nodes are on the stated side of the beam unless they slipped off;
-    - contacts that must persist stay closed;
-    - round pins are outside the beam along the whole axis, and nodes and pins clear of its ends;
-    - the forces and moments of supports, pins and loads on the whole structure balance, for a model of this package.
-    """
-    if not np.array_equal(response.load_parameter, scene.times):
-        yield f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
-        return
-    for name, values in _numbers(response):
-        if not np.all(np.isfinite(values)):
-            yield f"{name} is not finite"
+    """Yield one sentence for every one of `CHECKS` that a completed `response` breaks, of the first two alone where they fail."""
+    for name, check in CHECKS.items():
+        found = list(check(response, scene))
+        yield from found
+        if found and name in ("load parameters", "finite numbers"):
             return
-    for contact in scene.contacts:
-        yield from _contact_failures(response, scene, contact)
-    yield from passages(response, scene)
-    if not response.outside:
-        yield from balance_failures(response, scene)
-    yield from unresolved(response, scene)
 
 
 def unresolved(response: Response, scene: Scene) -> Iterator[str]:
     """Yield one sentence for each deformation too large for the elements, and for each motion below the resolution of the numbers."""
+    for name in ("bend of elements", "strain of elements", "motion of pins"):
+        yield from CHECKS[name](response, scene)
+
+
+def _unreached(response: Response, scene: Scene) -> Iterator[str]:
+    if not np.array_equal(response.load_parameter, scene.times):
+        yield f"{len(response.load_parameter)} of {len(scene.times)} load parameters reached"
+
+
+def _infinite(response: Response, _: Scene) -> Iterator[str]:
+    yield from (
+        f"{name} is not finite" for name, values in _numbers(response) if not np.isfinite(values).all()
+    )
+
+
+def _unbalanced(response: Response, scene: Scene) -> Iterator[str]:
+    if not response.outside:
+        yield from balance_failures(response, scene)
+
+
+def _bent(response: Response, _: Scene) -> Iterator[str]:
     deformation = response.deformation
     if deformation is not None:
         claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
@@ -98,9 +101,18 @@ def unresolved(response: Response, scene: Scene) -> Iterator[str]:
             most = deformation.turn[claimed].max()
             limit = f"{deformation.bearable:g} {_first(bent, deformation)}"
             yield f"too few elements: one bends by {most:.2g} rad, more than {limit}"
+
+
+def _strained(response: Response, _: Scene) -> Iterator[str]:
+    deformation = response.deformation
+    if deformation is not None:
+        claimed = deformation.load_parameter <= max(response.load_parameter, default=0.0)
         strained = claimed & (deformation.strain > STRAIN)
         if strained.any():
             yield f"forces exceed {STRAIN:g} EA or GA, beyond elements of small strain, {_first(strained, deformation)}"
+
+
+def _motionless(_: Response, scene: Scene) -> Iterator[str]:
     length = max(beam.length for beam in scene.beams)
     for pin in scene.pins:
         way = float(np.hypot(*np.diff(pin.points, axis=0).T).sum())
@@ -128,36 +140,61 @@ def _first(failed: NDArray[np.bool_], at: Response | Deformation) -> str:
     return f"at load parameter {at.load_parameter[np.argmax(failed)]:.6g}"
 
 
-def _contact_failures(response: Response, scene: Scene, spec: ContactSpec) -> Iterator[str]:
-    contact, beam = response.contacts[spec.pair], scene.beam(spec.beam)
-    length = beam.length
-    pulls = contact.force < -PULL * beam.EI / length**2
-    if pulls.any():
-        yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
-    closed = contact.force > 0.0
-    pressing = contact.force if contact.friction is None else contact.friction.normal
-    allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
-    ajar = closed & (np.abs(contact.gap + contact.compliance * pressing) > allowed * length)
-    if ajar.any():
-        yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
-    deep = closed & (contact.gap < -PENETRATION * length)
-    if deep.any():
-        yield f"the penetration of {spec.pair} exceeds {PENETRATION:.0%} of the length {_first(deep, response)}"
-    dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(closed)
-    if spec.keep and dropped.any():
-        yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
-    depth = penetration(response, scene, spec, KINK) + np.minimum(np.nan_to_num(contact.gap), 0.0)
-    inside = depth > INSIDE * length
-    if inside.any():
-        yield (
-            f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact {_first(inside, response)}: "
-            "one contact of a pair is modelled"
-        )
-    for end in free_ends(scene, spec):
-        over = np.array([_depth(response, scene, spec, end, k) > INSIDE * length for k in range(len(closed))])
-        if over.any():
-            where = f"the {end.name} of beam {spec.beam} {_first(over, response)}"
-            yield f"{spec.node} overlaps {where}, where no contact is modelled"
+def _pulling(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in scene.contacts:
+        beam = scene.beam(spec.beam)
+        pulls = response.contacts[spec.pair].force < -PULL * beam.EI / beam.length**2
+        if pulls.any():
+            yield f"the contact force of {spec.pair} pulls {_first(pulls, response)}"
+
+
+def _ajar(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in scene.contacts:
+        contact = response.contacts[spec.pair]
+        pressing = contact.force if contact.friction is None else contact.friction.normal
+        allowed = max(CLOSED, spec.penetration or 0.0) if response.continuum else CLOSED
+        apart = np.abs(contact.gap + contact.compliance * pressing) > allowed * scene.beam(spec.beam).length
+        ajar = (contact.force > 0.0) & apart
+        if ajar.any():
+            yield f"{spec.pair} carries a force with an open gap {_first(ajar, response)}"
+
+
+def _deep(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in scene.contacts:
+        contact = response.contacts[spec.pair]
+        deep = (contact.force > 0.0) & (contact.gap < -PENETRATION * scene.beam(spec.beam).length)
+        if deep.any():
+            yield f"the penetration of {spec.pair} exceeds {PENETRATION:.0%} of the length {_first(deep, response)}"
+
+
+def _dropped(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in (one for one in scene.contacts if one.keep):
+        contact = response.contacts[spec.pair]
+        dropped = np.isnan(contact.arc_position) & np.logical_or.accumulate(contact.force > 0.0)
+        if dropped.any():
+            yield f"{spec.pair} must persist and is open {_first(dropped, response)}"
+
+
+def _inside(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in scene.contacts:
+        length, gap = scene.beam(spec.beam).length, np.nan_to_num(response.contacts[spec.pair].gap)
+        depth = penetration(response, scene, spec, KINK) + np.minimum(gap, 0.0)
+        inside = depth > INSIDE * length
+        if inside.any():
+            yield (
+                f"{spec.node} is {depth[inside][0] / length:.2g} L inside beam {spec.beam} away from its contact "
+                f"{_first(inside, response)}: one contact of a pair is modelled"
+            )
+
+
+def _overlapping(response: Response, scene: Scene) -> Iterator[str]:
+    for spec in scene.contacts:
+        deepest, steps = INSIDE * scene.beam(spec.beam).length, range(len(response.load_parameter))
+        for end in free_ends(scene, spec):
+            over = np.array([_depth(response, scene, spec, end, k) > deepest for k in steps])
+            if over.any():
+                where = f"the {end.name} of beam {spec.beam} {_first(over, response)}"
+                yield f"{spec.node} overlaps {where}, where no contact is modelled"
 
 
 def _depth(response: Response, scene: Scene, spec: ContactSpec, end: BeamEnd, k: int) -> float:
@@ -215,3 +252,28 @@ def penetration(response: Response, scene: Scene, spec: ContactSpec, kink: float
         facing = side * (along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) > 0.0
         depth[k] = np.max((offset - distance)[least & facing], initial=0.0)
     return depth
+
+
+Check = Callable[[Response, Scene], Iterator[str]]
+CHECKS: dict[str, Check] = {
+    "load parameters": _unreached,
+    "finite numbers": _infinite,
+    "pushing contacts": _pulling,
+    "closed gaps": _ajar,
+    "small penetration": _deep,
+    "contacts that persist": _dropped,
+    "round pins outside": _inside,
+    "clear ends": _overlapping,
+    "sides of beams": passages,
+    "balance": _unbalanced,
+    "bend of elements": _bent,
+    "strain of elements": _strained,
+    "motion of pins": _motionless,
+}
+"""The checks of a response, in their order. Each yields a sentence for what is wrong, nothing for a right answer.
+
+All load parameters of the scene are reached, and all numbers are finite. Contact forces push, closed contacts have no gap, and those that
+must persist stay closed. Round pins are outside the beam along the whole axis, nodes and pins are clear of its ends, and open nodes are on
+the stated side unless they slipped off. Forces and moments of supports, pins and loads balance, for a model of this package. No element
+bends or strains beyond what it approximates, and no pin moves by less than numbers resolve.
+"""

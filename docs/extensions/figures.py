@@ -28,9 +28,9 @@ COMMANDS = {
         "ks/side-by-side.png": "ks-side-by-side.png",
         "ks/budget.png": "ks-budget.png",
     },
-    "reproduce fig9 --out paper": {"paper/fig9.png": "double-beam.png"},
-    "reproduce fig7b --out paper": {"paper/fig7b-floor.png": "critical-area-floor.png"},
-    "trade ks-cantilever --out trade": {"trade/end-seconds.png": "ks-trade.png"},
+    "run fig9 --out paper": {"paper/fig9.png": "double-beam.png"},
+    "run fig7b --out paper": {"paper/fig7b-floor.png": "critical-area-floor.png"},
+    "run trade ks-cantilever --out trade": {"trade/end-seconds.png": "ks-trade.png"},
 }
 """What each command draws, and the names in the repository."""
 

@@ -40,7 +40,7 @@ def beams_against_solid(bench):
 def equal_error(bench):
     """The cheapest solid over the cheapest beams at .1 % of the force, each against what it converges to."""
     with tempfile.TemporaryDirectory() as folder:
-        assert main(["trade", KS.name, "--quick", "--out", folder]) == 0
+        assert main(["run", "trade", KS.name, "--quick", "--out", folder]) == 0
         rows = json.loads((Path(folder) / "trade.json").read_text())["cheapest"]
     for scope, state in (("end", "end state"), ("path", "50 load parameters")):
         found = next(

@@ -220,7 +220,7 @@ def test_no_permission_to_write(options):
     )
 
 
-NO_CLUSTER = ["study", "s.toml", "--out", "out", "--cluster", "tcp://127.0.0.1:1"]
+NO_CLUSTER = ["run", "s.toml", "--out", "out", "--cluster", "tcp://127.0.0.1:1"]
 
 
 @pytest.mark.slow_at("skfem")

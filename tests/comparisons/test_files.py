@@ -85,18 +85,18 @@ check s.toml --out FILE.png
 solve s.toml --csv FILE
 solve s.toml --plot FILE.svg
 certify s.toml --json FILE
-gate s.toml --max-error force=1 --junit FILE
-manual --only roll-up --quiet --out new --junit FILE"""
+compare s.toml --max-error force=1 --junit FILE
+run manual --only roll-up --quiet --out new --junit FILE"""
 INTO_A_FOLDER = {
     "compare s.toml --out": ("report.html", "budget.json", "tsm/tsm.pvd", "solid/solid-0002.vtm"),
     "view s.toml --out": ("view.png", "view.gif"),
-    "trade s.toml --quick --out": ("trade.csv", "report.html"),
-    "league s.toml --out": ("league.svg", "report.html"),
-    "reproduce fig8 --quick --out": ("report.html",),
-    "extremes --quick --out": ("extremes.csv",),
-    "study locking --out": ("locking.csv",),
-    "manual --only roll-up --quiet --out": ("index.md", "roll-up.svg"),
-    "manual --only roll-up --cards": ("roll-up.json", "card.schema.json"),
+    "run trade s.toml --quick --out": ("trade.csv", "report.html"),
+    "compare s.toml tip-load --out": ("league.svg", "report.html"),
+    "run fig8 --quick --out": ("report.html",),
+    "run extremes --quick --out": ("extremes.csv",),
+    "run locking --out": ("locking.csv",),
+    "run manual --only roll-up --quiet --out": ("index.md", "roll-up.svg"),
+    "run manual --only roll-up --cards": ("roll-up.json", "card.schema.json"),
 }
 
 

@@ -1,4 +1,4 @@
-"""``crossval gate``: bounds hold or break, on the screen, in the exit status and as JUnit XML."""
+"""``crossval compare --max-error``: bounds hold or break, on the screen, in the exit status and as JUnit XML."""
 
 import re
 from dataclasses import replace
@@ -33,7 +33,7 @@ def gate(scene, *bounds, **options):
     """Run the command; return its exit status, also where the reading of its arguments ends it."""
     given = [str(word) for name, value in options.items() for word in (f"--{name}", value)]
     try:
-        return main(["gate", scene, *given, *(f"--max-error={bound}" for bound in bounds)])
+        return main(["compare", scene, *given, *(f"--max-error={bound}" for bound in bounds)])
     except SystemExit as end:
         return int(end.code or 0)
 
@@ -57,8 +57,12 @@ def test_bounds(scene, bounds, status, tmp_path, capsys):
     assert error == ("crossval: tip: beyond the bound\n" if status else "")
     suite = ET.parse(file).getroot()  # noqa: S314 - our own
     assert (suite.get("tests"), suite.get("failures")) == (str(len(bounds)), str(status))
-    assert [len(case) for case in suite] == [0] * (len(bounds) - status) + [1] * status
-    assert all("against rod" in str(failure.get("message")) for case in suite for failure in case)
+    assert [case.get("name") for case in suite] == [bound.partition("=")[0] for bound in bounds]
+    assert [case.find("failure") is None for case in suite] == [True] * (len(bounds) - status) + [
+        False
+    ] * status
+    assert all("against rod" in failure.get("message") for failure in suite.iter("failure"))
+    assert all("allowed" in case.findtext("system-out") for case in suite)
 
 
 @pytest.mark.slow
@@ -84,10 +88,31 @@ def test_a_solution_that_stops_holds_no_bound(tmp_path, capsys):
     assert error.startswith("crossval: ")
 
 
-@pytest.mark.parametrize("bound", ["force=-1", "force=nan", "weight=1"])
-def test_bad_bounds(scene, bound, capsys):
-    assert gate(scene, bound) == 2
-    assert f"{bound}: must be QUANTITY=X" in capsys.readouterr().err
+BAD = {
+    "ks-cantilever --max-error force=-1": "force=-1: must be QUANTITY=X",
+    "ks-cantilever --max-error force=nan": "force=nan: must be QUANTITY=X",
+    "ks-cantilever --max-error weight=1": "weight=1: must be QUANTITY=X",
+    "ks-cantilever --max-error tip=1 --max-error tip=2": "bounds a quantity twice",
+    "ks-cantilever --max-error stress=1": "stress: is measured between two solids of a single beam",
+    "ks-cantilever --max-error tip=1 --model rod": "rod: is measured against itself",
+    "ks-cantilever --max-error tip=1 --quick": "--quick: is no option of --max-error",
+    "ks-cantilever two-pins --max-error tip=1": "--max-error: takes a single scene",
+    "ks-cantilever two-pins --element mixed": "--element: is no option of several scenes",
+    "ks-cantilever --junit a.xml": "--junit: is no option of a single scene",
+    "tip-load --max-error arc=1": "arc: the scene has none",
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_bad_bounds_and_options_are_one_line_and_no_file(line, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    try:
+        status = main(["compare", *line.split()])
+    except SystemExit as end:
+        status = end.code
+    out, error = capsys.readouterr()
+    assert (status, out, list(tmp_path.iterdir())) == (2, "", [])
+    assert BAD[line] in error.splitlines()[-1]
 
 
 def test_gaps_and_events_tell_of_another_path(tmp_path, capsys):

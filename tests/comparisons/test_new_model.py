@@ -114,8 +114,8 @@ def test_commands_have_it(way, request):
         ("check", "ks-cantilever"): "chain: yes",
         ("check", "double-beam"): "chain: no, the chain has one beam",
         ("solve", "ks-cantilever", "--model", "chain", "--quiet"): "CERTIFIED",
-        ("gate", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
-        ("study", "study.toml", "--out", "s", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
+        ("compare", "ks-cantilever", "--model", "chain", "--max-error", "force=1e-8"): "chain",
+        ("run", "study.toml", "--out", "s", "--workers", "1", "--quiet"): "2 cases: COMPLETED 2",
     }.items():
         found = crossval(place, *arguments)
         assert found.returncode == 0, found.stderr

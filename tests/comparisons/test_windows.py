@@ -51,7 +51,7 @@ def test_commands_without_unix(tmp_path):
 @pytest.mark.slow
 def test_a_study_without_unix(tmp_path):
     (tmp_path / "s.toml").write_text(STUDY)
-    crossval(tmp_path, "study", "s.toml", "--out", "s", "--workers", "1")
+    crossval(tmp_path, "run", "s.toml", "--out", "s", "--workers", "1")
     (table,) = (tmp_path / "s").glob("*.csv")
     rows = csv.DictReader(table.read_text().splitlines())
     assert [row["status"] for row in rows] == ["COMPLETED"] * 2

@@ -12,9 +12,7 @@ from pathlib import Path
 from comparisons.cli import main
 
 ROOT = Path(__file__).parents[2]
-SLOW = tuple(
-    f"crossval {command}" for command in ("trade", "compare", "study", "reproduce", "league", "view")
-)
+SLOW = tuple(f"crossval {command}" for command in ("compare", "run", "view"))
 """Commands of many seconds, left to the slow tests."""
 TARGETS = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
 

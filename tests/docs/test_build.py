@@ -78,7 +78,7 @@ def test_the_site_is_built_strictly_and_is_whole(site):
         assert [name for name in package.__all__ if f'id="{package.__name__}.{name}"' not in api] == []
     listed = pages["reference/command-line.html"]
     commands = re.findall(r"(?m)^    ([a-z]+)\b", usage("--help"))
-    assert {"solve", "compare", "study"} <= {*commands}
+    assert {"solve", "compare", "run"} <= {*commands}
     for name in commands:
         stated = re.findall(r"(?m)^  (-\S.*)", usage(f"{name} --help"))
         options = [one for line in stated for one in re.findall(r"(?:^|, )(--?[a-z][\w-]*)", line)]

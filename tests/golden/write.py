@@ -126,7 +126,7 @@ def compared(scene: str) -> Iterator[str]:
 def problem(name: str) -> Iterator[str]:
     """Yield what the manual says of a problem."""
     with TemporaryDirectory() as folder:
-        yield from said("manual", "--only", name, "--quiet", "--out", folder, folder=folder)
+        yield from said("run", "manual", "--only", name, "--quiet", "--out", folder, folder=folder)
         (case,) = json.loads((Path(folder) / "manual.json").read_text())["cases"]
     yield f"{case['title']}: {_flat([item['exact'] for item in case['quantities']])}"
     for run in case["runs"]:

@@ -5,13 +5,13 @@ from typing import Any
 
 from comparisons.claims.claim import Judgement
 from comparisons.claims.junit import JUnitCase
-from comparisons.claims.manual.record import Case
+from comparisons.claims.manual.problem import Case
 from comparisons.version import versions
 
 HEAD = """# Verification manual
 
 {cases} problems with exact answers, put to every model that can state them: {passed} of {runs} answers within their tolerances.
-An error is that of the worst quantity, relative to its exact value, or to the length where it is a position. `crossval manual` writes
+An error is that of the worst quantity, relative to its exact value, or to the length where it is a position. `crossval run manual` writes
 this page, its pictures and `manual.json`; it took {seconds:.0f} s with {versions}.
 
 """

@@ -97,7 +97,7 @@ def histories(folder):
 
 def check_finished(study, folder, whole):
     """The same command goes on to the table of a run that was left alone."""
-    assert crossval("study", study, "--out", folder, "--workers", "1") == 0
+    assert crossval("run", study, "--out", folder, "--workers", "1") == 0
     assert rows(folder / "tiny.csv") == rows(whole / "tiny.csv")
     assert histories(folder) == histories(whole)
 
@@ -120,7 +120,7 @@ def whole(tmp_path_factory):
     """The folder of the tiny study, uninterrupted."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "tiny.toml").write_text(TINY)
-    assert crossval("study", folder / "tiny.toml", "--out", folder, "--workers", "1") == 0
+    assert crossval("run", folder / "tiny.toml", "--out", folder, "--workers", "1") == 0
     return folder
 
 
@@ -129,7 +129,7 @@ def many(tmp_path_factory):
     """The table of `MANY`, beside the folder of its results."""
     folder = tmp_path_factory.mktemp("many")
     (folder / "many.toml").write_text(MANY)
-    assert crossval("study", folder / "many.toml", "--out", folder, "--workers", "1", "--quiet") == 0
+    assert crossval("run", folder / "many.toml", "--out", folder, "--workers", "1", "--quiet") == 0
     return folder / "many.csv"
 
 

@@ -1,4 +1,4 @@
-"""`crossval study FILE` in processes of its own: killed, interrupted, out of room."""
+"""`crossval run FILE.toml` in processes of its own: killed, interrupted, out of room."""
 
 import json
 import os
@@ -68,7 +68,7 @@ def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
         folder = tmp_path / str(len(folders))
         folders.append(folder)
         while recorded(folder / "tiny") < CASES and len(hit) < KILLS:
-            if killed(start("study", tiny, "--out", folder, "--workers", "2"), folder / "tiny", chance):
+            if killed(start("run", tiny, "--out", folder, "--workers", "2"), folder / "tiny", chance):
                 hit.append(recorded(folder / "tiny"))
     for folder in folders:
         check_finished(tiny, folder, whole)
@@ -79,7 +79,7 @@ def test_killed_at_twenty_random_points(whole, tiny, tmp_path, start):
 @pytest.mark.slow
 @pytest.mark.parametrize("whom", ["command", "group"])
 def test_interrupted_and_gone_on(whom, whole, tiny, tmp_path, start):
-    process = start("study", tiny, "--out", tmp_path, "--workers", "2")
+    process = start("run", tiny, "--out", tmp_path, "--workers", "2")
     wait_for(lambda: recorded(tmp_path / "tiny") >= 3)
     (os.kill if whom == "command" else os.killpg)(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
@@ -101,7 +101,7 @@ def test_out_of_room(whole, tiny, tmp_path, start):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (sorted(sizes)[-2], resource.RLIM_INFINITY))
 
-    process = start("study", tiny, "--out", tmp_path, "--workers", "2", preexec_fn=limit)
+    process = start("run", tiny, "--out", tmp_path, "--workers", "2", preexec_fn=limit)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2, err
     line = err.splitlines()[-1]
@@ -125,7 +125,7 @@ def test_a_folder_that_is_only_read(many, tmp_path, capfd):
         if os.getuid() == 0:
             os.setgid(NOBODY)
             os.setuid(NOBODY)
-        os._exit(crossval("study", many.with_suffix(".toml"), "--out", tmp_path))
+        os._exit(crossval("run", many.with_suffix(".toml"), "--out", tmp_path))
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     tmp_path.chmod(0o755)
     told = f"crossval: {tmp_path}: cannot be written: Permission denied\n"
@@ -135,7 +135,7 @@ def test_a_folder_that_is_only_read(many, tmp_path, capfd):
 
 def test_a_program_from_standard_input_is_refused_by_one_line(tiny, tmp_path):
     """Processes by spawn load the file of the main program, and there is none."""
-    code = f"import sys; from comparisons.cli import main; sys.exit(main(['study', {str(tiny)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
+    code = f"import sys; from comparisons.cli import main; sys.exit(main(['run', {str(tiny)!r}, '--out', {str(tmp_path)!r}, '--quiet']))"
     found = subprocess.run([sys.executable, "-"], input=code, capture_output=True, text=True, check=False)
     assert found.returncode == 2
     (line,) = found.stderr.splitlines()
@@ -169,7 +169,7 @@ def test_a_case_that_kills_its_worker_is_tried_once_more_and_blamed_alone(times,
     command = json.dumps([sys.executable, "-I", "killer.py"])
     (tmp_path / "killer.toml").write_text(f'[program]\nname = "killer"\ncommand = {command}\n')
     (tmp_path / "study.toml").write_text(BESIDE)
-    arguments = ["study", str(tmp_path / "study.toml"), "--out", str(tmp_path), "--workers", "2", "--quiet"]
+    arguments = ["run", str(tmp_path / "study.toml"), "--out", str(tmp_path), "--workers", "2", "--quiet"]
     for status in [3, 0][2 - times :]:
         assert main(arguments) == status
         lost = [row["message"] for row in rows(tmp_path / "beside.csv") if row["status"] == "WORKER_LOST"]

@@ -1,4 +1,4 @@
-"""`crossval study`: what a study file states, what is found, and one line for whatever is wrong."""
+"""`crossval run FILE.toml`: what a study file states, what is found, and one line for whatever is wrong."""
 
 import io
 import json
@@ -58,7 +58,7 @@ def test_a_row_is_the_answer_at_the_last_load_parameter(many):
 def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
     before, kept = many.read_text(), {file.name for file in many.with_suffix("").iterdir()}
     study = many.with_suffix(".toml")
-    assert crossval("study", study, "--out", many.parent, "--workers", "1") == 0
+    assert crossval("run", study, "--out", many.parent, "--workers", "1") == 0
     out, err = capsys.readouterr()
     lines = out.splitlines()
     assert lines[0].split()[:4] == ["model", "element", "elements", "integration_tolerance"]
@@ -67,7 +67,8 @@ def test_the_table_and_what_is_done_is_not_done_again(many, capsys):
     assert lines[20:] == [
         "",
         "many: 12 cases: CHECK_FAILED 2, COMPLETED 8, REFUSED 1, SLIPPED_OFF 1",
-        f"file: {many}",
+        "files:",
+        f"  {many}",
     ]
     assert err == "12 of 12 cases done, 4 failed\n"
     assert many.read_text() == before
@@ -90,7 +91,7 @@ def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(many, tmp_path, mon
         (refused,) = (file for file in told if told[file]["response"]["status"] == "REFUSED")
         rod.unlink()
         refused.unlink()
-        command = ("study", many.with_suffix(".toml"), "--out", folder, "--workers", "1")
+        command = ("run", many.with_suffix(".toml"), "--out", folder, "--workers", "1")
         monkeypatch.setattr(sys, "stderr", stream)
         assert crossval(*command) == 0
         text = stream.getvalue()
@@ -131,7 +132,7 @@ def test_the_scene_is_varied_through_its_records(tmp_path, monkeypatch):
     study = tmp_path / "study.toml"
     study.write_text(HEAD.replace("ks-cantilever", "scenes/hinged.toml") + run + run + lines)
     monkeypatch.chdir("/")
-    assert main(["study", str(study), "--out", str(tmp_path), "--workers", "1", "--quiet"]) == 0
+    assert main(["run", str(study), "--out", str(tmp_path), "--workers", "1", "--quiet"]) == 0
     _, row = sorted(rows(tmp_path / "mine.csv"), key=lambda row: row["hinge.stiffness"] == "2.0")
     named = {key for key in row if key.count(".") and row[key] in changes.values()}
     assert {row[key] for key in named} == set(changes.values())
@@ -183,7 +184,7 @@ TEXTS = (
 def test_what_is_wrong_in_a_study_is_one_line(reason, tmp_path, capsys):
     path = tmp_path / "study.toml"
     path.write_text(TEXTS[reason])
-    assert main(["study", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     found = f"{path}: {reason}" if reason else f"{tmp_path / 'nosuch'}: no such file or built-in scene"
     assert line.startswith(f"crossval: {found}")
@@ -191,16 +192,20 @@ def test_what_is_wrong_in_a_study_is_one_line(reason, tmp_path, capsys):
 
 
 ARGUMENTS = {
-    "nosuch: must be a study file, NAME.toml, or one of locking": ["study", "nosuch"],
-    "nosuch.toml: no such file": ["study", "nosuch.toml"],
-    "argument --workers: 0: must lie between 1": ["study", "STUDY", "--workers", "0"],
-    "not allowed with argument --workers": ["study", "STUDY", "--workers", "2", "--cluster", "tcp://a:1"],
+    "nosuch: must be a study file, NAME.toml, or one of paper, fig7a": ["run", "nosuch"],
+    "nosuch.toml: no such file": ["run", "nosuch.toml"],
+    "argument --workers: 0: must lie between 1": ["run", "STUDY", "--workers", "0"],
+    "not allowed with argument --workers": ["run", "STUDY", "--workers", "2", "--cluster", "tcp://a:1"],
     "results: is no longer a command, see": ["results", "a.sqlite"],
-    "STUDY: cannot be written": ["study", "STUDY", "--out", "STUDY"],
-    "--workers: belongs to a study file, locking is a question": ["study", "locking", "--workers", "2"],
-    "nosuch: no such file or built-in scene": ["trade", "nosuch", "--out", "DIR/out"],
-    "argument --workers: 0: must": ["trade", "ks-cantilever", "--workers", "0", "--out", "DIR/out"],
+    "STUDY: cannot be written": ["run", "STUDY", "--out", "STUDY"],
+    "--workers: is no option of locking": ["run", "locking", "--workers", "2"],
+    "SCENE: is missing: crossval run trade SCENE": ["run", "trade"],
+    "SCENE: is no option of manual": ["run", "manual", "ks-cantilever"],
+    "gate: is no longer a command, see crossval compare": ["gate", "ks-cantilever"],
+    "nosuch: no such file or built-in scene": ["run", "trade", "nosuch", "--out", "DIR/out"],
+    "argument --workers: 0: must": ["run", "trade", "ks-cantilever", "--workers", "0", "--out", "DIR/out"],
     "--cluster: not allowed": [
+        "run",
         "trade",
         "ks-face",
         "--workers",
@@ -210,12 +215,18 @@ ARGUMENTS = {
         "--out",
         "DIR/out",
     ],
-    "STUDY/x: cannot be written": ["trade", "ks-cantilever", "--out", "STUDY/x"],
-    "STUDY: cannot be written:": ["extremes", "--quick", "--out", "STUDY"],
-    "STUDY/y: cannot be written": ["manual", "--cards", "STUDY/y"],
-    "--only: rollup: no such problem (dead-load, roll-up, ": ["manual", "--out", "DIR/m", "--only", "rollup"],
-    "STUDY/z: cannot be written": ["reproduce", "fig9", "--quick", "--out", "STUDY/z"],
-    "invalid choice: 'fig10'": ["reproduce", "fig10"],
+    "STUDY/x: cannot be written": ["run", "trade", "ks-cantilever", "--out", "STUDY/x"],
+    "STUDY: cannot be written:": ["run", "extremes", "--quick", "--out", "STUDY"],
+    "STUDY/y: cannot be written": ["run", "manual", "--cards", "STUDY/y"],
+    "--only: rollup: no such problem (dead-load, roll-up, ": [
+        "run",
+        "manual",
+        "--out",
+        "DIR/m",
+        "--only",
+        "rollup",
+    ],
+    "STUDY/z: cannot be written": ["run", "fig9", "--quick", "--out", "STUDY/z"],
 }
 
 

@@ -1,4 +1,4 @@
-"""The trade-off: fits and fronts on numbers whose answer is known, limits by extrapolation, and `crossval trade`."""
+"""The trade-off: fits and fronts on numbers whose answer is known, limits by extrapolation, and `crossval run trade`."""
 
 import csv
 import json
@@ -201,7 +201,7 @@ def test_the_quick_trade_of_ks(tmp_path, capsys):
     scene.write_text(
         built_in_scenes()["ks-cantilever"].replace("load_parameters = 50", "load_parameters = 10")
     )
-    command = ["trade", str(scene), "--quick", "--out", str(folder)]
+    command = ["run", "trade", str(scene), "--quick", "--out", str(folder)]
     assert main(command) == 0
     with (folder / "trade.csv").open() as file:
         rows = list(csv.DictReader(file))

@@ -1,4 +1,4 @@
-"""`crossval league`: what is run, how it ends, and its files."""
+"""`crossval compare` of several scenes: what is run, how it ends, and its files."""
 
 import csv
 import json
@@ -40,7 +40,7 @@ def test_programs_are_measured_and_a_false_success_is_named(tmp_path, capsys):
     liar_file, run = tmp_path / "liar.toml", json.dumps([sys.executable, "-I", "liar.py"])
     liar_file.write_text(f'[program]\nname = "liar"\ncommand = {run}\n')
     out = tmp_path / "out"
-    command = ["league", *map(str, scenes), "--with", str(liar_file), "--quick", "--out", str(out)]
+    command = ["compare", *map(str, scenes), "--with", str(liar_file), "--quick", "--out", str(out)]
     assert main(command) == 0
     printed = capsys.readouterr().out
     found = rows(out)
@@ -71,8 +71,10 @@ def test_programs_are_measured_and_a_false_success_is_named(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_every_program_has_three_to_five_resolutions_or_one(tmp_path):
-    (tmp_path / "ks.toml").write_text(to_toml(replace(KS, load_parameters=1)))
-    assert main(["league", str(tmp_path / "ks.toml"), "--out", str(tmp_path / "out")]) == 0
-    counts = Counter(row["program"] for row in rows(tmp_path / "out"))
+    scenes = [tmp_path / "ks.toml", tmp_path / "again.toml"]
+    for path in scenes:
+        path.write_text(to_toml(replace(KS, name=path.stem, load_parameters=1)))
+    assert main(["compare", *map(str, scenes), "--out", str(tmp_path / "out")]) == 0
+    counts = Counter(row["program"] for row in rows(tmp_path / "out") if row["scene"] == "ks")
     assert set(counts.values()) <= {1, 3, 4, 5}, counts
     assert max(counts.values()) > 1

@@ -57,7 +57,7 @@ def test_the_template_names_every_key_and_every_line_can_be_read():
 def test_a_new_scene_can_be_checked_and_solved(capsys):
     assert main(["new", "strip"]) == 0
     assert Path("strip.toml").read_text() == TEMPLATE.replace('"NAME"', '"strip"')
-    assert main(["check", "strip.toml"]) == 0
+    assert main(["check", "strip.toml", "--out", "strip.png"]) == 0
     assert capsys.readouterr().out.count(": yes") == 3
     assert imread("strip.png").shape[2] == 4
     assert main(["solve", "strip.toml", "--model", "tsm"]) == 0
@@ -92,7 +92,7 @@ def test_what_cannot_be_done_is_one_line(arguments, line, capsys, in_a_folder):
 
 def test_the_shipped_schema_is_that_of_the_records(capsys):
     """Written by ``python -m comparisons.scene.json_schema``."""
-    assert main(["schema"]) == 0
+    assert main(["scenes", "--schema"]) == 0
     assert json.loads(capsys.readouterr().out) == json.loads(json_schema_text()) == SCHEMA
     Draft202012Validator.check_schema(SCHEMA)
     for text in (TEMPLATE, *built_in_scenes().values()):
@@ -141,7 +141,7 @@ def test_what_the_schema_refuses_the_reader_refuses(every):
 @pytest.mark.parametrize(
     ("command", "case"),
     [("check", case) for case in ("missing", "directory", "latin-1", "null", "/dev/zero", "pipe", "large")]
-    + [("solve", "pipe"), ("study", "missing")],
+    + [("solve", "pipe"), ("run", "missing")],
 )
 def test_a_file_that_cannot_be_read_is_named_in_one_line(case, command, capsys):
     path = Path("my.toml")
@@ -156,7 +156,7 @@ def test_a_file_that_cannot_be_read_is_named_in_one_line(case, command, capsys):
             sparse.write(KS.encode())
             sparse.truncate(2 * 10**9)
     name = {"null": "no\0file", "/dev/zero": "/dev/zero"}.get(case, "my.toml")
-    more = {"solve": ["--model", "tsm"], "check": [], "study": ["--out", "out"]}[command]
+    more = {"solve": ["--model", "tsm"], "check": [], "run": ["--out", "out"]}[command]
     said = {
         "/dev/zero": "cannot be read: is not a regular file",
         "pipe": "cannot be read: is not a regular file",

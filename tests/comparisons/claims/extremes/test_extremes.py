@@ -1,4 +1,4 @@
-"""`crossval extremes`: what is right, stopped, withdrawn and wrong, what theory allows, which places there are, and what is written."""
+"""`crossval run extremes`: what is right, stopped, withdrawn and wrong, what theory allows, which places there are, and what is written."""
 
 import csv
 import json
@@ -15,12 +15,11 @@ import pytest
 from comparisons.cases import Case, measure
 
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
-from comparisons.claims.claim import Verdict
+from comparisons.claims.claim import Allowance, Verdict
 from comparisons.claims.extremes import run as runner
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance
 from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Cell, judged
-from comparisons.claims.extremes.checks import Against
+from comparisons.claims.extremes.checks import LARGEST, Against, allowance
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod, kinds
 from comparisons.claims.extremes.scenes import cantilever, half_circle, sheared
 from comparisons.cli import main
@@ -208,7 +207,7 @@ def test_the_command_fails_where_a_cell_is_wrong(tmp_path, capsys, monkeypatch):
         checks=(Against(case=exact_rod(scene), allowed=Allowance(error=1e-4, why="too little")),),
     )
     monkeypatch.setattr(runner, "matrix", lambda **_: [cell])
-    assert main(["extremes", "--quick", "--workers", "1", "--out", str(tmp_path / "out")]) == 1
+    assert main(["run", "extremes", "--quick", "--workers", "1", "--out", str(tmp_path / "out")]) == 1
     out, err = capsys.readouterr()
     assert "extremes.html" in out
     assert "elements 10, tsm timoshenko 5: wrong: COMPLETED" in err
@@ -231,7 +230,7 @@ STOP = {
 @pytest.mark.long
 def test_quick_matrix(tmp_path, capsys, stated):
     """Nothing is wrong, and no more stops or is withdrawn than what must."""
-    assert main(["extremes", "--quick", "--out", str(tmp_path)]) == 0, capsys.readouterr().err
+    assert main(["run", "extremes", "--quick", "--out", str(tmp_path)]) == 0, capsys.readouterr().err
     cells = json.loads((tmp_path / "extremes.json").read_text())["cells"]
     at = {(cell["axis"], cell["model"], cell["value"]): cell for cell in cells}
     hold = [

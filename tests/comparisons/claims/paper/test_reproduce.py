@@ -75,7 +75,7 @@ def check_files(folder, figure):
 
 def run(figure, folder, capsys):
     """Reproduce a figure with coarse settings; its page has every picture, every claim, and the shapes that move."""
-    assert main(["reproduce", figure, "--quick", "--out", str(folder)]) == 0
+    assert main(["run", figure, "--quick", "--out", str(folder)]) == 0
     out, err = capsys.readouterr()
     assert figure in err
     assert sorted(map(str, folder.glob("[!.]*"))) == sorted(line.strip() for line in out.splitlines()[1:])
@@ -149,7 +149,7 @@ def test_fig9(tmp_path, capsys, stated):
 @pytest.mark.slow
 @pytest.mark.long
 def test_all_with_full_settings(tmp_path, stated):
-    assert main(["reproduce", "all", "--out", str(tmp_path)]) == 0
+    assert main(["run", "paper", "--out", str(tmp_path)]) == 0
     for figure in FILES:
         check_files(tmp_path, figure)
     check_claims(tmp_path / "claims.md", *FILES)

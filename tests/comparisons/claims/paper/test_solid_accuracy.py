@@ -1,4 +1,4 @@
-"""What `crossval study QUESTION` finds about the solid, against its bars."""
+"""What `crossval run QUESTION` finds about the solid, against its bars."""
 
 import csv
 from dataclasses import replace
@@ -17,7 +17,7 @@ SCENES = ("ks-cantilever", "ks-face")
 
 def asked(question, folder):
     """Return the table that the command writes, its numbers as numbers, without those that are not known."""
-    assert main(["study", question, "--out", str(folder)]) == 0
+    assert main(["run", question, "--out", str(folder)]) == 0
     with (folder / f"{question}.csv").open() as file:
         return [{key: number(cell) for key, cell in row.items() if cell} for row in csv.DictReader(file)]
 

@@ -41,7 +41,7 @@ def fake(folder: Path, monkeypatch: pytest.MonkeyPatch, script: str) -> None:
 
 
 def test_without_calculix_or_where_it_stops_the_study_says_so(tmp_path, monkeypatch, capsys):
-    study = ["study", "peers", "--out", str(tmp_path / "out")]
+    study = ["run", "peers", "--out", str(tmp_path / "out")]
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(study) == 2
     out, err = capsys.readouterr()

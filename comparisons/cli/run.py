@@ -1,0 +1,238 @@
+"""``crossval run``: a suite of cases by its name, or a study file."""
+
+import os
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from comparisons.claims.paper.figures import FIGURES
+from comparisons.claims.solid.questions import QUESTIONS
+from comparisons.cli.options import add_workers, workers
+from comparisons.cli.outcome import DONE, STOPPED, WRONG, report
+from comparisons.files import result_file, writable_folder, write_text
+from comparisons.scene import InputError, load_scene
+
+if TYPE_CHECKING:
+    import argparse
+
+    from comparisons.cli.outcome import Commands
+    from comparisons.cost.points import Trade
+
+EPILOG = """exit status: 0 done (a solution that stopped is a result, and is named), 1 an answer of the manual is beyond its tolerance,
+or a cell of the extremes is wrong, 2 bad input or a place that cannot be used, 3 a figure's run stopped, a case has no result, or nothing
+is there to measure errors against, 130 interrupted; what is done of a study, a trade and the extremes is kept, and the same command goes
+on from there"""
+
+
+def add_to(commands: "Commands") -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "run",
+        help="run a suite: figures of the paper, the manual, the extremes, a trade, a question to the solid, or a study file",
+        description="; ".join(f"{name}: {suite.what}" for name, suite in SUITES.items()),
+        epilog=EPILOG,
+    )
+    parser.add_argument("suite", metavar="NAME|FILE.toml", help=f"a study file, or {', '.join(SUITES)}")
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help="trade: a built-in scene or a TOML file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the results (out/NAME)")
+    parser.add_argument(
+        "--quick", action="store_true", help="figures, extremes, trade: fewer or coarse settings"
+    )
+    add_workers(parser)
+    parser.add_argument("--only", nargs="+", metavar="PROBLEM", help="manual: these problems only")
+    parser.add_argument("--junit", type=Path, metavar="FILE", help="manual: write every answer as JUnit XML")
+    parser.add_argument(
+        "--cards",
+        type=Path,
+        metavar="DIR",
+        help="manual: write every problem as a JSON file with its scene, values and source, and solve nothing",
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress")
+    parser.set_defaults(run=run)
+
+
+def run(given: "argparse.Namespace") -> int:
+    """Run what is named, with the options that it has."""
+    name: str = given.suite
+    suite = STUDY_FILE if name.endswith(".toml") or os.sep in name else SUITES.get(name)
+    if suite is None:
+        raise InputError(name, f"must be a study file, NAME.toml, or one of {', '.join(SUITES)}")
+    for option in ("scene", "quick", "workers", "cluster", "only", "junit", "cards"):
+        if getattr(given, option) and option not in suite.options:
+            raise InputError(f"--{option}".replace("--scene", "SCENE"), f"is no option of {name}")
+    return suite.run(given)
+
+
+def _out(given: "argparse.Namespace", *names: str) -> Path:
+    """Return the folder of the results, tried out."""
+    return writable_folder(given.out or Path("out") / Path(given.suite).stem, *names)
+
+
+def _files(*paths: Path) -> None:
+    print("files:", *(f"  {path}" for path in paths), sep="\n")
+
+
+def _figures(given: "argparse.Namespace") -> int:
+    folder = _out(given, "report.html")
+    from comparisons.claims.paper.reproduce import reproduce
+
+    figure = "all" if given.suite == "paper" else given.suite
+    files, stopped = reproduce(figure, folder, quick=given.quick, report=report)
+    _files(*files)
+    for reason in stopped:
+        report(f"crossval: {reason}")
+    return STOPPED if stopped else DONE
+
+
+def _manual(given: "argparse.Namespace") -> int:
+    from comparisons.claims.manual import problems
+
+    watch = (lambda _: None) if given.quiet else report
+    stated = problems(given.only)
+    if given.cards is not None:
+        from comparisons.claims.manual.cards import write_cards
+
+        cards = write_cards(given.cards, watch, stated)
+        print(f"{len(cards) - 1} cards and their schema in {given.cards}")
+        return DONE
+    folder = _out(given, "index.md", "manual.json")
+    file = None if given.junit is None else result_file(given.junit)
+    from comparisons.claims.junit import junit_text
+    from comparisons.claims.manual import write_manual
+    from comparisons.claims.manual.text import junit_cases
+
+    manual = write_manual(folder, watch, stated)
+    if file is not None:
+        write_text(file, junit_text("crossval run manual", junit_cases(manual.cases)))
+    answers = [(case, one) for case in manual.cases for one in case.judgements]
+    failed = [(case, one) for case, one in answers if not one.passed]
+    print(f"{len(manual.cases)} cases, {len(answers)} answers, {len(failed)} beyond their tolerance")
+    _files(*manual.files, *([file] if file else []))
+    for case, one in failed:
+        report(f"crossval: {case.problem.name}, {one.claim.name}: {one.failure}")
+    return WRONG if failed else DONE
+
+
+def _extremes(given: "argparse.Namespace") -> int:
+    folder = _out(given, "extremes.html", "extremes.csv", "extremes.json")
+    from comparisons.cases.progress import shown
+    from comparisons.claims.extremes.run import counts, extremes
+    from comparisons.output import tabulated
+
+    with shown(quiet=given.quiet) as progress:
+        found = extremes(folder, workers(given), progress, quick=given.quick)
+    print(tabulated([{"axis": axis, **number} for axis, number in counts(found.judgements).items()]))
+    _files(*found.files)
+    for item in found.wrong:
+        report(f"crossval: {item.sentence}")
+    return WRONG if found.wrong else DONE
+
+
+def _trade(given: "argparse.Namespace") -> int:
+    if given.scene is None:
+        raise InputError("SCENE", "is missing: crossval run trade SCENE")
+    scene = load_scene(given.scene)
+    folder = given.out or Path("out/trade") / scene.name
+    from comparisons.cases.progress import shown
+    from comparisons.cost.references import NoReferenceError
+    from comparisons.cost.sweep import trade_off
+
+    try:
+        with shown(quiet=given.quiet) as progress:
+            found = trade_off(scene, folder, workers(given, 1), quick=given.quick, progress=progress)
+    except NoReferenceError as error:
+        report(f"crossval: {error}")
+        return STOPPED
+    print(_traded(found.trade), end="\n\n")
+    _files(*found.files)
+    return DONE
+
+
+def _traded(trade: "Trade") -> str:
+    from comparisons.cost.orders import orders
+    from comparisons.cost.sweep import SHOWN
+    from comparisons.cost.tables import cheapest_text, orders_text, stopped_text
+
+    limit = (
+        "not known: a solid that it is extrapolated from stopped"
+        if trade.limit is None
+        else trade.limit.sentence
+    )
+    head = f"""{trade.scene.name}: {len(trade.points)} settings
+errors against: {trade.reference.sentence}
+the solid's own limit: {limit}
+seconds: processor time of one thread from the scene to the checked answer, median of repeats after a warm-up
+-: no setting does it; not told: the limit is known less well than that; [n]: n load steps"""
+    fitted = orders_text(list(orders(trade, SHOWN)))
+    title = f"orders of convergence and cost exponents, error of {SHOWN} over the path"
+    return "\n\n".join([head, cheapest_text(trade, SHOWN), title, fitted, stopped_text(trade)])
+
+
+def _question(given: "argparse.Namespace") -> int:
+    folder = _out(given, f"{given.suite}.csv")
+    from comparisons.claims.solid.solid_accuracy import STUDIES
+    from comparisons.output import tabulated, write_rows
+
+    rows = list(STUDIES[given.suite](report))
+    print(tabulated(rows))
+    _files(write_rows(folder / f"{given.suite}.csv", rows))
+    return DONE
+
+
+def _study(given: "argparse.Namespace") -> int:
+    from comparisons.cases.progress import shown
+    from comparisons.cases.run import UNSETTLED
+    from comparisons.cases.run import run as run_cases
+    from comparisons.cases.study import read_study
+    from comparisons.cases.table import result_rows, result_table
+    from comparisons.output import write_rows
+
+    study = read_study(Path(given.suite))
+    table = f"{study.name}.csv"
+    folder = writable_folder(given.out or Path("out/study"), table)
+    with shown(quiet=given.quiet) as progress:
+        found = run_cases(
+            study.cases, folder / study.name, workers(given), repeats=study.repeats, progress=progress
+        )
+    rows = result_rows(found)
+    ends = Counter(row["status"] for row in rows)
+    print(result_table(rows))
+    print(f"\n{study.name}: {len(rows)} cases: {', '.join(f'{name} {ends[name]}' for name in sorted(ends))}")
+    _files(write_rows(folder / table, rows))
+    left = sum(ends[name] for name in UNSETTLED)
+    if left:
+        report(f"crossval: {left} cases have no result; the same command tries them again")
+    return STOPPED if left else DONE
+
+
+class Suite(NamedTuple):
+    """A sentence about a suite, the options it has beside ``--out`` and ``--quiet``, and the function that runs it."""
+
+    what: str
+    options: tuple[str, ...]
+    run: "Callable[[argparse.Namespace], int]"
+
+
+SUITES = {
+    "paper": Suite("all figures of the paper, and its claims", ("quick",), _figures),
+    **{name: Suite(what, ("quick",), _figures) for name, what in FIGURES.items()},
+    "manual": Suite(
+        "the verification manual, problems with exact answers, put to every model that can state them",
+        ("only", "junit", "cards"),
+        _manual,
+    ),
+    "extremes": Suite(
+        "where the models hold and where they stop, over units, slenderness, shear, meshes, contact positions, load steps, penalty, "
+        "Poisson's ratio, depth and time",
+        ("quick", "workers", "cluster"),
+        _extremes,
+    ),
+    "trade": Suite(
+        "what accuracy costs on SCENE, error against seconds, iterations and unknowns of many settings",
+        ("scene", "quick", "workers", "cluster"),
+        _trade,
+    ),
+    **{name: Suite(what, (), _question) for name, what in QUESTIONS.items()},
+}
+STUDY_FILE = Suite("a scene, and what is varied in it", ("workers", "cluster"), _study)
