@@ -51,9 +51,10 @@ def _factors(found: Study, larger: str, smaller: str) -> list[float]:
 def _pairs(found: Study, larger: str, smaller: str) -> list[bool]:
     """Whether the critical area is the larger one, for every way to a node on which both formulations found equilibrium."""
     areas: dict[str, dict[tuple[float, float, float], float]] = {larger: {}, smaller: {}}
+    usable = _usable(found)
     for row in found.tables["fig7b-tolerance"]:
-        usable = f"{row['tolerance']:.0e}" in _usable(found) and np.isfinite(row["smallest"])
-        if row["element"] in areas and usable:
+        known = f"{row['tolerance']:.0e}" in usable and np.isfinite(row["smallest"])
+        if row["element"] in areas and known:
             areas[row["element"]][row["tolerance"], row["start"], row["node"]] = row["smallest"]
     return [bool(area > areas[smaller][way]) for way, area in areas[larger].items() if way in areas[smaller]]
 

@@ -25,29 +25,11 @@ STUDIES: dict[str, Callable[..., Study]] = {
 
 
 def reproduce(name: str, folder: Path, *, quick: bool, report: Report) -> tuple[list[Path], list[str]]:
-    """Compute and draw one figure or all of them, and judge the claims that they bear on.
+    """Compute and draw a figure of `FIGURES` or "all" of them, judge the claims that they bear on, and write a page of both.
 
-    Parameters
-    ----------
-    name : str
-        A key of `FIGURES`, or "all".
-    folder : Path
-        Made if it is not there. The verdicts are ``claims.md``, those of a single figure ``claims-NAME.md``; ``report.html`` shows what was
-        run last.
-    quick : bool
-        Whether to take coarse settings.
-    report : callable
-        Takes lines about the progress.
-
-    Returns
-    -------
-    files, stopped : list of Path, list of str
-        What was written, and the runs that a figure needs and that did not go through.
-
-    Raises
-    ------
-    OutputError
-        If `folder` cannot be written; nothing is computed.
+    The folder is made if it is not there, before anything is computed. The verdicts are ``claims.md``, those of a single figure
+    ``claims-NAME.md``; ``report.html`` shows what was run last. `quick` takes coarse settings. Returns the files and the runs that a
+    figure needs and that did not go through; raises `OutputError` if the folder cannot be written.
     """
     folder = writable_folder(folder)
     found: dict[str, Study] = {}

@@ -71,7 +71,8 @@ def holds(cases: bool | Sequence[bool | None], number: str, why: str, *, in_size
     A case is None where this program ends before the reading does. The claim is reproduced where it holds in all readings, in
     direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
     """
-    readings = [cases] if isinstance(cases, bool) else list(cases)
+    given = cases if isinstance(cases, Sequence) else [cases]
+    readings = [None if case is None else bool(case) for case in given]  # bool of numpy, too
     if not readings:
         raise ValueError("cases = (): a claim without a reading cannot be judged")
     if all(readings):
