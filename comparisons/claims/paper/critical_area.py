@@ -109,20 +109,13 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
     without equilibrium counts as 1; the tolerances at which the median is in the middle of the printed ranges; the slopes of the
     floors in section 4.1, before both ends of the element.
     """
-    found: dict[str, dict[str, list[float]]] = {}
-    for row in areas:
-        by_tolerance = found.setdefault(row["element"], {})
-        area = 1.0 if np.isnan(row["smallest"]) else row["smallest"]
-        by_tolerance.setdefault(f"{row['tolerance']:.0e}", []).append(area)
+    tolerances = tuple(dict.fromkeys(row["tolerance"] for row in areas))
     critical = {
-        element: {
-            tolerance: {"smallest": min(part), "median": float(np.median(part)), "largest": max(part)}
-            for tolerance, part in by_tolerance.items()
-        }
-        for element, by_tolerance in found.items()
+        element: {f"{tolerance:.0e}": _spread(areas, element, tolerance) for tolerance in tolerances}
+        for element in LABELS
     }
     return {
-        "tolerance_of_the_curves": _shown(tuple(dict.fromkeys(row["tolerance"] for row in areas))),
+        "tolerance_of_the_curves": _shown(tolerances),
         "wanted_tolerance_of_the_curves": SHOWN_TOLERANCE,
         "critical_area": critical,
         "printed": PRINTED,
@@ -132,6 +125,12 @@ def measured(areas: list[Row], floors: list[Row]) -> dict[str, Any]:
         },
         "slopes_of_the_floor": _slopes(floors),
     }
+
+
+def _spread(areas: list[Row], element: str, tolerance: float) -> dict[str, float]:
+    own = [row["smallest"] for row in areas if (row["element"], row["tolerance"]) == (element, tolerance)]
+    found = np.nan_to_num(own, nan=1.0)
+    return {"smallest": found.min(), "median": float(np.median(found)), "largest": found.max()}
 
 
 def _tolerance_for(areas: Mapping[str, Mapping[str, float]], area: float) -> float:
@@ -146,15 +145,13 @@ def _tolerance_for(areas: Mapping[str, Mapping[str, float]], area: float) -> flo
 
 def _slopes(floors: list[Row]) -> dict[str, list[float]]:
     """Slopes of the straight lines fitted to the logarithms of the floors in section 4.1, one per end of the element."""
-    lines: dict[tuple[str, str], list[tuple[float, float]]] = {}
     low, high = FITTED
-    for row in floors:
-        if row["psi"] == PSI and low * (1.0 - 1e-9) < row["ratio"] < high * (1.0 + 1e-9):
-            lines.setdefault((row["element"], row["end"]), []).append((row["ratio"], row["floor"]))
     slopes: dict[str, list[float]] = {}
-    for (element, _), points in lines.items():
-        ratio, floor = np.log(points).T
-        slopes.setdefault(element, []).append(float(np.polyfit(ratio, floor, 1)[0]))
+    for case in (case for case in _FLOOR_CASES if PSI in case):
+        own = [row for row in floors if (row["element"], row["end"], row["psi"]) == case]
+        own = [row for row in own if low * (1.0 - 1e-9) < row["ratio"] < high * (1.0 + 1e-9)]
+        slope = np.polyfit(np.log(column(own, "ratio")), np.log(column(own, "floor")), 1)[0]
+        slopes.setdefault(case[0], []).append(float(slope))
     return slopes
 
 
