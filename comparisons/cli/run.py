@@ -77,13 +77,12 @@ def _figures(given: "argparse.Namespace") -> int:
     folder = _out(given, "report.html")
     from comparisons.claims.paper.reproduce import reproduce
 
-    done = reproduce(
-        "all" if given.suite == "paper" else given.suite, folder, quick=given.quick, report=report
-    )
-    _files(*done.files)
-    for reason in done.stopped:
+    figure = "all" if given.suite == "paper" else given.suite
+    files, stopped = reproduce(figure, folder, quick=given.quick, report=report)
+    _files(*files)
+    for reason in stopped:
         report(f"crossval: {reason}")
-    return STOPPED if done.stopped else DONE
+    return STOPPED if stopped else DONE
 
 
 def _manual(given: "argparse.Namespace") -> int:
@@ -175,7 +174,7 @@ def _question(given: "argparse.Namespace") -> int:
     from comparisons.claims.solid.solid_accuracy import STUDIES
     from comparisons.output import tabulated, write_rows
 
-    rows = STUDIES[given.suite](report)
+    rows = list(STUDIES[given.suite](report))
     print(tabulated(rows))
     _files(write_rows(folder / f"{given.suite}.csv", rows))
     return DONE

@@ -6,7 +6,6 @@ distance. Round-off therefore stops it before the step length or the start of th
 begins where no smaller step helps. Behind the node the march goes on from a state inside the next element.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,16 +36,9 @@ _BEHIND = (0.1, 0.2, 0.3, 0.4, 0.5)  # places inside the next element, in elemen
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Approach:
-    """Equilibria on the way to a beam node.
+    """Equilibria on the way to a beam node, or to the tip, at an arc position.
 
-    Attributes
-    ----------
-    node : float
-        Arc position of the beam node, or of the tip.
-    load_parameter : ndarray, shape (k,)
-        Where equilibrium was found; empty if it was not found anywhere in the element.
-    ratio : ndarray, shape (k,)
-        Distance of the contact from the node in element lengths: l_i/l of [P].
+    Load parameters and distances from the node in element lengths, l_i/l of [P], shape (k,); empty if there is none in the element.
     """
 
     node: float
@@ -60,21 +52,22 @@ class Approach:
 
 
 def approaches(structure: Structure, tolerance: float) -> tuple[Approach, ...]:
-    """Lead the only contact of a structure towards every beam node on its way to the beam's end.
+    """Lead the only contact of a structure, one beam under one pin, towards every beam node on its way to the tip, the last one.
 
-    Parameters
-    ----------
-    structure : Structure
-        One beam under one pin, in contact from the start.
-    tolerance : float
-        Bound on the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
-
-    Returns
-    -------
-    tuple of Approach
-        One per node, the tip last.
+    The tolerance bounds the scaled residual of `tsm.newton.Newton`, without allowance for round-off.
     """
-    return tuple(_approaches(_Contact(structure, tolerance)))
+    contact = _Contact(structure, tolerance)
+    history = [initial_state(contact.model)]
+    first = int(np.floor(contact.arc(history[0]) / contact.l0 + NEAREST)) + 1
+    found = []
+    for number in range(first, structure.beams[0].elements + 1):
+        node = number * contact.l0
+        trail = _towards(contact, history, node) if history else []
+        ratio = np.array([(node - contact.arc(state)) / contact.l0 for state in trail])
+        load_parameter = np.array([state.load_parameter for state in trail])
+        found.append(Approach(node=node, load_parameter=load_parameter, ratio=ratio))
+        history = _behind(contact, trail, node) if node < contact.length - NEAREST else []
+    return tuple(found)
 
 
 class _Contact:
@@ -107,20 +100,6 @@ class _Contact:
                 return None
             state, spent = found.state, spent + found.iterations
         return None
-
-
-def _approaches(contact: _Contact) -> Iterator[Approach]:
-    history = [initial_state(contact.model)]
-    first = int(np.floor(contact.arc(history[0]) / contact.l0 + NEAREST)) + 1
-    for number in range(first, contact.model.structure.beams[0].elements + 1):
-        node = number * contact.l0
-        trail = _towards(contact, history, node) if history else []
-        yield Approach(
-            node=node,
-            load_parameter=np.array([state.load_parameter for state in trail]),
-            ratio=np.array([(node - contact.arc(state)) / contact.l0 for state in trail]),
-        )
-        history = _behind(contact, trail, node) if node < contact.length - NEAREST else []
 
 
 def _towards(contact: _Contact, history: list[State], node: float) -> list[State]:
@@ -156,7 +135,10 @@ def _behind(contact: _Contact, trail: list[State], node: float) -> list[State]:
 
     The starts are extrapolated from states that lie apart: those crowded before the node know only its round-off.
     """
-    apart = _apart(trail)
+    apart: list[State] = []
+    for state in reversed(trail):
+        if len(apart) < 3 and (not apart or apart[0].load_parameter - state.load_parameter > _LARGEST / 2):
+            apart.insert(0, state)
     if len(apart) < 2:
         return []
     rate, last = _rate(contact, apart), apart[-1]
@@ -167,12 +149,3 @@ def _behind(contact: _Contact, trail: list[State], node: float) -> list[State]:
         if found is not None and node < contact.arc(found) < node + contact.l0:
             return [found]
     return []
-
-
-def _apart(trail: list[State]) -> list[State]:
-    """The last three states that are a step apart."""
-    chosen: list[State] = []
-    for state in reversed(trail):
-        if len(chosen) < 3 and (not chosen or chosen[0].load_parameter - state.load_parameter > _LARGEST / 2):
-            chosen.insert(0, state)
-    return chosen

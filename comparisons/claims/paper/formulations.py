@@ -1,41 +1,25 @@
-"""The element formulations that the studies compare, each with one colour in every figure."""
+"""The element formulations of the studies: the paper's three, then the one whose contact force is an unknown."""
 
-from dataclasses import dataclass
 from typing import Any
 
 from comparisons.show import palette
-from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, MIXED, TIMOSHENKO
+from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE
+from tsm.elements import MIXED as MIXED_ELEMENT
+from tsm.elements import TIMOSHENKO as TIMOSHENKO_ELEMENT
+
+SIMPLE, CANTILEVER = EULER_BERNOULLI_SIMPLE.name, EULER_BERNOULLI_CANTILEVER.name
+TIMOSHENKO, MIXED = TIMOSHENKO_ELEMENT.name, MIXED_ELEMENT.name
+LABELS = {
+    SIMPLE: "Euler-Bernoulli, simple",
+    CANTILEVER: "Euler-Bernoulli, cantilever",
+    TIMOSHENKO: "Timoshenko",
+    MIXED: MIXED,
+}
+"""What they are called, in the order of drawing."""
+_DASHES = {CANTILEVER: (0, (5, 2)), MIXED: (0, (1, 1))}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Formulation:
-    """An element type of `tsm`, how [P] calls it and how it is drawn."""
-
-    element: str
-    label: str
-    marker: str
-    linestyle: Any = "-"
-
-    @property
-    def color(self) -> str:
-        """The model's colour."""
-        return palette.colour(f"TSM {self.element}")
-
-    @property
-    def line(self) -> dict[str, Any]:
-        """Keywords of a matplotlib line."""
-        return {"color": self.color, "marker": self.marker, "linestyle": self.linestyle}
-
-
-FORMULATIONS = (
-    Formulation(element=EULER_BERNOULLI_SIMPLE.name, label="Euler-Bernoulli, simple", marker="o"),
-    Formulation(
-        element=EULER_BERNOULLI_CANTILEVER.name,
-        label="Euler-Bernoulli, cantilever",
-        marker="s",
-        linestyle=(0, (5, 2)),
-    ),
-    Formulation(element=TIMOSHENKO.name, label="Timoshenko", marker="^"),
-    Formulation(element=MIXED.name, label=MIXED.name, marker="D", linestyle=(0, (1, 1))),
-)
-"""The paper's three, then the one whose contact force is an unknown."""
+def line(element: str) -> dict[str, Any]:
+    """Return the keywords of a formulation's line in matplotlib."""
+    style = palette.style(f"TSM {element}")
+    return {"color": style.colour, "marker": style.marker, "linestyle": _DASHES.get(element, "-")}

@@ -29,23 +29,9 @@ def frame(p: Properties, x: Array) -> tuple[Array, Array]:
 
 
 def contact(p: Properties, x: Array, lever: Any) -> tuple[Array, Array]:
-    """Forces of the element on its own displacements and on the node that touches it.
+    """Forces on the element (6) and on the node that touches it (2), the gradient of the energy at constant a, and K, shape (3, 3).
 
-    Parameters
-    ----------
-    p : Properties
-        Constants of the element.
-    x : ndarray, shape (6,)
-        Its displacements.
-    lever : ndarray, shape (2,)
-        ``x_i - x_c``, from the contacting node to end i.
-
-    Returns
-    -------
-    force : ndarray, shape (8,)
-        On the element (6) and on the node (2): the gradient of the energy at constant a.
-    stiffness : ndarray, shape (3, 3)
-        K of the element force equation, over ``[y_j, y_c, theta]``.
+    `x` are the element's displacements, shape (6,); `lever` is ``x_i - x_c``, from the contacting node to end i.
     """
     t, n = frame(p, x)
     d, r = np.array([p.dx0, p.dy0]) + (x[3:5] - x[:2]), -np.asarray(lever)

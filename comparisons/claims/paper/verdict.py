@@ -3,7 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from inspect import getdoc
+
+from comparisons.claims.paper.figure_study import Study
 
 
 class Verdict(StrEnum):
@@ -26,23 +28,16 @@ class Judgement:
     why: str
 
 
+Judge = Callable[[Study], Judgement]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """One claim, however often the paper makes it.
+    """One claim, however often the paper makes it: places with what is said there, and the judge of the study of a figure."""
 
-    Attributes
-    ----------
-    stated : tuple of (str, str)
-        Where it stands in [P], and what it says there.
-    figure : str
-        The figure whose study decides it.
-    judge : callable
-        From that study to the judgement.
-    """
-
-    stated: tuple[tuple[str, str], ...]
     figure: str
-    judge: Callable[[Any], Judgement]
+    stated: tuple[tuple[str, str], ...]
+    judge: Judge
 
     @property
     def source(self) -> str:
@@ -55,49 +50,37 @@ class Claim:
         return " ".join(text for _, text in self.stated)
 
 
-def claim(figure: str, judge: Callable[[Any], Judgement], *stated: tuple[str, str]) -> Claim:
-    """Return the claim that the study of `figure` decides by `judge`."""
-    return Claim(stated=stated, figure=figure, judge=judge)
+STATED: list[Claim] = []
+"""Every claim that a judge is marked with."""
 
 
-def holds(condition: bool, number: str, why: str) -> Judgement:
-    """Judge a claim that the numbers decide."""
-    verdict = Verdict.REPRODUCED if condition else Verdict.NOT_REPRODUCED
-    return Judgement(verdict=verdict, number=number, why=why)
+def claim(figure: str, *places: str) -> Callable[[Judge], Judge]:
+    """Mark the judge of a claim: its docstring is what the paper says, a paragraph for each place in [P]."""
+
+    def marked(judge: Judge) -> Judge:
+        texts = (getdoc(judge) or "").split("\n\n")
+        STATED.append(Claim(figure=figure, stated=tuple(zip(places, texts, strict=True)), judge=judge))
+        return judge
+
+    return marked
 
 
-def over_readings(cases: Sequence[bool | None], number: str, why: str) -> Judgement:
-    """Judge a claim that depends on what the paper does not say.
+def holds(cases: bool | Sequence[bool | None], number: str, why: str, *, in_size: bool = True) -> Judgement:
+    """Judge a claim that the numbers decide: whether it holds, or `cases` of it in every reading of what the paper does not say.
 
-    Parameters
-    ----------
-    cases : sequence of bool or None
-        Whether it holds in every reading; None where this program ends before the reading does.
-    number, why : str
-        Measured numbers and reason of the judgement.
-
-    Returns
-    -------
-    Judgement
-        Reproduced where it holds in all readings, not reproduced where it fails in all of them; otherwise it cannot be told.
+    A case is None where this program ends before the reading does. The claim is reproduced where it holds in all readings, in
+    direction only unless `in_size`; not reproduced where it fails in all of them; otherwise it cannot be told.
     """
-    if not cases:
+    given = cases if isinstance(cases, Sequence) else [cases]
+    readings = [None if case is None else bool(case) for case in given]  # bool of numpy, too
+    if not readings:
         raise ValueError("cases = (): a claim without a reading cannot be judged")
-    if all(cases):
-        verdict = Verdict.REPRODUCED
-    elif all(case is False for case in cases):
+    if all(readings):
+        verdict = Verdict.REPRODUCED if in_size else Verdict.IN_DIRECTION
+    elif all(case is False for case in readings):
         verdict = Verdict.NOT_REPRODUCED
     else:
         verdict = Verdict.CANNOT_BE_TOLD
-    return Judgement(verdict=verdict, number=number, why=why)
-
-
-def in_size(*, direction: bool, size: bool, number: str, why: str) -> Judgement:
-    """Judge a claim of which the paper prints a size: whether its direction is right, and whether its size is reached."""
-    if not direction:
-        verdict = Verdict.NOT_REPRODUCED
-    else:
-        verdict = Verdict.REPRODUCED if size else Verdict.IN_DIRECTION
     return Judgement(verdict=verdict, number=number, why=why)
 
 

@@ -1,7 +1,8 @@
 """The solid against CalculiX: a dead load at the tip, and a pin on the face."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from comparisons.response import Array
 from comparisons.scene import load_scene
 
 if TYPE_CHECKING:
-    from fem_reference import SolidProblem, Strip
+    from fem_reference import Result, SolidProblem, Strip
 
 LOADS = (1.0, 5.0)
 """Loads on the tip, in EI/L^2."""
@@ -29,7 +30,17 @@ PENETRATION = 1e-10
 """Penetration of the solid model, over the length."""
 
 
-def peers(report: Report) -> list[Row]:
+def solved(
+    problem: "SolidProblem", times: Sequence[float] | Array, *, throw: bool = True, **strip: Any
+) -> "Result":
+    """Return the result of a solid at the load parameters, with changes of its strip."""
+    import fem_reference
+
+    changed = replace(problem, strips=(replace(problem.strips[0], **strip),))
+    return fem_reference.solve(changed, np.asarray(times), throw=throw)
+
+
+def peers(report: Report) -> Iterator[Row]:
     """Tip displacement and contact force of the solid and of CalculiX, on the same meshes.
 
     Raises
@@ -39,55 +50,30 @@ def peers(report: Report) -> list[Row]:
     """
     problem = to_solid(load_scene("ks-face"))
     strip = problem.strips[0]
-    rows: list[Row] = []
     for clamp in (ROD.name, "full"):
         for load in LOADS:
             for mesh in MESHES:
-                rows.append(_tip_row(replace(strip, clamp=clamp, mesh=mesh), load))
+                yield _tip_row(replace(strip, clamp=clamp, mesh=mesh), load)
                 report(f"tip load {load:g}, {clamp} clamp, {mesh[0]}x{mesh[1]}")
     for steps, penalty in RUNS:
-        rows += _pin_rows(problem, steps, penalty)
+        yield from _pin_rows(problem, steps, penalty)
         report(f"pin on the face, step {1 / steps:g}, {penalty:g} N/m")
-    return rows
 
 
 def dead_load(strip: "Strip", force: float, steps: int = 10) -> tuple[Array, Array]:
-    """Mean displacement of the free end and the clamp's force under a transverse dead load [N], by Newton's method.
+    """Mean displacement of the free end and the clamp's force under a transverse dead load [N] that is spread over the end."""
+    from fem_reference import EndLoad, SolidProblem
 
-    The solid's own elements, law, clamp and tangent; only the load is added, evenly over the edge.
-
-    Raises
-    ------
-    ArithmeticError
-        If an iteration does not converge.
-    """
-    from scipy.sparse.linalg import splu
-
-    from fem_reference.body import build_body
-
-    body = build_body(strip)
-    end = body.mesh.sections[[-1]].toarray()[0]
-    u = np.zeros_like(body.mesh.nodes)
-    loads = np.multiply.outer(end, [0.0, force])
-    for part in np.arange(1, steps + 1) / steps:
-        for _ in range(20):
-            R = body.expansion.T @ (body.internal_force(u) - part * loads).ravel()
-            step = body.expansion @ splu(body.tangent(u)).solve(-R)
-            u = u + step.reshape(-1, 2)
-            if np.abs(step).max() < 1e-10 * strip.length:
-                break
-        else:
-            raise ArithmeticError(f"no equilibrium under {part:g} of the tip load")
-    reaction: Array = body.internal_force(u)[body.mesh.edges["start"]].sum(axis=0)
-    return end @ u, reaction
+    load = EndLoad(strip=strip.name, end="end", force=(0.0, force))
+    result = solved(SolidProblem(strips=(strip,), loads=(load,)), np.arange(1, steps + 1) / steps)
+    (support,) = result.supports.values()
+    return result.tips[strip.name][-1] - strip.end, support.force[-1]
 
 
 def contact_forces(problem: "SolidProblem", steps: int, count: int) -> Array:
     """Contact force at the first `count` of `steps` equal load parameters."""
-    import fem_reference
-
     contact = replace(problem.contacts[0], penetration=PENETRATION)
-    result = fem_reference.solve(replace(problem, contacts=(contact,)), np.arange(1, count + 1) / steps)
+    result = solved(replace(problem, contacts=(contact,)), np.arange(1, count + 1) / steps)
     force: Array = result.contacts[contact.name].force
     return force
 
@@ -100,8 +86,7 @@ def press(problem: "SolidProblem", steps: int, penalty: float) -> Answer:
 
 def _tip_row(strip: "Strip", load: float) -> Row:
     force = load * strip.bending_stiffness / strip.length**2
-    (u, _), answer = dead_load(strip, force), tip_load(strip, force)
-    other = answer.tip[-1]
+    (u, _), other = dead_load(strip, force), tip_load(strip, force).tip[-1]
     return _row(
         f"tip load {load:g} EI/L^2",
         strip,
@@ -111,45 +96,35 @@ def _tip_row(strip: "Strip", load: float) -> Row:
     )
 
 
-def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> list[Row]:
-    """One row per load parameter shown: contact force as the clamp bears it, empty where CalculiX did not come.
+def _pin_rows(problem: "SolidProblem", steps: int, penalty: float) -> Iterator[Row]:
+    """Yield a row per load parameter shown: contact force as the clamp bears it, empty where CalculiX did not come.
 
     ``largest`` is the largest difference up to where it came.
     """
     answer = press(problem, steps, penalty)
     calculix = np.hypot(*answer.force.T)
     solid = contact_forces(problem, steps, max(calculix.size, round(steps * SHOWN[-1])))
-    largest = float(np.abs(calculix / solid[: calculix.size] - 1.0).max())
-    rows = []
+    differences = calculix / solid[: calculix.size] - 1.0
     for t in SHOWN:
         k = round(steps * t) - 1
         there = k < calculix.size
-        rows.append(
-            _row(
-                "pin on the face",
-                problem.strips[0],
-                penalty=penalty,
-                step=1 / steps,
-                load_parameter=t,
-                reached=float(answer.load_parameter[-1]),
-                fem_reference=float(solid[k]),
-                calculix=float(calculix[k]) if there else None,
-                difference=float(calculix[k] / solid[k] - 1.0) if there else None,
-                largest=largest,
-                message="" if there and t != SHOWN[-1] else answer.stopped,
-            )
+        yield _row(
+            "pin on the face",
+            problem.strips[0],
+            penalty=penalty,
+            step=1 / steps,
+            load_parameter=t,
+            reached=float(answer.load_parameter[-1]),
+            fem_reference=float(solid[k]),
+            calculix=float(calculix[k]) if there else None,
+            difference=float(differences[k]) if there else None,
+            largest=float(np.abs(differences).max()),
+            message="" if there and t != SHOWN[-1] else answer.stopped,
         )
-    return rows
 
 
 def _row(case: str, strip: "Strip", **values: float | str | None) -> Row:
-    empty: Row = {
-        "penalty": None,
-        "step": None,
-        "load_parameter": 1.0,
-        "reached": 1.0,
-        "fem_reference": None,
-        "calculix": None,
-    }
     start: Row = {"case": case, "clamp": strip.clamp, "mesh": "x".join(map(str, strip.mesh))}
-    return {**start, **empty, "difference": None, "largest": None, "message": "", **values}
+    path: Row = {"penalty": None, "step": None, "load_parameter": 1.0, "reached": 1.0}
+    found = dict.fromkeys(("fem_reference", "calculix", "difference", "largest"))
+    return {**start, **path, **found, "message": "", **values}

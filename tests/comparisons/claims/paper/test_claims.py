@@ -1,8 +1,5 @@
 """Every verdict on the paper follows from numbers: each judge says something else about other numbers; the floor of round-off below them."""
 
-from dataclasses import replace
-from types import SimpleNamespace as Study
-
 import numpy as np
 import pytest
 
@@ -11,18 +8,16 @@ from comparisons.claims.paper import claims_critical_area as critical
 from comparisons.claims.paper import claims_examples as examples
 from comparisons.claims.paper import critical_area as study
 from comparisons.claims.paper.approach import NEAREST, approaches
-from comparisons.claims.paper.claims import CLAIMS, Findings, claims_text
-from comparisons.claims.paper.double_beam import Attempt
+from comparisons.claims.paper.claims import CLAIMS, claims_text, judged
+from comparisons.claims.paper.figure_study import Study
 from comparisons.claims.paper.force_floor import force_floor
-from comparisons.claims.paper.ks_shapes import Run8
 from comparisons.claims.paper.turned_frame import NAME as TURNED
-from comparisons.claims.paper.verdict import Verdict, over_readings
+from comparisons.claims.paper.verdict import Verdict, holds
 from comparisons.claims.problems.double_beam import EVENTS as EXACT
 from comparisons.claims.problems.double_beam import LOWER, TIP, UPPER
 from comparisons.compare import PAPER, SOLID
 from comparisons.models.translate import to_structure
 from comparisons.quantities import KEPT
-from comparisons.scene import load_scene
 from tests.comparisons.claims.paper.test_reproduce import PAPER as STATED
 
 REPRODUCED, IN_DIRECTION, NOT, OPEN = list(Verdict)[:4]
@@ -36,45 +31,52 @@ TOLERANCES = (1e-6, 1e-8)
 def areas(sizes=None, slopes=None, blocked=()):
     """A study of one start, three nodes and two tolerances: critical areas per tolerance, slopes per end, who does not pass a node."""
     chosen = {SIMPLE: (0.004, 0.04), CANTILEVER: (0.003, 0.02), TIMOSHENKO: (1e-7, 1e-4), MIXED: (1e-8, 1e-8)}
-    measured = []
-    for element, pair in (chosen | (sizes or {})).items():
-        for tolerance, size in zip(TOLERANCES, pair, strict=True):
-            for node in (1.0, 2.0, 3.0):
-                found = [] if element in blocked and node == 3.0 else [size]
-                one = study.Measured(
-                    element=element, start=4.05, tolerance=tolerance, node=node, displacement=np.array(found),
-                    ratio=np.array(found), smallest=size if found else np.nan,
-                )  # fmt: skip
-                measured.append(one)
-    floors = [
-        study.Floor(element=element, end=end, psi=study.PSI, floor=study.RATIOS**-3, slope=slope)
-        for element, slope in SLOPES.items()
-        for end, slope in zip(("start", "end"), (slopes or {}).get(element, (slope, slope)), strict=True)
+    found = [
+        {
+            "element": element, "tolerance": tolerance, "start": 4.05, "node": node,
+            "smallest": np.nan if element in blocked and node == 3.0 else size,
+        }
+        for element, pair in (chosen | (sizes or {})).items()
+        for tolerance, size in zip(TOLERANCES, pair, strict=True)
+        for node in (1.0, 2.0, 3.0)
+    ]  # fmt: skip
+    steep = {element: (slope, slope) for element, slope in SLOPES.items()} | (slopes or {})
+    cases = [
+        (element, *case, study.PSI)
+        for element, pair in steep.items()
+        for case in zip(("start", "end"), pair, strict=True)
     ]
-    stiff = replace(floors[7], psi=study.PRINTED_SHEAR_PSI, slope=np.nan)
-    return study.CriticalAreas(tolerances=TOLERANCES, measured=tuple(measured), floors=(*floors, stiff))
+    floors = [
+        {"element": element, "end": end, "psi": psi, "ratio": ratio, "floor": ratio**slope}
+        for element, end, slope, psi in [*cases, (TIMOSHENKO, "end", -3.0, study.PRINTED_SHEAR_PSI)]
+        for ratio in study.RATIOS
+    ]
+    return Study(
+        tables={"fig7b-tolerance": found, "fig7b-floor": floors}, numbers=study.measured(found, floors)
+    )
 
 
 def shapes(status="COMPLETED", error=(4e-3, 1e-3, 5e-4), force=3.0, seconds=0.1):
     """A study of the paper's element with 10, 20 and 50 elements, and the solid; `force` is the error of the force over the shape's."""
 
     def run(label, value, unknowns=30, seconds=seconds, status="COMPLETED"):
-        path = dict.fromkeys(KEPT, force * value) | {"shape": value}
-        return Run8(
-            reading=examples.KS, label=label, status=status, unknowns=unknowns, iterations=1, seconds=seconds,
-            errors={"path": path}, shape_difference=value,
-        )  # fmt: skip
+        errors = {f"error_path_{name}": force * value for name in KEPT} | {"error_path_shape": value}
+        return errors | {
+            "reading": examples.KS, "label": label, "status": status, "unknowns": unknowns, "iterations": 1, "seconds": seconds,
+            "shape_difference": value, "follows_the_rod": status == "COMPLETED" and value < 0.05,
+        }  # fmt: skip
 
-    runs = [run(one.label, value) for one, value in zip(PAPER, error, strict=True)]
-    runs = [*runs[:2], replace(runs[2], status=status), run(SOLID.label, 5e-4, 1004, 1.0)]
-    return Study(runs=tuple(runs), run=lambda _, label: next(one for one in runs if one.label == label))
+    runs = [run(one.label, value) for one, value in zip(PAPER[:2], error, strict=False)]
+    runs += [run(PAPER[2].label, error[2], status=status), run(SOLID.label, 5e-4, 1004, 1.0)]
+    return Study(tables={}, numbers={"runs": runs})
 
 
 def lifts(error=1e-5):
-    lift = Study(
-        slip_off_error=lambda _: error, reached={TIMOSHENKO: 1.0}, rod_slip_off=1.0, force_error=error
-    )
-    return Study(lifts=(lift, lift))
+    lift = {
+        "slip_off_error": {18: error, 72: error}, "reached_in_contact": {TIMOSHENKO: 1.0}, "slip_off_rod": 1.0,
+        "force_error": error,
+    }  # fmt: skip
+    return Study(tables={}, numbers={"starting_positions": [lift, lift]})
 
 
 THROUGH = {
@@ -98,27 +100,25 @@ def beams(*attempts, late="", open_pair="", without=""):
         ("slip-off", LOWER): "slip-off",
     }
     events = [
-        Study(
-            kind=kind, pair=pair, depth=EXACT[name] + 0.01 * (f"{kind} {pair}" == late), element=8, arc=0.9, force=1.0, released=0.2
-        )
+        {
+            "kind": kind, "pair": pair, "depth": EXACT[name] + 0.01 * (f"{kind} {pair}" == late), "element": 8, "arc": 0.9,
+            "force": 1.0, "released": 0.2,
+        }
         for (kind, pair), name in at.items()
         if f"{kind} {pair}" != without
     ]  # fmt: skip
-    closed = np.ones(77)
-    histories = {
-        pair: Study(force=closed, arc=closed * (np.nan if pair == open_pair else 1), exact_force=closed, exact_arc=closed)
-        for pair in (UPPER, TIP, LOWER)
+    history = [
+        {"depth": depth, f"{TIP} exact_force": 1.0} | {f"{pair} arc": np.nan if pair == open_pair else 1.0 for pair in (UPPER, TIP, LOWER)}
+        for depth in np.linspace(0.0, 0.76, 77)
+    ]  # fmt: skip
+    numbers = {
+        "events": events, "attempts": attempts or (AT_NODE, AT_EVENT),
+        "checks": [{"stage": "coupled", "pair": UPPER, "force": 1e-7, "arc": 1e-7}],
     }  # fmt: skip
-    return Study(
-        depth=np.linspace(0.0, 0.76, 77), histories=histories, events=tuple(events),
-        attempts=[Attempt(**attempt) for attempt in attempts or (AT_NODE, AT_EVENT)],
-        checks=(Study(stage="coupled", pair=UPPER, force=1e-7, arc=1e-7),),
-        events_of=lambda kind, pair: [one for one in events if (one.kind, one.pair) == (kind, pair)],
-        at_hand_over=lambda pair: [one for one in events if one.pair == pair and one.depth == EXACT["hand-over"]],
-    )  # fmt: skip
+    return Study(tables={"fig9": history}, numbers=numbers)
 
 
-RANGE = {element: critical._printed_range(element) for element in study.PRINTED}
+RANGE = critical.PRINTED_RANGES
 LOW, _ = study.PRINTED[TIMOSHENKO]
 TWICE = 2 * LOW
 BOTH = {CANTILEVER: (-1, -1), TURNED: (-1, -1)}
@@ -164,21 +164,21 @@ BASE = {"fig7a": lifts(), "fig7b": areas(), "fig8": shapes(), "fig9": beams()}
 
 def test_every_claim_is_judged_once_and_by_its_numbers():
     """Two of the 25 claims are made twice in the paper; no judge always says the same."""
-    figures = {claim.judge.__qualname__: claim.figure for claim in CLAIMS}
-    assert set(figures) == {judge.__qualname__ for judge, *_ in JUDGED}
+    figures = {claim.judge: claim.figure for claim in CLAIMS}
+    assert set(figures) == {judge for judge, *_ in JUDGED}
     for judge, verdict, others in JUDGED:
-        for found, expected in ((BASE[figures[judge.__qualname__]], verdict), *others):
+        for found, expected in ((BASE[figures[judge]], verdict), *others):
             assert judge(found).verdict is expected, (judge, found)
     for claim, (where, words, figure, _) in zip(CLAIMS, STATED, strict=True):
         assert (claim.source, claim.figure, len(claim.stated)) == (where, figure, len(words))
         assert all(word in text for word, (_, text) in zip(words, claim.stated, strict=True))
     assert (len(CLAIMS), sum(len(claim.stated) for claim in CLAIMS)) == (25, 27)
-    assert "0 of 25 claims judged (27 statements)." in claims_text(Findings(quick=True))
-    quick = claims_text(Findings(quick=True, fig7b=BASE["fig7b"]))
+    assert "0 of 25 claims judged (27 statements)." in claims_text([], quick=True)
+    quick = claims_text(judged({"fig7b": BASE["fig7b"]}, quick=True), quick=True)
     assert "13 of 25 claims judged (27 statements): 13 provisional" in quick
     assert "With coarse settings: not reproduced." in quick
     with pytest.raises(ValueError, match="cases"):
-        over_readings((), "", "")
+        holds((), "", "")
 
 
 def test_direction_and_order_agree():
@@ -191,9 +191,7 @@ def test_direction_and_order_agree():
 
 def ways(element, tolerance):
     """The ways of the contact to the beam's nodes at a fixed tolerance."""
-    scene = load_scene(study.SCENE)
-    scene = replace(scene, pins=(replace(scene.pins[0], start=(4.2, 0.0)),))
-    return approaches(to_structure(scene, element=element), tolerance)
+    return approaches(to_structure(study.lifted(4.2), element=element), tolerance)
 
 
 @pytest.mark.slow

@@ -105,7 +105,7 @@ def test_pin_on_the_face_up_to_a_tenth(stated):
 @pytest.mark.long
 def test_study_is_within_its_bars(stated):
     reported: list[str] = []
-    rows = peers(reported.append)
+    rows = list(peers(reported.append))
     tips = [row for row in rows if row["case"].startswith("tip load")]
     assert len(tips) == 8
     assert all(row["difference"] <= 1e-3 for row in tips)
