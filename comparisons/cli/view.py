@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from comparisons.cli.outcome import Commands
     from comparisons.response import Response
     from comparisons.scene import Scene
-    from comparisons.show.view import Series
+    from comparisons.show.export import Series
 
 BEAMS = Options(elements=20)
 
@@ -56,13 +56,13 @@ def run(given: "argparse.Namespace") -> int:
         if given.mesh is not None:
             raise ModelError("--mesh: belongs to a scene, not to a folder")
         out = _target(given.out, folder.resolve().name)
-        from comparisons.show.view import read_series
+        from comparisons.show.export import read_series
 
         return _present(read_series(folder), given.scale, out)
     scene = load_scene(given.what)
     out = _target(given.out, scene.name)
     responses = _solve(scene, given)
-    from comparisons.show.view import solved_series
+    from comparisons.show.export import solved_series
 
     series = [
         solved_series(response, scene, title) for title, response in responses if len(response.load_parameter)
@@ -103,12 +103,13 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
 
 
 def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
-    from comparisons.show.view import film, show, write
+    from comparisons.show.film import film, write
+    from comparisons.show.render import show_frames
 
     shown = film(series, factor)
     if out is None:
         report("opening a window")
-        if not show(shown):
+        if not show_frames(shown.frames, shown.scale):
             raise OutputError("no window could be opened; --out DIR writes pictures instead")
         return DONE
     with staging(f"drawing {len(shown.frames)} pictures") as count:
