@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from comparisons.output import aligned
 from comparisons.response.along import ALONG, FIRST, Extreme, extremes_along
 from comparisons.response.events import SLIP_OFF, event_words, last_force, opening, peak_force
 from comparisons.response.record import ContactHistory, Response
@@ -275,17 +276,9 @@ class _Page:
 
 def _lines(block: Block, scene: str) -> str:
     """Return a table as lines: columns of numbers to the right, the others to the left."""
-    rows = [block.columns, *block.rows] if block.columns else list(block.rows)
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    right = [_numeric(column) for column in zip(*block.rows, strict=True)]
-    lines = [
-        "  ".join(
-            cell.rjust(width) if numeric else cell.ljust(width)
-            for cell, width, numeric in zip(row, widths, right, strict=True)
-        )
-        for row in rows
-    ]
-    return "\n".join([block.title or scene, *(f"  {line}".rstrip() for line in lines)])
+    rows = [block.columns, *block.rows] if block.columns else block.rows
+    lines = aligned(rows, [_numeric(column) for column in zip(*block.rows, strict=True)])
+    return "\n".join([block.title or scene, *(f"  {line}" for line in lines)])
 
 
 def _numeric(cells: Sequence[str]) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.errors import Errors
-from comparisons.output import csv_text
+from comparisons.output import aligned, csv_text
 from comparisons.quantities import KEPT, PATH, SCOPES
 from comparisons.response import Response
 
@@ -56,13 +56,7 @@ SHOWN = ("force", "arc", "moment", "tip", "friction")
 
 def table_text(rows: list[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    lines = [HEADER, *(cells(row) for row in rows)]
-    widths = [max(len(line[column]) for line in lines) for column in range(len(HEADER))]
-    first, *rest = (
-        line[0].ljust(widths[0])
-        + "".join(f"  {text:>{width}}" for text, width in zip(line[1:], widths[1:], strict=True))
-        for line in lines
-    )
+    first, *rest = aligned([HEADER, *map(cells, rows)], [False] + [True] * (len(HEADER) - 1))
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
