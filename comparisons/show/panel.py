@@ -23,7 +23,7 @@ QUARTERS = {
     "quad": np.array([[0, 1, 2, 3]]),
 }
 """The quadrilaterals in the cells of a solid, in VTK's order of points."""
-PARTS, LAYERS = 8, 8
+PARTS, LAYERS = 8, 4
 """Quadrilaterals along the line of an element of a beam and over its height."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""

@@ -81,6 +81,8 @@ def render_frames(
         for extra in ENVIRONMENTS:
             if _run([*command, str(folder)], extra, seconds, drawn) and pictures[-1].is_file():
                 return pictures, None
+            for picture in pictures:  # of a child that ended among them
+                picture.unlink(missing_ok=True)
     for panels, picture in zip(frames, pictures, strict=True):
         plot_panels(panels, scale, picture)
         drawn()

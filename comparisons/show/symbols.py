@@ -34,16 +34,6 @@ NAMES = {
 """Names of supports by the components that they hold."""
 
 
-def support_name(support: SupportSpec) -> str:
-    """Return the name of a support in a legend."""
-    return NAMES[held_components(support)]
-
-
-def held_components(support: SupportSpec) -> tuple[str, ...]:
-    """Return the components that a support holds, in the order of `NAMES`."""
-    return tuple(name for name in COMPONENTS if name in support.held)
-
-
 def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
     """Return the segments of a support's symbol.
 
@@ -54,8 +44,7 @@ def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
     away : ndarray, shape (2,)
         Unit vector from the support into its beam; the ground is on the other side.
     """
-    segments = _SHAPES[len(held), "rotation" in held]()
-    return turned(segments, _up(held, away))
+    return turned(_SHAPES[held], _up(held, away))
 
 
 def _up(held: tuple[str, ...], away: Array) -> Array:
@@ -85,7 +74,7 @@ class Symbol:
     item : SupportSpec, SpringSpec or HingeSpec
         What it shows.
     words : str
-        Its name in a legend.
+        What it is, for a legend.
     segments : ndarray, shape (n, 2, 2)
         Line segments of unit size about the node.
     """
@@ -101,20 +90,24 @@ class Symbol:
 
 def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
-    found = [
-        Symbol(
-            item=one,
-            words=support_name(one),
-            segments=support_symbol(held_components(one), inward(scene, one)),
-        )
-        for one in scene.all_supports
-    ]
-    found += [
-        Symbol(item=one, words="spring", segments=spring_symbol(component, inward(scene, one)))
-        for one in scene.springs
-        for component in one.held
-    ]
-    return found + [Symbol(item=one, words="hinge", segments=hinge_symbol()) for one in scene.hinges]
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    found = []
+    for one in scene.all_supports:
+        held = tuple(name for name in COMPONENTS if name in one.held)
+        segments = support_symbol(held, inward(scene, one))
+        found.append(Symbol(item=one, words=NAMES[held], segments=segments))
+    for spring in scene.springs:
+        stiffness = dict(zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True))
+        for name in spring.held:
+            unit = f"{force} {length}/rad" if name == "rotation" else f"{force}/{length}"
+            words = f"spring of {stiffness[name]:.6g} {unit} in {name}"
+            segments = spring_symbol(name, inward(scene, spring))
+            found.append(Symbol(item=spring, words=words, segments=segments))
+    for hinge in scene.hinges:
+        unit = f"{force} {length}/rad"
+        words = f"hinge with a spring of {hinge.stiffness:.6g} {unit}" if hinge.stiffness else "hinge"
+        found.append(Symbol(item=hinge, words=words, segments=hinge_symbol()))
+    return found
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
@@ -205,41 +198,20 @@ def _lines(*ends: Sequence[float]) -> Segments:
 
 def _ground(y: float, half: float) -> Segments:
     """Return a line with hatches below it."""
-    x = np.linspace(-half, half, HATCHES + 1)[1:]
-    hatches = np.stack([np.stack([x, 0 * x + y], 1), np.stack([x - 0.3, 0 * x + y - 0.35], 1)], 1)
-    return np.concatenate([_lines((-half, y, half, y)), hatches])
+    x = np.linspace(-half, half, HATCHES + 1)[1:].tolist()
+    return _lines((-half, y, half, y), *((at, y, at - 0.3, y - 0.35) for at in x))
 
 
-def _triangle() -> Segments:
-    return _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
-
-
-def _clamp() -> Segments:
-    return _ground(0.0, 1.0)
-
-
-def _hinge() -> Segments:
-    return np.concatenate([_triangle(), _ground(-1.0, 0.9)])
-
-
-def _roller() -> Segments:
-    return np.concatenate([_triangle(), _ground(-1.25, 0.9)])
-
-
-def _guide() -> Segments:
-    return np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
-
-
-def _box() -> Segments:
-    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
-    return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
-
-
-_SHAPES = {
-    (3, True): _clamp,
-    (2, False): _hinge,
-    (1, False): _roller,
-    (2, True): _guide,
-    (1, True): _box,
+_TRIANGLE = _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
+_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
+_GUIDE = np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
+_SHAPES: dict[tuple[str, ...], Segments] = {
+    ("x", "y", "rotation"): _ground(0.0, 1.0),
+    ("x", "y"): np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)]),
+    ("x",): _ROLLER,
+    ("y",): _ROLLER,
+    ("x", "rotation"): _GUIDE,
+    ("y", "rotation"): _GUIDE,
+    ("rotation",): chain(0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])),
 }
-"""Symbols by the number of components held, and whether the rotation is one of them."""
+"""Symbols of supports by the components that they hold."""
