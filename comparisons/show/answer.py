@@ -104,7 +104,7 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     for number, beam in enumerate(scene.beams):
         arc, line = lines[beam.name]
         undeformed = np.array([beam.place(part) for part in np.linspace(0.0, 1.0, 41)])
-        dashed = {"color": "0.6", "linewidth": 0.9, "linestyle": "--"}
+        dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.9, "linestyle": "--"}
         axes.plot(*undeformed.T, label=None if number else "undeformed", **dashed)
         colour, tangent = COLOURS[number % len(COLOURS)], np.gradient(line, axis=0)
         normal = (

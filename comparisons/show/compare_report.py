@@ -23,6 +23,10 @@ from comparisons.show.table import HEADER, Row, cells
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""
+ERRORS = (
+    f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
+    "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
+)
 
 
 def write_comparison_page(
@@ -49,9 +53,17 @@ def write_comparison_page(
     left_out : mapping of str
         Why a run or the budget is left out, as `comparisons.show.findings.findings` takes it.
     """
-    lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
-    sections = [_errors(rows), _motion(scene, rows, series, folder)]
-    states = states_section({row.label: row.response for row in rows})
+    responses = {row.label: row.response for row in rows}
+    vtu = {
+        label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
+        for label, path in series.items()
+    }
+    shown = tracks(responses, EXACT, scene)
+    sections = [
+        Section(title="Errors", html=table(ERRORS, HEADER, map(cells, rows))),
+        motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
+    ]
+    states = states_section(responses)
     if states is not None:
         sections.append(states)
     if budget is not None:
@@ -60,30 +72,8 @@ def write_comparison_page(
         stress = picture(folder / "side-by-side.png", "Beams and solid, von Mises stress.")
         sections.append(Section(title="Stress", html=stress))
     sections += provenance([scene], files, folder)
+    lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
-
-
-def _errors(rows: Sequence[Row]) -> Section:
-    caption = (
-        f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
-        "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
-    )
-    return Section(title="Errors", html=table(caption, HEADER, map(cells, rows)))
-
-
-def _motion(scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path) -> Section:
-    responses = {row.label: row.response for row in rows}
-    return motion_section(
-        "Shapes and histories",
-        scene,
-        responses,
-        tracks(responses, EXACT, scene),
-        focus=EXACT,
-        vtu={
-            label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
-            for label, path in series.items()
-        },
-    )
 
 
 def _budget(budget: Budget, folder: Path) -> Section:

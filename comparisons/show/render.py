@@ -26,8 +26,8 @@ from comparisons.models.progress import REDRAW, Count, uncounted
 from comparisons.show.panel import COLOURS, Panel, Scale
 from comparisons.show.plot import plot_panels
 
-TIMEOUT = 60.0
-"""Seconds for a picture; each further frame of a film has a second more."""
+TIMEOUT, FRAME = 60.0, 5.0
+"""Seconds for a picture, and for each frame: a machine whose processors are shared takes several of them."""
 ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"})
 """Tried in turn: VTK's own choice, then drawing in memory by libOSMesa alone."""
 INSTEAD = "off-screen rendering is not available here (no OpenGL, or a broken pyvista), matplotlib drew the picture instead"
@@ -70,7 +70,7 @@ def render_frames(
         One sentence if matplotlib had to stand in.
     """
     pictures = [_picture(folder, k) for k in range(len(frames))]
-    seconds = TIMEOUT + len(frames)
+    seconds = TIMEOUT + FRAME * len(frames)
 
     def drawn() -> None:
         count(sum(picture.is_file() for picture in pictures), len(pictures))

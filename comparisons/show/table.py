@@ -16,10 +16,8 @@ class Row:
 
     Attributes
     ----------
-    label : str
-        Label of the run.
-    response : Response
-        Its response.
+    label, response : str, Response
+        Label of the run, and its response.
     errors : Errors or None
         Its errors; the reference itself has none.
     family : str
@@ -66,16 +64,13 @@ def table_text(rows: list[Row], reference: str) -> str:
 
 def cells(row: Row) -> tuple[str, ...]:
     """Return a run as text under `HEADER`."""
-    shown = ["-" if row.errors is None else _error(row.errors["path"][name]) for name in SHOWN]
+    # a dash where the run or the scene does not have the quantity
+    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in SHOWN]
+    shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
     iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
     return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
-
-
-def _error(value: float) -> str:
-    """Return an error, or a dash where the run or the scene does not have the quantity."""
-    return "-" if np.isnan(value) else f"{value:.1e}"
 
 
 def _stable(response: Response) -> str:
