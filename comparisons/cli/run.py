@@ -87,14 +87,14 @@ def _figures(given: "argparse.Namespace") -> int:
 
 
 def _manual(given: "argparse.Namespace") -> int:
-    from comparisons.claims.manual.problems import named
+    from comparisons.claims.manual import problems
 
     watch = (lambda _: None) if given.quiet else report
-    problems = named(given.only)
+    stated = problems(given.only)
     if given.cards is not None:
         from comparisons.claims.manual.cards import write_cards
 
-        cards = write_cards(given.cards, watch, problems)
+        cards = write_cards(given.cards, watch, stated)
         print(f"{len(cards) - 1} cards and their schema in {given.cards}")
         return DONE
     folder = _out(given, "index.md", "manual.json")
@@ -103,7 +103,7 @@ def _manual(given: "argparse.Namespace") -> int:
     from comparisons.claims.manual import write_manual
     from comparisons.claims.manual.text import junit_cases
 
-    manual = write_manual(folder, watch, problems)
+    manual = write_manual(folder, watch, stated)
     if file is not None:
         write_text(file, junit_text("crossval run manual", junit_cases(manual.cases)))
     answers = [(case, one) for case in manual.cases for one in case.judgements]

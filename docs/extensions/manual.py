@@ -26,20 +26,19 @@ def up_to_date(page: Path) -> bool:
     """Whether a page is younger than every module of the packages."""
     if not page.is_file():
         return False
-    modules = (path for name in PACKAGES for path in (ROOT / name).rglob("*.py"))
+    modules = (path for name in PACKAGES for path in (ROOT / name).rglob("*.*"))
     return page.stat().st_mtime > max(path.stat().st_mtime for path in modules)
 
 
 def _on_start(app: Sphinx) -> None:
-    from comparisons.claims.manual import write_manual
-    from comparisons.claims.manual.problems import named
+    from comparisons.claims.manual import problems, write_manual
 
     page = Path(app.srcdir) / "_generated" / "manual" / "index.md"
     if up_to_date(page):
         return
     log = getLogger(__name__)
     page.unlink(missing_ok=True)  # it was changed after it was written, and a changed file is not replaced
-    manual = write_manual(page.parent, lambda line: log.info("manual: %s", line), named(None))
+    manual = write_manual(page.parent, lambda line: log.info("manual: %s", line), problems())
     if not manual.passed:
         log.warning("manual: an answer lies beyond its tolerance")
     page.write_text(as_page(page.read_text(encoding="utf-8")), encoding="utf-8")

@@ -4,10 +4,12 @@ import argparse
 import ast
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -38,6 +40,8 @@ OTHER = {
     ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.And: ast.Or, ast.Or: ast.And,
 }  # fmt: skip
 """An operator, and what a fault puts in its place."""
+PATIENCE = 3600.0
+"""Seconds after which a run of the tests is given up: the fault is found by time."""
 Fault = tuple[ast.AST, str, Callable[[], None]]
 """The expression of a fault, its kind, and the function that puts it there."""
 
@@ -103,17 +107,23 @@ def killed(folder: Path, module: Path, mark: str, jobs: int) -> str:
     run = [sys.executable, "-m", "pytest", "-x", "-q", "-m", mark, "-n", str(jobs), "-p", "no:cacheprovider"]
     settings = {**os.environ, "PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     for name, paths in (("near", near), ("all", ["tests"])):
-        try:
-            done = subprocess.run(
-                [*run, *paths], cwd=folder, env=settings, capture_output=True, timeout=3600, check=False
+        with tempfile.TemporaryFile("w+") as told:
+            # a fault may leave workers behind, which would hold a pipe open; they end with their group
+            child = subprocess.Popen(
+                [*run, *paths], cwd=folder, env=settings, stdout=told, stderr=told, start_new_session=True
             )
-        except subprocess.TimeoutExpired:
-            return f"{name}, by time"
-        if done.returncode:
-            lines = done.stdout.decode().splitlines()
-            return (
-                f"{name}, {next((line for line in lines if line.startswith(('FAILED', 'ERROR'))), '')[:110]}"
-            )
+            try:
+                status = child.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                return f"{name}, by time"
+            finally:
+                with suppress(ProcessLookupError):
+                    os.killpg(child.pid, signal.SIGKILL)
+                child.wait()
+            told.seek(0)
+            lines = [line for line in told if line.startswith(("FAILED", "ERROR"))]
+        if status:
+            return f"{name}, {next(iter(lines), '')[:110].rstrip()}"
     return ""
 
 

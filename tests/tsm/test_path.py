@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tsm
-from comparisons.claims.problems import frames
+from comparisons.claims.manual.measures import under_load  # a frame of the manual
 from comparisons.models.translate import to_structure
 from comparisons.scene import load_scene
 from tests.tsm.structures import beam, steps
@@ -100,7 +100,7 @@ def test_index_does_not_see_where_a_contact_cuts(element, elements):
 
 def test_load_control_ends_at_the_limit_point_or_snaps_through():
     """Where arc-length control finds it, to 1e-8; and to the stable branch at which it arrives."""
-    toggle = to_structure(frames.under_load(load_scene("williams-toggle"), 40.0), elements=8)
+    toggle = to_structure(under_load(load_scene("williams-toggle"), 40.0), elements=8)
     traced = tsm.trace(toggle, arc_length=0.02, steps=30)
     passed = next(event for event in traced.events if event.kind is tsm.EventKind.LIMIT_POINT)
     for count in (1, 7):

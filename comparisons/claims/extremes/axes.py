@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -11,8 +12,10 @@ from comparisons.claims.claim import Allowance
 from comparisons.claims.extremes.cell import Cell
 from comparisons.claims.extremes.checks import Against, Circle
 from comparisons.claims.extremes.rows import (
+    against,
     beam_case,
     beams,
+    everything,
     exact_answers,
     exact_rod,
     kinds,
@@ -29,7 +32,8 @@ from comparisons.claims.extremes.scenes import (
     sheared,
 )
 from comparisons.models import SOLID
-from comparisons.scene import Scene, load_scene
+from comparisons.models.options import Options
+from comparisons.scene import load_scene
 from tsm.elements import MIXED, TIMOSHENKO, ClosedForm
 
 MESH = (50, 2)
@@ -57,25 +61,17 @@ class Axis:
 
 
 def _units(axis: str, quick: bool) -> list[Cell]:
-    def everything(column: str, scene: Scene) -> list[Cell]:
-        return [
-            *beams(axis, column, scene, 10),
-            *solids(axis, column, scene, COARSE),
-            *exact_answers(axis, column, scene),
-        ]
-
-    plain = everything("", half_circle(cantilever()))
+    plain = everything(axis, "", half_circle(cantilever()), 10, COARSE)
     lengths = (1e-9, 1.0, 1e6) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6)
     moduli = (1e-6, 1e15) if quick else (1e-6, 1.0, 1e5, 1e10, 1e15)
     same = Allowance(error=1e-9, why="units do not matter")
     cells = []
-    for length in lengths:
-        for modulus in moduli:
-            scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
-            for cell, unit in zip(everything(f"L {length:g}, E {modulus:g}", scene), plain, strict=True):
-                cells.append(
-                    with_check(cell, Against(case=unit.case, name="itself at L = 1, E = 1", allowed=same))
-                )
+    for length, modulus in product(lengths, moduli):
+        scene = half_circle(cantilever(length=length, youngs_modulus=modulus))
+        own = everything(axis, f"L {length:g}, E {modulus:g}", scene, 10, COARSE)
+        for cell, unit in zip(own, plain, strict=True):
+            check = Against(case=unit.case, name="itself at L = 1, E = 1", allowed=same)
+            cells.append(with_check(cell, check))
     return cells
 
 
@@ -84,33 +80,24 @@ TARGET = Allowance(error=1e-6, why="the target for 40 elements up to L/h = 1e5")
 
 def _slenderness(axis: str, quick: bool) -> list[Cell]:
     cells = []
+    fourth = {kind.name for kind in kinds() if isinstance(kind, ClosedForm) and kind.order >= 4}
     for slenderness in (2, 50, 1e3, 1e5, 1e6) if quick else (2, 5, 10, 20, 50, 100, 1e3, 1e4, 1e5, 1e6):
-        column, scene = f"{slenderness:g}", half_circle(cantilever(slenderness=slenderness))
-        fourth = {kind.name for kind in kinds() if isinstance(kind, ClosedForm) and kind.order >= 4}
+        scene = half_circle(cantilever(slenderness=slenderness))
         promised = (Against(case=exact_rod(scene), allowed=TARGET),) if 50 <= slenderness <= 1e5 else ()
+        mesh = MESH if slenderness <= 1e3 and not (quick and slenderness == 1e3) else None
         cells += [
             with_check(cell, *promised) if cell.row in fourth else cell
-            for cell in beams(axis, column, scene, 40)
+            for cell in everything(axis, f"{slenderness:g}", scene, 40, mesh)
         ]
-        if slenderness <= 1e3 and not (quick and slenderness == 1e3):
-            cells += solids(axis, column, scene, MESH)
-        cells += exact_answers(axis, column, scene)
     return cells
 
 
 def _shear(axis: str, quick: bool) -> list[Cell]:
     elements = 20
     powers = (-14, -4, 0, 4) if quick else (-14, -11, -8, -6, -4, -2, -1, 0, 1, 2, 3, 4)
-    cells = []
-    for power in powers:
-        scene = half_circle(sheared(10.0**power / elements**2))
-        cells += [*beams(axis, f"1e{power}", scene, elements), *exact_answers(axis, f"1e{power}", scene)]
-    printed = replace(load_scene("ks-printed-shear"), load_parameters=10)
-    return [
-        *cells,
-        *beams(axis, "[P] 4.2", printed, elements),
-        *exact_answers(axis, "[P] 4.2", printed),
-    ]
+    scenes = {f"1e{power}": half_circle(sheared(10.0**power / elements**2)) for power in powers}
+    scenes["[P] 4.2"] = replace(load_scene("ks-printed-shear"), load_parameters=10)
+    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, elements)]
 
 
 def _elements(axis: str, quick: bool) -> list[Cell]:
@@ -119,12 +106,10 @@ def _elements(axis: str, quick: bool) -> list[Cell]:
     for count in (1, 2, 5, 50) if quick else (1, 2, 3, 5, 10, 20, 50, 200, 1000, 5000):
         column = f"{count}"
         cells += beams(axis, column, scene, count, only=kinds(meshed=True))
-        if count <= 1000:
-            for kind in kinds(meshed=False):
-                case = beam_case(scene, kind, None)
-                case = replace(case, options=replace(case.options, elements=count))
-                checks = (Against(case=exact_rod(scene)),)
-                cells.append(Cell(axis=axis, row=kind.name, column=column, case=case, checks=checks))
+        for kind in kinds(meshed=False) if count <= 1000 else ():
+            case = beam_case(scene, kind, None)
+            case = replace(case, options=replace(case.options, elements=count))
+            cells.append(against(axis, kind.name, column, case))
         if 2 <= count <= 1000:
             cells += solids(axis, column, scene, (count, 2))
     return cells
@@ -143,7 +128,7 @@ def _ratio(axis: str, quick: bool) -> list[Cell]:
 
 def _contact(axis: str, quick: bool) -> list[Cell]:
     """A pin beside a node in the middle, beside the clamp, beside the tip, in parts of one of ten elements."""
-    elements, cells = 10, []
+    elements = 10
     part = 1 / elements
     parts = (1e-16, 1e-8, 1e-1) if quick else (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
     signed = [
@@ -153,98 +138,64 @@ def _contact(axis: str, quick: bool) -> list[Cell]:
         ("at node", 0.5, 0.02),
         ("node +ulp", math.nextafter(0.5, 1), 0.02),
         ("node -ulp", math.nextafter(0.5, 0), 0.02),
+        *((f"node {text}", 0.5 + away * part, 0.02) for text, away in signed),
+        ("at clamp", 0.0, 0.02),
+        *((f"clamp +{size:g} l", size * part, 0.1 * size * part) for size in parts),
     ]
-    places += [(f"node {text}", 0.5 + away * part, 0.02) for text, away in signed]
-    places += [("at clamp", 0.0, 0.02)]
-    places += [(f"clamp +{size:g} l", size * part, 0.1 * size * part) for size in parts]
-    for column, x, lift in places:
-        scene = raised(cantilever(), x, lift)
-        cells += [*beams(axis, column, scene, elements), *exact_answers(axis, column, scene)]
     tips = [("at tip", 1.0), ("tip +ulp", math.nextafter(1, 2)), ("tip -ulp", math.nextafter(1, 0))]
-    for column, x in [*tips, *((f"tip -{size:g} l", 1 - size * part) for size in parts)]:
-        scene = pushed(cantilever(), (x, 0.0), (x - 0.02, 0.02), steps=10)
-        cells += [*beams(axis, column, scene, elements), *exact_answers(axis, column, scene)]
-    return cells
+    tips += [(f"tip -{size:g} l", 1 - size * part) for size in parts]
+    scenes = {column: raised(cantilever(), x, lift) for column, x, lift in places}
+    scenes |= {column: pushed(cantilever(), (x, 0.0), (x - 0.02, 0.02), steps=10) for column, x in tips}
+    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, elements)]
 
 
 def _load_step(axis: str, quick: bool) -> list[Cell]:
     cells = []
     for steps in (1, 5, 100) if quick else (1, 2, 5, 10, 100, 1000, 10_000):
         column, scene = f"{steps}", half_circle(cantilever(), steps=steps)
-        cells += [*beams(axis, column, scene, 20), *exact_answers(axis, column, scene)]
-        cells += solids(axis, column, scene, COARSE)
-        for kind in (MIXED, TIMOSHENKO):
-            many = beam_case(scene, kind, 200)
-            if steps <= 1000:
-                cells.append(
-                    Cell(
-                        axis=axis,
-                        row=f"{kind.name}, 200 elements",
-                        column=column,
-                        case=many,
-                        checks=(Against(case=exact_rod(scene)),),
-                    )
-                )
+        cells += everything(axis, column, scene, 20, COARSE)
+        cells += [
+            against(axis, f"{kind.name}, 200 elements", column, beam_case(scene, kind, 200))
+            for kind in ((MIXED, TIMOSHENKO) if steps <= 1000 else ())
+        ]
     return cells
 
 
 def _penalty(axis: str, quick: bool) -> list[Cell]:
     cells = []
-    beam = cantilever()
-    width = 1 / 50
+    beam, width = cantilever(), 1 / 50
     for surface in ("axis", "face"):
-        default = Case(
-            scene=half_circle(beam, surface=surface),
-            model=SOLID.name,
-            options=solids("", "", half_circle(beam), MESH)[0].case.options,
-        )
+        plain = Case(scene=half_circle(beam, surface=surface), model=SOLID.name, options=Options(mesh=MESH))
         for power in (-6, -2, 0, 12) if quick else (-6, -5, -4, -3, -2, -1, 0, 2, 4, 6, 8, 10, 12):
             penalty = 10.0**power * 25.0 * beam.youngs_modulus * width
             scene = half_circle(beam, surface=surface, penalty=penalty)
             softness = 10 * beam.EI / penalty
             allowed = Allowance(error=4 * 10 * softness + 1e-6, why="what the penalty lets the beam give way")
-            cells += solids(
-                axis,
-                f"1e{power}",
-                scene,
-                MESH,
-                row=f"{SOLID.name}, {surface}",
-                checks=(Against(case=default, name="itself with the default penalty", allowed=allowed),),
-            )
+            check = Against(case=plain, name="itself with the default penalty", allowed=allowed)
+            cells += solids(axis, f"1e{power}", scene, MESH, row=f"{SOLID.name}, {surface}", checks=(check,))
     return cells
 
 
 def _poissons_ratio(axis: str, quick: bool) -> list[Cell]:
-    cells = []
-    for nu in (-0.9, 0.0, 0.4999) if quick else (-0.9, -0.5, -0.1, 0.0, 0.3, 0.45, 0.49, 0.499, 0.4999):
-        column, scene = f"{nu:g}", half_circle(cantilever(poissons_ratio=nu))
-        cells += [
-            *beams(axis, column, scene, 20),
-            *exact_answers(axis, column, scene),
-            *solids(axis, column, scene, MESH),
-        ]
-    return cells
+    ratios = (-0.9, 0.0, 0.4999) if quick else (-0.9, -0.5, -0.1, 0.0, 0.3, 0.45, 0.49, 0.499, 0.4999)
+    scenes = {f"{nu:g}": half_circle(cantilever(poissons_ratio=nu)) for nu in ratios}
+    return [cell for column, scene in scenes.items() for cell in everything(axis, column, scene, 20, MESH)]
 
 
 def _depth(axis: str, _: bool) -> list[Cell]:
     cells = []
-    behind = pushed(cantilever(), (0.5, 0.0), (0.5, 0.1), (-0.3, 0.1), steps=20)
     places = {
         "4.1, slip-off at .99 of the way": (load_scene("cantilever-critical-area"), 18),
         "limit point of the force": (raised(cantilever(length=4.0, slenderness=200), 1.0, 2.0, steps=20), 22),
-        "behind the clamp": (behind, 31),
+        "behind the clamp": (pushed(cantilever(), (0.5, 0.0), (0.5, 0.1), (-0.3, 0.1), steps=20), 31),
     }
     for column, (scene, elements) in places.items():
-        cells += [*beams(axis, column, scene, elements), *exact_answers(axis, column, scene)]
-        if scene.beams[0].height is not None:
-            cells += solids(axis, column, scene, MESH)
-    for turns in (1, 2):
-        scene = rolled_up(cantilever(), turns)
-        for kind in kinds():
-            case = beam_case(scene, kind, 40 * turns)
-            cells.append(
-                Cell(axis=axis, row=kind.name, column=f"roll-up, {turns}", case=case, checks=(Circle(),))
-            )
+        cells += everything(axis, column, scene, elements, None if scene.beams[0].height is None else MESH)
+    for turns, kind in product((1, 2), kinds()):
+        case = beam_case(rolled_up(cantilever(), turns), kind, 40 * turns)
+        cells.append(
+            Cell(axis=axis, row=kind.name, column=f"roll-up, {turns}", case=case, checks=(Circle(),))
+        )
     return cells
 
 
@@ -257,13 +208,10 @@ def _time(axis: str, quick: bool) -> list[Cell]:
     unknown = [kind for kind in kinds() if kind.contact_unknowns]
     for count in (1, 20) if quick else (1, 20, 100, 1000, 10_000):
         column, scene = f"{count}", cycles(cantilever(), count)
-        cells += beams(axis, column, scene, 15, only=unknown)
-        cells += exact_answers(axis, column, scene)
+        some = kinds() if count <= CUT_BACK else unknown
+        cells += [*beams(axis, column, scene, 15, only=some), *exact_answers(axis, column, scene)]
         if count <= CUT_BACK:
-            cells += [
-                *beams(axis, column, scene, 15, only=[kind for kind in kinds() if kind not in unknown]),
-                *solids(axis, column, scene, COARSE),
-            ]
+            cells += solids(axis, column, scene, COARSE)
     return cells
 
 

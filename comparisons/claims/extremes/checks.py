@@ -1,18 +1,16 @@
 """Checks of an answer: against another answer, against the energy of a rod in closed form, against a circle."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from comparisons.cases.case import Case
 from comparisons.cases.measure import Measurement
 from comparisons.claims.claim import Allowance, Finding
-from comparisons.claims.extremes.allowance import LARGEST, allowance
-from comparisons.claims.extremes.units import in_units_of
 from comparisons.errors import difference
 from comparisons.models import MODELS, TSM
-from comparisons.models.theory import FLOOR, bending, chord_term, element_lengths, ordinal
+from comparisons.models.theory import FLOOR, Bending, bending, chord_term, element_lengths, ordinal
 from comparisons.response import Array, Response
 from comparisons.scene import BeamSpec
 from tsm.elements import ClosedForm
@@ -25,6 +23,45 @@ NEXT_TERM = 1.05
 
 Results = Mapping[Case, Measurement]
 """Measurements by case."""
+
+
+LARGEST = 0.2
+"""Largest allowed error for any model; an answer with a larger error should have stopped."""
+
+
+def allowance(case: Case, bent: Bending) -> Allowance:
+    """Return the error allowed to `case` against the Reissner rod that bends as `bent` says, `LARGEST` at most.
+
+    A model of another rod, as the elastica, is allowed a larger error, because it does not approximate this rod.
+    """
+    model = MODELS[case.model]
+    parts = model.error_parts(case.scene, case.options, bent)
+    largest = max(parts, key=lambda why: parts[why])
+    error = sum(parts.values())
+    if model.rod and not error <= LARGEST:
+        return Allowance(error=LARGEST, why=f"more is wrong, although theory allows it: {largest}")
+    return Allowance(error=error, why=largest)
+
+
+def in_units_of(other: BeamSpec, beam: BeamSpec, response: Response) -> Response:
+    """Return the response of `beam` in the units of `other`, a beam that differs in units only. Axes and gaps are not converted.
+
+    Lengths are scaled by the ratio of the lengths L, forces by the ratio of ``EI/L^2``, moments by the ratio of ``EI/L``.
+    """
+    length = other.length / beam.length
+    force = other.EI / beam.EI / length**2
+    return replace(
+        response,
+        contacts={
+            pair: replace(one, force=force * one.force, arc_position=length * one.arc_position)
+            for pair, one in response.contacts.items()
+        },
+        supports={
+            name: replace(one, force=force * one.force, moment=force * length * one.moment)
+            for name, one in response.supports.items()
+        },
+        tips={name: length * values for name, values in response.tips.items()},
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import pairwise
-from typing import Protocol
 
 from comparisons.claims.claim import Verdict
+from comparisons.claims.extremes.axes import Axis
 from comparisons.claims.extremes.cell import Judgement
 from comparisons.show.pages import Section
 
@@ -39,23 +39,7 @@ SHADES = (
 """Blue for small errors to pale yellow for large ones, by the decimal logarithm: safe for the colour-blind."""
 
 
-class Titled(Protocol):
-    """What a map says about its axis."""
-
-    @property
-    def name(self) -> str:
-        """The axis, as its cells call it."""
-
-    @property
-    def title(self) -> str:
-        """For people."""
-
-    @property
-    def scene(self) -> str:
-        """What is solved."""
-
-
-def sections(axes: Iterable[Titled], judgements: Sequence[Judgement]) -> list[Section]:
+def sections(axes: Iterable[Axis], judgements: Sequence[Judgement]) -> list[Section]:
     """Return the key and one map for each axis that has cells."""
     parts = [Section(title="How to read the maps", html=f"{STYLE}<p>{LEGEND}</p>{_key()}")]
     for axis in axes:

@@ -51,15 +51,16 @@ def beams(
             _beam(axis, column, beam_case(scene, kind, elements))
             for kind in (kinds() if only is None else only)
         ),
-        *(_against(axis, model.name, column, Case(scene=scene, model=model.name)) for model in others),
+        *(against(axis, model.name, column, Case(scene=scene, model=model.name)) for model in others),
     ]
 
 
 def _beam(axis: str, column: str, case: Case) -> Cell:
-    return _against(axis, TSM.element(case.options).name, column, case)
+    return against(axis, TSM.element(case.options).name, column, case)
 
 
-def _against(axis: str, row: str, column: str, case: Case) -> Cell:
+def against(axis: str, row: str, column: str, case: Case) -> Cell:
+    """Return the cell of a case against the rod."""
     return Cell(axis=axis, row=row, column=column, case=case, checks=(against_rod(case),))
 
 
@@ -91,6 +92,14 @@ def exact_answers(axis: str, column: str, scene: Scene) -> list[Cell]:
         for model in MODELS.values()
         if not model.meshed
     ]
+
+
+def everything(
+    axis: str, column: str, scene: Scene, elements: int | None, mesh: tuple[int, int] | None = None
+) -> list[Cell]:
+    """Return the cells of all models on a scene: beams, the solid if it has a mesh, exact answers."""
+    solid = solids(axis, column, scene, mesh) if mesh else []
+    return [*beams(axis, column, scene, elements), *solid, *exact_answers(axis, column, scene)]
 
 
 def with_check(cell: Cell, *checks: Check) -> Cell:

@@ -1,12 +1,12 @@
 """Benchmark cards: a problem of the manual as one JSON file, complete in itself."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from comparisons.claims.claim import Quantity
-from comparisons.claims.manual.record import Problem
+from comparisons.claims.manual.problem import Problem, read_problem
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, json_text
 from comparisons.scene import to_tables
@@ -31,8 +31,8 @@ def card(problem: Problem) -> dict[str, Any]:
 
     Examples
     --------
-    >>> from comparisons.claims.manual.loads import roll_up
-    >>> card(roll_up())["quantities"][0]
+    >>> from comparisons.claims.manual import problems
+    >>> card(read_problem(*problems(["roll-up"])))["quantities"][0]
     {'name': 'x/L of the tip, a quarter of a circle', 'value': 0.6366197723675814, 'digits': 14, 'uncertainty': 6.366197723675814e-15}
     """
     texts = {name: getattr(problem, name) for name in ("name", "title", "purpose", "statement", "source")}
@@ -116,7 +116,7 @@ def _record(properties: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Problem]]) -> tuple[Path, ...]:
+def write_cards(folder: Path, report: Report, stated: Sequence[Path]) -> tuple[Path, ...]:
     """Write the cards of problems, ``NAME.json``, and their schema, ``card.schema.json``.
 
     Parameters
@@ -125,8 +125,8 @@ def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Pr
         Made if it is not there.
     report : callable
         Takes a line for each card.
-    problems : sequence of callable
-        Of `comparisons.claims.manual.problems.named`.
+    stated : sequence of Path
+        The problems, of `comparisons.claims.manual.problem.problems`.
 
     Returns
     -------
@@ -140,8 +140,7 @@ def write_cards(folder: Path, report: Report, problems: Sequence[Callable[[], Pr
     """
     writable_folder(folder)
     files = []
-    for state in problems:
-        problem = state()
+    for problem in map(read_problem, stated):
         files.append(_written(folder / f"{problem.name}.json", card(problem)))
         report(f"{problem.name}: {len(problem.quantities)} quantities")
     return (*files, _written(folder / "card.schema.json", card_schema()))

@@ -1,12 +1,11 @@
 """The picture of a case: what the models found over what is exact, one colour for a model in the whole manual."""
 
 from collections.abc import Iterable
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from comparisons import models as registry
-from comparisons.claims.manual.record import Curve, Picture
+from comparisons.claims.manual.problem import Curve, Problem
 from comparisons.show import palette
 from comparisons.show.plot import SOLID, figure, save
 
@@ -25,19 +24,21 @@ STYLES: dict[str, dict[str, Any]] = {
 """Drawn in this order, each line narrower than those below it, so that those that agree are all seen."""
 
 
-def draw(title: str, picture: Picture, curves: Iterable[Curve], *paths: Path) -> None:
-    """Draw a case to `paths`, in the formats of their suffixes."""
+def draw(problem: Problem, curves: Iterable[Curve], *paths: Path) -> None:
+    """Draw curves as the picture of a problem to `paths`, in the formats of their suffixes."""
+    picture, length = problem.picture, problem.scene.units.split(",")[1].strip()
     fig = figure(figsize=(6.4, 4.4))
     axes = fig.subplots()
     named: set[str] = set()
     order = list(STYLES)
-    for curve in sorted(chain(picture.curves, curves), key=lambda one: order.index(one.style)):
+    for curve in sorted(curves, key=lambda one: order.index(one.style)):
         label = None if curve.style in named else curve.style
         found = picture.logarithmic and curve.style != "exact order"
         marks = {"marker": "o", "markersize": 10, "linewidth": 1.5} if found else {}
         axes.plot(*curve.points.T, label=label, **{**STYLES[curve.style], **marks})
         named.add(curve.style)
-    axes.set(xlabel=picture.axes[0], ylabel=picture.axes[1], title=title)
+    x, y = picture.axes or (f"x [{length}]", f"y [{length}]")
+    axes.set(xlabel=x, ylabel=y, title=problem.title)
     if picture.shape:
         axes.set_aspect("equal", adjustable="datalim")
     if picture.logarithmic:

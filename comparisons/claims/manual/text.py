@@ -5,7 +5,7 @@ from typing import Any
 
 from comparisons.claims.claim import Judgement
 from comparisons.claims.junit import JUnitCase
-from comparisons.claims.manual.record import Case
+from comparisons.claims.manual.problem import Case
 from comparisons.version import versions
 
 HEAD = """# Verification manual

@@ -1,18 +1,76 @@
 """The manual as a folder: ``index.md``, a picture for each case, ``manual.json``."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
-from comparisons.claims.manual.judge import answered
+import numpy as np
+
+from comparisons.claims.claim import Claim, judge
+from comparisons.claims.manual.measures import MEASURES
 from comparisons.claims.manual.pictures import draw
-from comparisons.claims.manual.record import Manual, Problem
+from comparisons.claims.manual.problem import Case, Curve, Problem, Trial, read_problem
+from comparisons.claims.manual.read import ANSWER, answered, deflected, readings, undeformed
 from comparisons.claims.manual.text import markdown, numbers
 from comparisons.files import writable_folder, write_text
 from comparisons.output import Report, write_numbers
 
 
-def write_manual(folder: Path, report: Report, problems: Sequence[Callable[[], Problem]]) -> Manual:
-    """Solve all problems, judge the answers and write the manual.
+class Manual(NamedTuple):
+    """The cases of the manual, and what was written, the text first."""
+
+    cases: tuple[Case, ...]
+    files: tuple[Path, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether every case passed."""
+        return all(case.passed for case in self.cases)
+
+
+def judged(problem: Problem) -> tuple[Case, tuple[Curve, ...]]:
+    """Return a problem with the judgements on all its models, and the curves that they add to its picture."""
+    curves: list[Curve] = []
+
+    def measured(trial: Trial) -> Sequence[float]:
+        found = MEASURES.get(problem.measure, readings)(problem, trial)
+        curves.extend(found.curves)
+        return found.values
+
+    judgements = tuple(
+        judge(
+            Claim(
+                name=trial.label,
+                statement=problem.statement,
+                source=problem.source,
+                quantities=problem.quantities,
+                allowance=trial.allowance,
+                measure=partial(measured, trial),
+            )
+        )
+        for trial in problem.trials
+    )
+    return Case(problem=problem, judgements=judgements, picture=f"{problem.name}.svg"), tuple(curves)
+
+
+def _exact(problem: Problem, curves: Sequence[Curve]) -> tuple[Curve, ...]:
+    """Return what a picture has whatever the models answer: undeformed axes, the exact answer, a line for the eye."""
+    picture, scene = problem.picture, problem.scene
+    if picture.guide:
+        order, first = picture.guide
+        ends = np.array([curves[0].points[:, 0].min(), curves[0].points[:, 0].max()])
+        return (
+            Curve(style="exact order", points=np.stack([ends, first * (ends / ends[0]) ** order], axis=1)),
+        )
+    drawn = () if picture.axes else undeformed(scene)
+    if picture.exact:
+        drawn += (deflected(scene, answered(scene, picture.exact), ANSWER, picture.shown),)
+    return drawn
+
+
+def write_manual(folder: Path, report: Report, files: Sequence[Path]) -> Manual:
+    """Solve problems, judge the answers and write the manual.
 
     Parameters
     ----------
@@ -20,8 +78,8 @@ def write_manual(folder: Path, report: Report, problems: Sequence[Callable[[], P
         Made if it is not there.
     report : callable
         Takes a line for each case.
-    problems : sequence of callable
-        What is solved, of `comparisons.claims.manual.problems.named`.
+    files : sequence of Path
+        The problems, of `comparisons.claims.manual.problem.problems`.
 
     Returns
     -------
@@ -34,13 +92,11 @@ def write_manual(folder: Path, report: Report, problems: Sequence[Callable[[], P
     """
     writable_folder(folder)
     cases, pictures = [], []
-    for state in problems:
-        problem = state()
-        picture = folder / f"{problem.name}.svg"
-        case, curves = answered(problem, picture.name)
-        draw(problem.title, problem.picture, curves, picture)
+    for problem in map(read_problem, files):
+        case, curves = judged(problem)
+        pictures.append(folder / case.picture)
+        draw(problem, [*_exact(problem, curves), *curves], pictures[-1])
         cases.append(case)
-        pictures.append(picture)
         report(f"{problem.name}: {'passed' if case.passed else 'FAILED'}, {case.seconds:.1f} s")
         for item in case.judgements:
             if item.failure:

@@ -15,12 +15,11 @@ import pytest
 from comparisons.cases import Case, measure
 
 # not public: answers off by a known part, allowances before any run, and the whole matrix without its hour of solutions
-from comparisons.claims.claim import Verdict
+from comparisons.claims.claim import Allowance, Verdict
 from comparisons.claims.extremes import run as runner
-from comparisons.claims.extremes.allowance import LARGEST, Allowance, allowance
 from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Cell, judged
-from comparisons.claims.extremes.checks import Against
+from comparisons.claims.extremes.checks import LARGEST, Against, allowance
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod, kinds
 from comparisons.claims.extremes.scenes import cantilever, half_circle, sheared
 from comparisons.cli import main

@@ -12,16 +12,15 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from comparisons.claims.claim import StoppedError
-from comparisons.claims.manual import problems as manual_problems
+from comparisons.claims.manual import judged, problems, read_problem
 
-# not public: one problem without its picture, and a problem that no model solves
-from comparisons.claims.manual.judge import answered
+# not public: measures that no model has, changes of a scene, and the styles of pictures
+from comparisons.claims.manual.measures import MEASURES, mirrored, moved, reversed_
 from comparisons.claims.manual.pictures import STYLES
-from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.cli import main
-from comparisons.scene import read_scene
+from comparisons.scene import load_scene, read_scene
 
-PROBLEMS = manual_problems.PROBLEMS
+PROBLEMS = {path.stem: path for path in problems()}
 FAST = [
     "clamped-column",
     "euler-column",
@@ -85,11 +84,11 @@ def toml(tables):
 )
 def test_a_problem_of_the_table_passes(name, tmp_path):
     """With every model, whose tolerance has a reason and exceeds the uncertainty of the value; its card has the same scene and values."""
-    problem = PROBLEMS[name]()
+    problem = read_problem(PROBLEMS[name])
     (card,), schema = cards(tmp_path, name)
     schema.validate(card)
     assert read_scene(toml(card["scene"]), name) == problem.scene
-    case, _ = answered(problem, "p.svg")
+    case, _ = judged(problem)
     assert [item.failure for item in case.judgements if not item.passed] == []
     assert case.problem.name == name
     for quantity, stated in zip(problem.quantities, card["quantities"], strict=True):
@@ -138,30 +137,37 @@ def test_a_card_states_the_digits_that_its_uncertainty_leaves(tmp_path, monkeypa
         assert not schema.is_valid(card | change)
 
 
-def made_up(*answers):
-    """A problem with the exact values 2 and 0, models that answer so, and a bar in a name."""
-    problem = PROBLEMS["roll-up"]()
-    trial, first, zero = problem.trials[0], problem.quantities[0], problem.quantities[2]
+MADE_UP = """
+title = "Made | up"
+purpose = "a"
+statement = "b"
+source = "c"
+uncertainty = 0.0
+scene = "tip-load"
+measure = "told"
+quantities = [{ name = "a", exact = 2.0 }, { name = "|b|", exact = 0.0, scale = 4.0 }]
+trials = [
+"""
 
-    def measure(answer):
+
+def made_up(folder, count):
+    """The file of a problem with the exact values 2 and 0, and a bar in a name, for some models."""
+    trial = '  { model = "tsm exact", setting = "NUMBER", allowed = 0.01, why = "d" },\n'
+    path = folder / "made-up.toml"
+    path.write_text(MADE_UP + "".join(trial.replace("NUMBER", str(k)) for k in range(count)) + "]\n")
+    return path
+
+
+def telling(*answers):
+    """A measure by which the models answer so."""
+
+    def measure(_, trial):
+        answer = answers[int(trial.setting)]
         if isinstance(answer, StoppedError):
             raise answer
         return SimpleNamespace(values=answer, curves=())
 
-    return replace(
-        problem,
-        name="made-up",
-        title="Made | up",
-        quantities=(replace(first, name="a", exact=2.0), replace(zero, name="|b|", scale=4.0)),
-        trials=tuple(
-            replace(
-                trial,
-                allowance=replace(trial.allowance, error=0.01),
-                measure=lambda _, answer=answer: measure(answer),
-            )
-            for answer in answers
-        ),
-    )
+    return measure
 
 
 JUDGED = [
@@ -177,11 +183,9 @@ JUDGED = [
 
 def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, monkeypatch, capsys):
     """Screen, exit status, JUnit, JSON and page; what is no number fails, and a page escapes bars."""
-    problems = {
-        "made-up": lambda: made_up(*(answer for answer, *_ in JUDGED)),
-        "roll-up": PROBLEMS["roll-up"],
-    }
-    monkeypatch.setattr(manual_problems, "PROBLEMS", problems)
+    monkeypatch.setitem(MEASURES, "told", telling(*(answer for answer, *_ in JUDGED)))
+    files = [made_up(tmp_path, len(JUDGED)), PROBLEMS["roll-up"]]
+    monkeypatch.setattr("comparisons.claims.manual.problems", lambda _: files)
     junit, folder = tmp_path / "junit.xml", tmp_path / "m"
     assert main(["run", "manual", "--out", str(folder), "--junit", str(junit), "--quiet"]) == 1
     out, err = capsys.readouterr()
@@ -214,13 +218,14 @@ def test_errors_are_relative_and_the_worst_is_named_on_every_way_out(tmp_path, m
         assert f'<a id="{target}"></a>' in page
     for picture in re.findall(r"\]\((\S+\.svg)\)", page):
         assert ET.parse(folder / picture).getroot().tag.endswith("svg")  # noqa: S314 our own file
+    monkeypatch.setitem(MEASURES, "told", telling((2.0,)))
     with pytest.raises(ValueError, match="argument 2 is shorter"):
-        answered(made_up((2.0,)), "p.svg")
+        judged(read_problem(made_up(tmp_path, 1)))
 
 
 def test_a_scene_that_is_moved_is_the_scene():
     """Turned by a quarter, mirrored, reversed: beams, pins and sides are where they must be."""
-    scene = ks("ks-face", 4)
+    scene = replace(load_scene("ks-face"), load_parameters=4)
     turned, image = moved(scene, math.pi / 2, (1.0, 2.0)), mirrored(scene)
     assert turned.beams[0].end == pytest.approx((1.0, 3.0), abs=1e-15)
     assert turned.pins[0].points[0] == pytest.approx((1.01, 3.0), abs=1e-15)
@@ -228,3 +233,23 @@ def test_a_scene_that_is_moved_is_the_scene():
     assert image.pins[0].points[1] == (0.0, 0.01 - 0.6366197723675814)
     assert image.contacts[0].side == reversed_(scene).contacts[0].side == "left"
     assert reversed_(scene).beams[0].clamped == ("end",)
+
+
+NEW = """
+title = "New"
+purpose = "One file is a problem."
+statement = "The pin of ks-cantilever at half its way."
+source = "ks-axis"
+uncertainty = 1e-11
+scene = "ks-cantilever"
+changes = { "scene.load_parameters" = 2 }
+quantities = [{ name = "F [N]", exact = 0.0013049919842595134, read = "force pin->cantilever", at = 0.5 }]
+trials = [{ model = "tsm exact", allowed = 1e-9, why = "no mesh" }, { model = "tsm mixed", elements = 2, allowed = 1e-9, why = "wrong" }]
+"""
+
+
+def test_a_new_problem_is_one_file(tmp_path):
+    (tmp_path / "new.toml").write_text(NEW)
+    (path,) = problems(folder=tmp_path)
+    case, _ = judged(read_problem(path))
+    assert [item.passed for item in case.judgements] == [True, False]
