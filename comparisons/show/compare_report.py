@@ -38,20 +38,10 @@ def write_comparison_page(
     folder: Path,
     left_out: Mapping[str, str],
 ) -> Path:
-    """Write ``report.html`` to `folder`, with what is in `files` there; return its path.
+    """Write ``report.html`` to `folder` and return its path.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        All runs.
-    budget : Budget or None
-        None if there is none.
-    files : sequence of Path
-        What else the comparison wrote.
-    series : mapping of Path
-        The exported series of VTU files, by the label of the run.
-    left_out : mapping of str
-        Why a run or the budget is left out, as `comparisons.show.findings.findings` takes it.
+    `files` are what else the comparison wrote, `series` the exported series of VTU files by the label of the
+    run, and `left_out` the reasons that `findings` takes.
     """
     responses = {row.label: row.response for row in rows}
     vtu = {

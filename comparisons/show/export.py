@@ -88,7 +88,7 @@ def contact_points(response: Response, scene: Scene, k: int) -> Grid:
 
 
 def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> tuple[Array, ...]:
-    """Return a contact's undeformed and deformed place, the displacement of the touched point of the beam, and the force on it."""
+    """Return a contact's undeformed and deformed place, the displacement where it touches, and the force."""
     name, _, end = contact.node.partition(".")
     if end:
         start, deformed = np.array(scene.place(contact.node)), _end(response, name, end, k)

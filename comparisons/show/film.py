@@ -30,19 +30,10 @@ class Film:
 
 
 def film(series: Sequence[Series], factor: float = 1.0) -> Film:
-    """Return the film of the load parameters that all `series` reach, evenly thinned to `FRAMES`, the first and last included.
+    """Return the film of the load parameters that all `series` reach, with a panel for each series.
 
-    Parameters
-    ----------
-    series : sequence of Series
-        One for each panel.
-    factor : float
-        Enlargement of the displacements, which the titles state.
-
-    Raises
-    ------
-    OutputError
-        If they have no load parameter in common.
+    It is evenly thinned to `FRAMES`, with the first and the last. The titles state the enlargement `factor`
+    of the displacements. Without a common load parameter it raises `OutputError`.
     """
     shared = sorted(set.intersection(*({*one.load_parameter.tolist()} for one in series)))
     if not shared:
@@ -67,12 +58,7 @@ def _panel(series: Series, t: float, factor: float) -> Panel:
 def write(shown: Film, folder: Path, count: Count = uncounted) -> tuple[list[Path], str | None]:
     """Write ``view.png``, the last state, and ``view.gif``, the motion; `count` receives the pictures that are drawn.
 
-    Returns
-    -------
-    list of Path
-        Both files.
-    str or None
-        One sentence if matplotlib had to stand in for pyvista.
+    Return both files, and one sentence if matplotlib had to stand in for pyvista.
     """
     from PIL import Image
 

@@ -29,21 +29,9 @@ def findings(
 ) -> list[str]:
     """Return what a comparison found, in sentences.
 
-    The sentences state in this order: what was compared; the largest error of each model, over all runs of a type of elements, with its
-    cause; runs that stopped; what was left out; who states no stability; what the referee certified.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    rows : sequence of Row
-        All runs.
-    reference : str
-        The label of the exact rod.
-    budget : Budget or None
-        What the difference of beams and solid is made of.
-    left_out : mapping of str
-        Reasons by what is left out: the family of a run, or `BUDGET`.
+    The sentences state in this order: what was compared; the largest error of each model against the run
+    labelled `reference`, over all runs of a type of elements, with its cause; runs that stopped; what was
+    left out, by the family of a run or `BUDGET`; who states no stability; what the referee certified.
     """
     found = [_compared(scene, rows, reference)]
     others = [row for row in rows if row.label != reference]

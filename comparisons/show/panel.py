@@ -1,4 +1,4 @@
-"""What a picture of stressed bodies shows: quadrilaterals with a stress, contacts with their forces, supports; and the scale of it.
+"""A picture of stressed bodies: quadrilaterals with a stress, contacts with forces, supports; its scale.
 
 Beams are ribbons of their height, so that beams and solids are shown on one footing.
 """
@@ -23,8 +23,8 @@ QUARTERS = {
     "quad": np.array([[0, 1, 2, 3]]),
 }
 """The quadrilaterals in the cells of a solid, in VTK's order of points."""
-PARTS, LAYERS = 8, 4
-"""Quadrilaterals along the line of an element of a beam and over its height."""
+PARTS, LAYERS = 8, (4, 8)
+"""Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
 THIN = 2e-3
 """Height of a beam whose section has none, over the size of the picture."""
 ARROW = 0.2
@@ -77,10 +77,10 @@ class Panel:
 
 
 def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
-    """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows, which would hide the bodies.
+    """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows.
 
-    In a beam it is that of the rectangle with its area and second moment: ``sigma_x = N/A - M y/I``,
-    ``tau = 3/2 V/A (1 - (2 y/h)^2)``, ``sigma^2 = sigma_x^2 + 3 tau^2``.
+    In a beam it is that of the rectangle with its area and second moment: ``sigma^2 = sigma_x^2 + 3 tau^2``
+    with ``sigma_x = N/A - M y/I`` and ``tau = 3/2 V/A (1 - (2 y/h)^2)``. Arrows would hide the bodies.
     """
     states = [blocks(response, scene, k) for k in ks]
     for beam in scene.beams:
@@ -110,16 +110,9 @@ def panel(
 ) -> Panel:
     """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports.
 
-    Parameters
-    ----------
-    grids : mapping of Grid
-        As `comparisons.show.export.blocks` gives them.
-    title : str
-        What it shows; the enlargement is added.
-    factor : float
-        Enlargement of the displacements. A closed contact stays on its beam: it moves as the touched point does.
-    stress : str
-        ``axial_stress`` or ``von_mises``, which a beam has where its points have a ``shear_stress``.
+    The blocks are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
+    the displacements. A closed contact stays on its beam: it moves as the touched point does. A beam has a
+    von Mises stress where its points have a ``shear_stress``.
     """
     structure = [grid for name, grid in grids.items() if name not in POINTS]
     size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
@@ -179,7 +172,7 @@ def _ribbon(grid: Grid, size: float, factor: float) -> Body:
     normal = _unit(np.einsum("bu,eb->eu", between, _angles(tangent)) + np.pi / 2.0)
     half = along("height") / 2.0
     half[half == 0.0] = THIN / 2.0 * size
-    across = np.linspace(-1.0, 1.0, LAYERS + 1)
+    across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
     points = line[:, :, None] + half[..., None] * across[:, None] * normal[:, :, None]
     stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
     if "shear_stress" in data:
@@ -239,16 +232,9 @@ def _state(force: Array, slip: float) -> str:
 class Scale:
     """What pictures of panels share.
 
-    Attributes
-    ----------
-    centre, extent : tuple of float
-        Middle of the view; half the width and half the height of what is shown.
-    stress : tuple of float
-        Lowest and highest stress of the colours.
-    force : float
-        Length of an arrow per force.
-    label, arrow : str
-        Label of the stress; what the longest arrow is, empty without forces.
+    The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the
+    highest stress of the colours, with their label. `force` is the length of an arrow per force, and `arrow`
+    says what the longest one is, nothing without forces.
     """
 
     centre: tuple[float, float]

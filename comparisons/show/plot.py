@@ -65,7 +65,7 @@ def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -
 
 
 def ribbon(line: Array, normal: Array, height: Array) -> Array:
-    """Return the outline of a beam, shape (2 n, 2), about its axis (n, 2) with unit normals (n, 2) and heights (n,)."""
+    """Return the outline (2 n, 2) of a beam by its axis (n, 2), unit normals (n, 2) and heights (n,)."""
     half = height[:, None] / 2.0 * normal
     return np.concatenate([line + half, (line - half)[::-1]])
 
@@ -78,14 +78,8 @@ def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
 def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
     """Draw the deflected axes of all responses over each other, as Fig. 8 of the paper, and the last tip enlarged.
 
-    Parameters
-    ----------
-    scene : Scene
-        Gives the pins and their paths.
-    responses : dict of Response
-        By label, in the order of drawing; beams are drawn with the nodes of their elements.
-    paths : Path
-        Files, in the formats of their suffixes.
+    The responses are by label, in the order of drawing; beams are drawn with the nodes of their elements. The
+    scene gives the pins and their paths.
     """
     fig = figure(figsize=(WIDTH, 7.4))
     places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])

@@ -44,13 +44,7 @@ TITLE, LABEL, LINE, BELOW_TITLE, BAR = 15, 30, 40, 85, 70
 
 
 def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | None:
-    """Write the picture of `panels`, rendered off screen if that works here, else by matplotlib.
-
-    Returns
-    -------
-    str or None
-        One sentence if matplotlib had to stand in.
-    """
+    """Write the picture of `panels`; return one sentence if matplotlib had to draw it."""
     with tempfile.TemporaryDirectory() as folder, replacing(path) as temporary:
         pictures, sentence = render_frames([panels], Scale.of(panels, stress_label), Path(folder))
         temporary.write_bytes(pictures[0].read_bytes())
@@ -62,12 +56,7 @@ def render_frames(
 ) -> tuple[list[Path], str | None]:
     """Write ``frame-0000.png`` and so on to `folder`, every one in the same view and scale; `count` receives how many there are.
 
-    Returns
-    -------
-    list of Path
-        The pictures.
-    str or None
-        One sentence if matplotlib had to stand in.
+    Return the pictures, and one sentence if matplotlib had to stand in.
     """
     pictures = [_picture(folder, k) for k in range(len(frames))]
     seconds = TIMEOUT + FRAME * len(frames)
@@ -198,7 +187,7 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
 
 
 def _pins(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> tuple[list[Any], list[Any]]:
-    """Return the discs of the round ones among some pins, and the marks of all, with their forces as arrows that end where a pin touches."""
+    """Return the discs of round pins, and marks of all with their forces, which end where a pin touches."""
     import pyvista
 
     height = 0.01 * scale.half  # in front of the bodies

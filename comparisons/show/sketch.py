@@ -26,7 +26,7 @@ PULL = 0.7
 ROUNDS = 3
 """Times that the labels are separated and the axes fitted around them, which change each other."""
 PARTS: list[float] = np.linspace(0.0, 1.0, 41).tolist()
-"""Fractions of the length at the strokes along the side of a contact, and at the ends of the pieces of an axis."""
+"""Fractions of the length at the points of an axis, and at the strokes along the side of a contact."""
 ROW = 11
 """Arrows of a force per length."""
 NAME, WEIGHT = 0.25, 0.65
@@ -37,12 +37,8 @@ UP = np.array([0.0, 1.0])
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    others : sequence of str
-        Adapters and program files that are asked besides the models of this package and of entry points.
+    The `others` are adapters and program files that are asked besides the models of this package and of entry
+    points.
     """
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
@@ -96,7 +92,7 @@ def draw(scene: Scene, path: Path) -> None:
 
 @dataclass(kw_only=True)
 class _Sketch:
-    """A drawing that grows: its axes, the size of the scene, the legend by its words, and the labels, with -1 for one that moves down."""
+    """A drawing that grows; a label that moves down in favour of others has -1 beside it."""
 
     axes: Any
     scene: Scene

@@ -35,14 +35,9 @@ NAMES = {
 
 
 def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
-    """Return the segments of a support's symbol.
+    """Return the segments of the symbol of a support by what it holds, a key of `NAMES`.
 
-    Parameters
-    ----------
-    held : tuple of str
-        The components held, a key of `NAMES`.
-    away : ndarray, shape (2,)
-        Unit vector from the support into its beam; the ground is on the other side.
+    The unit vector `away` (2,) points from the support into its beam; the ground is on the other side.
     """
     return turned(_SHAPES[held], _up(held, away))
 
@@ -67,17 +62,7 @@ def placed(segments: Segments, at: Array, size: float) -> Segments:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Symbol:
-    """The symbol of what holds or releases a beam's end.
-
-    Attributes
-    ----------
-    item : SupportSpec, SpringSpec or HingeSpec
-        What it shows.
-    words : str
-        What it is, for a legend.
-    segments : ndarray, shape (n, 2, 2)
-        Line segments of unit size about the node.
-    """
+    """The symbol of what is at a beam's end: segments (n, 2, 2) of unit size about the node, and its words."""
 
     item: SupportSpec | SpringSpec | HingeSpec
     words: str
@@ -111,18 +96,10 @@ def end_symbols(scene: Scene) -> list[Symbol]:
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols of supports, springs and hinges where their ends are, and return their entries in a legend.
+    """Draw the symbols of supports, springs and hinges at their ends; return their entries in a legend.
 
-    Parameters
-    ----------
-    axes : Axes
-        Where they are drawn; it reaches around them.
-    scene : Scene
-        Its supports, springs and hinges.
-    lines : mapping of ndarray, shape (m, 2)
-        The deformed axes, by beam.
-    size : float
-        Size of a symbol [length].
+    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach
+    around the symbols.
     """
     from matplotlib.collections import LineCollection
 
@@ -141,14 +118,9 @@ def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
 
 
 def spring_symbol(component: str, away: Array) -> Segments:
-    """Return the segments of a spring against x, y or the rotation, with the ground on the side away from the beam.
+    """Return the segments of a spring against one of `COMPONENTS`; the ground is away from the beam.
 
-    Parameters
-    ----------
-    component : str
-        One of `COMPONENTS`.
-    away : ndarray, shape (2,)
-        Unit vector from the spring into its beam.
+    The unit vector `away` (2,) points from the spring into its beam.
     """
     if component == "rotation":
         angle = np.linspace(0.0, 4.0 * np.pi, 41)

@@ -1,7 +1,8 @@
 """VTK's XML files, both ways: a grid by meshio, a set of named blocks, a series over the load parameters.
 
-Every field has its unit as VTK's information key ``UNITS_LABEL``, and a set of blocks has the list of all units as the field data
-`units`. The names of fields have no unit, so that one script reads the files of scenes in other units.
+Every field has its unit as VTK's information key ``UNITS_LABEL``, and a set of blocks has the list of all
+units as the field data `units`. The names of fields have no unit, so that one script reads the files of
+scenes in other units.
 """
 
 import re
@@ -21,7 +22,7 @@ ARRAY = re.compile(r'(<DataArray [^>]*Name="(\w+)"[^>]*>[^<]*)</DataArray>')
 
 
 def write_grid(path: Path, grid: Grid, units: Mapping[str, str]) -> None:
-    """Write a grid with its undeformed points as a VTU file, with the units of its fields by name; what is plane gets a zero third component."""
+    """Write a grid, undeformed, as a VTU file with the units of its fields by name; the third component is 0."""
     from meshio import Mesh, vtu
 
     data = {name: _in_space(values) for name, values in grid.point_data.items()}
@@ -64,7 +65,7 @@ def read_grid(path: Path) -> Grid:
 
 
 def write_blocks(path: Path, files: Mapping[str, str], units: Mapping[str, str]) -> None:
-    """Write a set of blocks as a VTM file: VTU files by the names of the blocks, and the units of all fields."""
+    """Write a VTM file: VTU files by the names of their blocks, and the units of all fields."""
     words = [f"{name} [{unit}]" for name, unit in units.items()]
     codes = " ".join(str(code) for word in words for code in (*word.encode(), 0))
     sets = (
@@ -86,7 +87,7 @@ def _write(path: Path, kind: str, sets: Iterable[str], more: str = "") -> None:
 
 
 def read_entries(path: Path, attribute: str) -> list[tuple[str, Path]]:
-    """Return an attribute and the file of every entry of a PVD or VTM file; `OutputError` if it cannot be read."""
+    """Return an attribute and the file of every entry of a PVD or VTM file; it may raise `OutputError`."""
     try:
         return [
             (one.attrib[attribute], path.parent / one.attrib["file"]) for one in _parsed(path).iter("DataSet")

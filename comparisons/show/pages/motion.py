@@ -29,14 +29,10 @@ INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Track:
-    """A quantity over the load parameters.
+    """A quantity over s load parameters: values (s,) by the label of the run, nan where it has none.
 
-    Attributes
-    ----------
-    title, unit, error_title : str
-        What it is; what its errors are.
-    values, errors : dict of ndarray, shape (s,)
-        By the label of the run, nan where it has none; distance from the reference, empty without one.
+    The `errors` (s,) are the distance from the reference, empty without one, and `error_title` says what they
+    are.
     """
 
     title: str
@@ -47,18 +43,10 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return forces, arc positions, moments and frictions over the load parameters, with the errors of `comparisons.errors`.
+    """Return forces, arc positions, moments and frictions, with errors against the label `reference`.
 
-    A scene without contact has the forces of its supports. What vanishes in all responses is left out.
-
-    Parameters
-    ----------
-    responses : mapping of Response
-        By label.
-    reference : str
-        The label whose values the errors are against.
-    scene : Scene
-        The scene of the responses.
+    The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
+    vanishes in all responses is left out.
     """
     force, length = _units(scene)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
@@ -120,22 +108,10 @@ def motion_section(
     focus: str,
     vtu: Mapping[str, str] | None = None,
 ) -> Section:
-    """Return a section with the deformed axes of all runs under a slider, switches for each run, and histories.
+    """Return a section with the deformed axes under a slider, a switch for each run, and histories.
 
-    Parameters
-    ----------
-    title : str
-        Heading.
-    scene : Scene
-        Gives pins and units.
-    responses : mapping of Response
-        By label, which begins with a model's name.
-    shown : sequence of Track
-        The histories.
-    focus : str
-        The label of the run whose tip is shown enlarged.
-    vtu : mapping of str
-        Path of the VTU files of the load parameters, by label. ``{}`` in it is replaced by the number of the load parameter, from 1.
+    The labels of runs begin with a model's name. The tip of the run `focus` is enlarged. `vtu` has the path
+    of the VTU files by label; ``{}`` in it is replaced by the number of the load parameter, from 1.
     """
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
@@ -189,7 +165,7 @@ def motion_section(
 
 
 def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
-    """Return the axis of a beam at load parameter number k, at the last one where the response has stopped; before the first, its ends."""
+    """Return the axis of a beam at load parameter number k or the last one reached; its ends before that."""
     last = min(k, len(response.load_parameter) - 1)
     if last >= 0:
         return response.axis_line(beam, last)[1]
@@ -239,7 +215,8 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
             columns.append((number, "errors", "error", f"{track.title}, {track.error_title}"))
     charts = "\n".join(
         f'<figure><figcaption>{text(title)}</figcaption><svg class="chart" data-track="{number}" '
-        f'data-kind="{kind}" tabindex="0" role="img" aria-label="{text(title)} against the load parameter"></svg></figure>'
+        f'data-kind="{kind}" tabindex="0" role="img" aria-label="{text(title)} against the load parameter">'
+        "</svg></figure>"
         for number, kind, _, title in columns
     )
     head = "".join(f'<th scope="col">{text(name)}</th>' for name in ("model", *(one[2] for one in columns)))

@@ -1,4 +1,4 @@
-"""The page: style, script, data and sections in one file that loads nothing; and the pieces of HTML in a section."""
+"""The page: style, script, data and sections in one file that loads nothing; pieces of HTML."""
 
 import base64
 import json
@@ -23,16 +23,10 @@ TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """A part of a page.
+    """A part of a page: its heading, which no other section has, and the markup below it.
 
-    Attributes
-    ----------
-    title : str
-        Heading; no two sections of a page have the same.
-    html : str
-        Markup below the heading.
-    data : object
-        What a script shows: JSON's types, arrays or records. A script finds it as ``DATA[ident]``.
+    The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
+    ``DATA[ident]``.
     """
 
     title: str
@@ -46,19 +40,9 @@ class Section:
 
 
 def page(title: str, lead: str, sections: Sequence[Section]) -> str:
-    """Return sections as one HTML file without external resources.
+    """Return sections as one HTML file without external resources, below a title and a lead in plain text.
 
-    Parameters
-    ----------
-    title, lead : str
-        Heading and the sentence below it, plain text.
-    sections : sequence of Section
-        In their order.
-
-    Raises
-    ------
-    ValueError
-        If two sections have one title.
+    Two sections of one title raise `ValueError`.
     """
     idents = [section.ident for section in sections]
     if len(set(idents)) < len(idents):
@@ -92,12 +76,8 @@ def write_page(folder: Path, title: str, lead: str, sections: Sequence[Section])
 def provenance(scenes: Iterable[Scene], files: Iterable[Path], folder: Path) -> list[Section]:
     """Return the sections that close every page: input, versions and machine, files.
 
-    Parameters
-    ----------
-    scenes : iterable of Scene
-        The input; each opens on demand as its scene file.
-    files : iterable of Path
-        Linked relative to `folder`, where the page is.
+    Each scene opens on demand as its scene file. The files are linked relative to `folder`, where the page
+    is.
     """
     inputs = (
         folded(f"{scene.name}.toml", f'<pre tabindex="0"><code>{text(to_toml(scene))}</code></pre>')
