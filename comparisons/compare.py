@@ -28,9 +28,9 @@ from comparisons.show.budget_plot import plot_budget, write_budget
 from comparisons.show.compare_report import write_comparison_page
 from comparisons.show.export import check_series, write_series
 from comparisons.show.findings import BUDGET
+from comparisons.show.panel import mises_panel
 from comparisons.show.plot import nearest_steps, plot_shapes
 from comparisons.show.render import render_panels
-from comparisons.show.stress import beam_panel, solid_panel
 from comparisons.show.table import Row, table_csv
 from comparisons.version import versions
 from tsm.elements import TIMOSHENKO, ElementType
@@ -321,8 +321,8 @@ def _write_picture(scene: Scene, responses: dict[str, Response], folder: Path, r
     ks = nearest_steps(both[0].load_parameter[:reached], scene.times[-1])
     times = ", ".join(f"{both[0].load_parameter[k]:.3g}" for k in ks)
     panels = [
-        beam_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),
-        solid_panel(both[1], scene, ks, f"{SOLID.label}\nt = {times}"),
+        mises_panel(both[0], scene, ks, f"{MIXED.label}\nt = {times}"),
+        mises_panel(both[1], scene, ks, f"{SOLID.label}\nt = {times}"),
     ]
     force, length = (unit.strip() for unit in scene.units.split(","))
     path = folder / "side-by-side.png"

@@ -20,13 +20,12 @@ class Extra(NamedTuple):
 
 EXTRAS = {
     "pyvista": Extra("view", "pictures and windows by VTK; matplotlib draws instead"),
-    "meshio": Extra("io", "mesh files of the solid, and crossval view of a folder"),
     "distributed": Extra("cluster", "studies on a Dask cluster (--cluster)"),
     "openseespy": Extra("peers", "--model opensees"),
     "exudyn": Extra("peers", "--model exudyn"),
     "felupe": Extra("peers", "--model felupe"),
 }
-"""By library. A plain installation has those of `view` and `io`."""
+"""By library. A plain installation has that of `view`."""
 
 
 def install(library: str) -> str:

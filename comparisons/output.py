@@ -37,15 +37,19 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]]) -> Path:
 
 def tabulated(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return rows of equal keys as aligned text: numbers with three digits, a dash for a missing value."""
-    cells = [list(rows[0]), *([_cell(value) for value in row.values()] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    return "\n".join(
-        "  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)).rstrip()
-        for line in cells
-    )
+    return "\n".join(aligned([list(rows[0]), *(list(map(cell, row.values())) for row in rows)]))
 
 
-def _cell(value: Any) -> str:
+def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[str]:
+    """Return rows of cells as lines with columns of equal width, to the left or to the `right`."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    sides = [str.rjust if one else str.ljust for one in right or (False,) * len(widths)]
+    lines = (zip(sides, row, widths, strict=True) for row in rows)
+    return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
+
+
+def cell(value: Any) -> str:
+    """Return a value as text: a number in three digits, what is not there as a dash."""
     return "-" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from comparisons.cli.outcome import Commands
     from comparisons.response import Response
     from comparisons.scene import Scene
-    from comparisons.show.view import Series
+    from comparisons.show.export import Series
 
 BEAMS = Options(elements=20)
 
@@ -51,26 +51,20 @@ def add_to(commands: "Commands") -> None:
 
 def run(given: "argparse.Namespace") -> int:
     """Solve or read, then show or write."""
+    from comparisons.show.export import read_series, solved_series
+
     folder = Path(given.what)
     if folder.is_dir():
         if given.mesh is not None:
             raise ModelError("--mesh: belongs to a scene, not to a folder")
         out = _target(given.out, folder.resolve().name)
-        from comparisons.show.view import read_series
-
         return _present(read_series(folder), given.scale, out)
     scene = load_scene(given.what)
     out = _target(given.out, scene.name)
-    responses = _solve(scene, given)
-    from comparisons.show.view import solved_series
-
-    series = [
-        solved_series(response, scene, title) for title, response in responses if len(response.load_parameter)
-    ]
-    status = exit_status(scene, [(f"{title}: ", response) for title, response in responses])
-    if not series:
-        return status
-    return max(status, _present(series, given.scale, out))
+    found = _solve(scene, given)
+    series = [solved_series(one, scene, title) for title, one in found if len(one.load_parameter)]
+    status = exit_status(scene, [(f"{title}: ", response) for title, response in found])
+    return max(status, _present(series, given.scale, out)) if series else status
 
 
 def _target(out: Path | None, name: str) -> Path | None:
@@ -87,28 +81,26 @@ def _solve(scene: "Scene", given: "argparse.Namespace") -> "list[tuple[str, Resp
     from comparisons.models import solve
 
     found = []
-    for title, model, options in (
-        (TSM.label, TSM.name, BEAMS),
-        (SOLID.label, SOLID.name, Options(mesh=given.mesh)),
-    ):
-        report(f"solving: {title}")
+    for model, options in ((TSM, BEAMS), (SOLID, Options(mesh=given.mesh))):
+        report(f"solving: {model.label}")
         try:
-            with watching(title) as watch:
-                found.append((title, solve(scene, model, options, watch)))
+            with watching(model.label) as watch:
+                found.append((model.label, solve(scene, model.name, options, watch)))
         except ModelError as error:
-            if model == TSM.name:
+            if model is TSM:
                 raise
-            report(f"{title}: left out, {error}")
+            report(f"{model.label}: left out, {error}")
     return found
 
 
 def _present(series: "list[Series]", factor: float, out: Path | None) -> int:
-    from comparisons.show.view import film, show, write
+    from comparisons.show.film import film, write
+    from comparisons.show.render import show_frames
 
     shown = film(series, factor)
     if out is None:
         report("opening a window")
-        if not show(shown):
+        if not show_frames(shown.frames, shown.scale):
             raise OutputError("no window could be opened; --out DIR writes pictures instead")
         return DONE
     with staging(f"drawing {len(shown.frames)} pictures") as count:

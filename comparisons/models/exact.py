@@ -17,7 +17,8 @@ from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Watch, unwatched
 from comparisons.models.rod import ELASTICA, ROD
 from comparisons.models.translate import RodScene, to_rod
-from comparisons.response import Array, ContactHistory, Grid, Response, SupportHistory
+from comparisons.response import Array, ContactHistory, Response, SupportHistory
+from comparisons.response.axis import axis_grid
 from comparisons.scene import Scene, unstated
 from comparisons.scene.ends import BeamEnd
 from comparisons.scene.keys import ONE_ROD
@@ -144,13 +145,6 @@ def local_response(
         arc, line = np.linspace(0.0, length, POINTS), local.position(states.shape(k))
         return (arc, line[::-1]) if local.from_end else (arc, line)
 
-    def grid(k: int) -> Grid:
-        arc, line = axis_line(name, k)
-        points = np.outer(1.0 - arc / length, local.beam.start) + np.outer(arc / length, local.beam.end)
-        cells = np.stack([np.arange(POINTS - 1), np.arange(1, POINTS)], axis=1)
-        data = {"displacement": line - points, "deformed": line, "beam": np.zeros(POINTS)}
-        return Grid(points=points, cells={"line": cells}, point_data=data)
-
     support = SupportHistory(
         force=-local.vector(states.force[:reached]), moment=local.moment(states.clamp_moment[:reached])
     )
@@ -169,7 +163,7 @@ def local_response(
         unknowns=unknowns,
         wall_seconds=seconds,
         axis_line=axis_line,
-        grid=grid,
+        grid=lambda k: axis_grid(scene, axis_line, k),
     )
 
 

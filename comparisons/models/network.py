@@ -15,11 +15,11 @@ from comparisons.response import (
     Array,
     ContactHistory,
     FrictionHistory,
-    Grid,
     Response,
     Sections,
     SupportHistory,
 )
+from comparisons.response.axis import axis_grid
 from comparisons.scene import Scene
 
 POINTS = 401
@@ -60,6 +60,11 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
             break
         states.append(item.exact)
     friction = _frictions(scene, followed, states)
+
+    def axis_line(beam: str, k: int) -> tuple[Array, Array]:
+        arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
+        return arc, states[k].shape(beam, arc).position
+
     sound = found.verdict in (Verdict.CERTIFIED, Verdict.NOT_JUDGED) or not found.judged
     return replace(
         followed,
@@ -81,8 +86,8 @@ def solve_network(scene: Scene, model: str, watch: Watch = unwatched) -> Respons
         newton_iterations=np.array([state.iterations for state in states], dtype=np.int64),
         cutbacks=0,
         unknowns=max((len(state.solution.z) for state in states), default=0),
-        axis_line=lambda beam, k: _axis(scene, beam, states[k]),
-        grid=lambda k: _grid(scene, states[k]),
+        axis_line=axis_line,
+        grid=lambda k: axis_grid(scene, axis_line, k),
         events=None,
         integration_error=0.0,
         deformation=None,
@@ -146,11 +151,6 @@ def _supports(scene: Scene, states: States) -> dict[str, SupportHistory]:
     return {node: SupportHistory(force=table[:, :2], moment=table[:, 2]) for node, table in tables.items()}
 
 
-def _axis(scene: Scene, beam: str, state: Equilibrium) -> tuple[Array, Array]:
-    arc = np.linspace(0.0, scene.beam(beam).length, POINTS)
-    return arc, state.shape(beam, arc).position
-
-
 def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:
     """Return the section forces, from both sides of the contacts, where they jump."""
     length, pairs = scene.beam(beam).length, [spec.pair for spec in scene.contacts if spec.beam == beam]
@@ -159,24 +159,3 @@ def _sections(scene: Scene, beam: str, state: Equilibrium) -> Sections:
     arc = np.unique(np.concatenate([np.linspace(0.0, length, POINTS), sides]))
     shape = state.shape(beam, arc)
     return Sections(arc=arc, N=shape.N, V=shape.Q, M=shape.moment)
-
-
-def _grid(scene: Scene, state: Equilibrium) -> Grid:
-    """Return the axes as lines."""
-    references, deformed, lines = [], [], []
-    for number, beam in enumerate(scene.beams):
-        arc, line = _axis(scene, beam.name, state)
-        references.append(np.array([beam.place(part) for part in arc / beam.length]))
-        deformed.append(line)
-        first = number * POINTS + np.arange(POINTS - 1)
-        lines.append(np.stack([first, first + 1], axis=1))
-    points, places = np.concatenate(references), np.concatenate(deformed)
-    return Grid(
-        points=points,
-        cells={"line": np.concatenate(lines)},
-        point_data={
-            "displacement": places - points,
-            "deformed": places,
-            "beam": np.repeat(np.arange(len(scene.beams)), POINTS),
-        },
-    )

@@ -1,12 +1,13 @@
 """Deformed axes, sampled at fixed stations for comparison and storage."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
 import numpy as np
 
-from comparisons.response.record import Array, Response
+from comparisons.response.record import Array, Grid, Response
+from comparisons.scene import Scene
 
 STATIONS = np.linspace(0.0, 1.0, 101)
 """Arc lengths of the stations, over the length of the beam."""
@@ -64,6 +65,23 @@ def sampled_axes(response: Response) -> SampledAxes:
         arc_length={beam: _stations(arc) for beam, arc in arcs.items()},
         position={beam: axes_at_stations(response, beam, steps) for beam in arcs},
     )
+
+
+def axis_grid(scene: Scene, axis_line: Callable[[str, int], tuple[Array, Array]], k: int) -> Grid:
+    """Return the axes of all beams at load parameter k as lines, with their displacements."""
+    found = [axis_line(beam.name, k) for beam in scene.beams]
+    counts = [len(arc) for arc, _ in found]
+    points = np.array(
+        [
+            beam.place(part)
+            for beam, (arc, _) in zip(scene.beams, found, strict=True)
+            for part in (arc / beam.length).tolist()
+        ]
+    )
+    deformed, beams = np.concatenate([line for _, line in found]), np.repeat(np.arange(len(found)), counts)
+    first = np.flatnonzero(beams[:-1] == beams[1:])
+    data = {"displacement": deformed - points, "deformed": deformed, "beam": beams}
+    return Grid(points=points, cells={"line": np.stack([first, first + 1], axis=1)}, point_data=data)
 
 
 def storable(response: Response, *, axes: bool = True) -> Response:

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from comparisons.output import aligned
 from comparisons.response.along import ALONG, FIRST, Extreme, extremes_along
 from comparisons.response.events import SLIP_OFF, event_words, last_force, opening, peak_force
 from comparisons.response.record import ContactHistory, Response
 from comparisons.response.round_off import RoundOff, round_off
 from comparisons.response.table import unit_names
+from comparisons.scene import SpringSpec, SupportSpec
 
 PLAIN = dict.fromkeys(("force", "length", "moment", "energy", "stress"), "")
 WORDS = {
@@ -135,64 +137,51 @@ class _Page:
     def with_unit(self, value: float, kind: str) -> str:
         return f"{self.number(value, kind)} {self.units[kind]}".rstrip()
 
+    def numbers(self, kind: str, *values: float) -> Row:
+        return tuple(self.number(value, kind) for value in values)
+
+    def columns(self, kind: str, *names: str) -> Row:
+        return tuple(self.named(name, kind) for name in names)
+
     def reactions(self) -> Block:
-        scene = self.scene
-        held = {} if scene is None else {item.node: ", ".join(item.held) for item in scene.all_supports}
-        held |= (
-            {} if scene is None else {f"{item.node}, spring": ", ".join(item.held) for item in scene.springs}
+        items: list[SupportSpec | SpringSpec] = []
+        if self.scene is not None:
+            items += [*self.scene.all_supports, *self.scene.springs]
+        held = {(item.node, type(item)): ", ".join(item.held) for item in items}
+        rows, whole = [], np.zeros(2)
+        sides = (
+            ("", SupportSpec, self.response.supports),
+            (", spring", SpringSpec, self.response.springs),
         )
-        last = {
-            node: (*support.force[-1], support.moment[-1]) for node, support in self.response.supports.items()
-        }
-        springs = self.response.springs.items()
-        last |= {f"{node}, spring": (*spring.force[-1], spring.moment[-1]) for node, spring in springs}
-        rows = [
-            (
-                node,
-                held.get(node, ""),
-                self.number(x, "force"),
-                self.number(y, "force"),
-                self.number(m, "moment"),
-            )
-            for node, (x, y, m) in last.items()
-        ]
+        for what, kind, reactions in sides:
+            for node, one in reactions.items():
+                numbers = (*self.numbers("force", *one.force[-1]), *self.numbers("moment", one.moment[-1]))
+                rows.append((f"{node}{what}", held.get((node, kind), ""), *numbers))
+                whole += one.force[-1]
         if len(rows) > 1:
-            x, y = (sum(values[i] for values in last.values()) for i in (0, 1))
-            rows.append(("sum", "", self.number(x, "force"), self.number(y, "force"), ""))
-        columns = (
-            "support",
-            "holds",
-            self.named("x", "force"),
-            self.named("y", "force"),
-            self.named("moment", "moment"),
-        )
+            rows.append(("sum", "", *self.numbers("force", *whole), ""))
+        columns = ("support", "holds", *self.columns("force", "x", "y"), self.named("moment", "moment"))
         return Block(title=f"Reactions on the beams {self.now}", columns=columns, rows=rows)
 
     def contacts(self) -> Block:
         contacts = self.response.contacts
         rubbed = any(contact.friction is not None for contact in contacts.values())
-        columns = [
-            "contact", "state", self.named("force", "force"), self.named("x", "force"), self.named("y", "force"),
-            self.named("arc position", "length"),
-        ]  # fmt: skip
+        columns = ("contact", "state", *self.columns("force", "force", "x", "y"))
+        columns += self.columns("length", "arc position")
         if rubbed:
-            columns += [self.named(name, "force") for name in ("tangential", "normal")]
-            columns += [self.named("dissipated", "energy")]
+            columns += (*self.columns("force", "tangential", "normal"), *self.columns("energy", "dissipated"))
         rows = [self._contact(pair, contact, rubbed=rubbed) for pair, contact in contacts.items()]
-        return Block(title=f"Contact forces on the beams {self.now}", columns=tuple(columns), rows=rows)
+        return Block(title=f"Contact forces on the beams {self.now}", columns=columns, rows=rows)
 
     def _contact(self, pair: str, contact: ContactHistory, *, rubbed: bool) -> Row:
         x, y = (np.nan, np.nan) if contact.vector is None else contact.vector[-1]
-        row = [pair, self._state(pair, contact), self.number(contact.force[-1], "force")]
-        row += [self.number(x, "force"), self.number(y, "force")]
-        row += [self.number(contact.arc_position[-1], "length")]
+        row = (pair, self._state(pair, contact), *self.numbers("force", contact.force[-1], x, y))
+        row += self.numbers("length", contact.arc_position[-1])
         friction = contact.friction
-        if friction is not None:
-            row += [self.number(values[-1], "force") for values in (friction.tangential, friction.normal)]
-            row += [self.number(friction.dissipated[-1], "energy")]
-        elif rubbed:
-            row += ["", "", ""]
-        return tuple(row)
+        if friction is None:
+            return row + ("", "", "") * rubbed
+        row += self.numbers("force", friction.tangential[-1], friction.normal[-1])
+        return row + self.numbers("energy", friction.dissipated[-1])
 
     def _state(self, pair: str, contact: ContactHistory) -> str:
         if contact.force[-1] != 0.0 or np.isfinite(contact.arc_position[-1]):
@@ -206,18 +195,16 @@ class _Page:
         return "never touched" if last is None else f"open after {last.load_parameter:.6g}"
 
     def tips(self) -> Block:
-        rows = []
+        rows, names = [], ["x", "y"]
         for beam, tip in self.response.tips.items():
-            row = [
-                beam if self.scene is None else f"{beam}.{self.scene.tip(beam)}",
-                *(self.number(value, "length") for value in tip[-1]),
-            ]
+            name, numbers = beam, tip[-1]
             if self.scene is not None:
-                rest = self.scene.place(f"{beam}.{self.scene.tip(beam)}")
-                row += [self.number(value, "length") for value in tip[-1] - rest]
-            rows.append(tuple(row))
-        names = ("x", "y") if self.scene is None else ("x", "y", "displacement x", "displacement y")
-        columns = ("tip", *(self.named(name, "length") for name in names))
+                name = f"{beam}.{self.scene.tip(beam)}"
+                numbers = np.append(tip[-1], tip[-1] - self.scene.place(name))
+            rows.append((name, *self.numbers("length", *numbers)))
+        if self.scene is not None:
+            names += ["displacement x", "displacement y"]
+        columns = ("tip", *self.columns("length", *names))
         return Block(title=f"Tips {self.now}", columns=columns, rows=rows)
 
     def extremes(self) -> Block:
@@ -262,30 +249,21 @@ class _Page:
         return f"{beam}, arc position {arc:.{PLACE}g} {self.units['length']}"
 
     def events(self) -> Block:
-        events = self.response.events or ()
-        described = [(event, event_words(event, self.with_unit)) for event in events]
-        rows = [
-            (f"{event.load_parameter:.6g}", *([f"{event.stage}"] if self.staged else []), words)
-            for event, words in described
-            if words
-        ]
-        columns = ("load parameter", *(["stage"] if self.staged else []), "")
+        rows = []
+        for event in self.response.events or ():
+            words = event_words(event, self.with_unit)
+            if words:
+                stage = (f"{event.stage}",) * self.staged
+                rows.append((f"{event.load_parameter:.6g}", *stage, words))
+        columns = ("load parameter", *("stage",) * self.staged, "")
         return Block(title="Events", columns=columns, rows=rows)
 
 
 def _lines(block: Block, scene: str) -> str:
     """Return a table as lines: columns of numbers to the right, the others to the left."""
-    rows = [block.columns, *block.rows] if block.columns else list(block.rows)
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    right = [_numeric(column) for column in zip(*block.rows, strict=True)]
-    lines = [
-        "  ".join(
-            cell.rjust(width) if numeric else cell.ljust(width)
-            for cell, width, numeric in zip(row, widths, right, strict=True)
-        )
-        for row in rows
-    ]
-    return "\n".join([block.title or scene, *(f"  {line}".rstrip() for line in lines)])
+    rows = [block.columns, *block.rows] if block.columns else block.rows
+    lines = aligned(rows, [_numeric(column) for column in zip(*block.rows, strict=True)])
+    return "\n".join([block.title or scene, *(f"  {line}" for line in lines)])
 
 
 def _numeric(cells: Sequence[str]) -> bool:

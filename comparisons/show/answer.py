@@ -13,7 +13,7 @@ from comparisons.response.table import unit_names
 from comparisons.scene import Scene
 from comparisons.scene.stages import LoadHistory
 from comparisons.show import palette
-from comparisons.show.plot import WIDTH, figure, save
+from comparisons.show.plot import WIDTH, arrow, figure, ribbon, save
 from comparisons.show.symbols import draw_symbols
 from comparisons.version import release
 
@@ -104,17 +104,15 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     for number, beam in enumerate(scene.beams):
         arc, line = lines[beam.name]
         undeformed = np.array([beam.place(part) for part in np.linspace(0.0, 1.0, 41)])
-        axes.plot(
-            *undeformed.T,
-            color="0.6",
-            linewidth=0.9,
-            linestyle="--",
-            label="undeformed" if not number else None,
+        dashed: dict[str, Any] = {"color": "0.6", "linewidth": 0.9, "linestyle": "--"}
+        axes.plot(*undeformed.T, label=None if number else "undeformed", **dashed)
+        colour, tangent = COLOURS[number % len(COLOURS)], np.gradient(line, axis=0)
+        normal = (
+            np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+            / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
         )
-        colour = COLOURS[number % len(COLOURS)]
-        axes.fill(
-            *_outline(arc, line, beam.height_at, beam.length).T, color=colour, alpha=0.35, linewidth=0.0
-        )
+        height = np.array([beam.height_at(min(s / beam.length, 1.0)) for s in arc])
+        axes.fill(*ribbon(line, normal, height).T, color=colour, alpha=0.35, linewidth=0.0)
         axes.plot(*line.T, color=colour, linewidth=1.6, label=beam.name)
     symbols = draw_symbols(axes, scene, {name: line for name, (_, line) in lines.items()}, SYMBOL * extent)
     for pin in scene.pins:
@@ -127,26 +125,15 @@ def _shape(axes: "Axes", response: Response, scene: Scene, k: int) -> None:
     axes.set(xlabel=f"x [{units['length']}]", ylabel=f"y [{units['length']}]")
     axes.grid(visible=True, linewidth=0.3)
     handles, labels = axes.get_legend_handles_labels()
-    entries = ([*handles, *symbols.values()], [*labels, *symbols])
-    axes.legend(
-        *entries,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.17),
-        fontsize="x-small",
-        frameon=False,
-        ncols=5,
-        labelspacing=1.2,
-    )
-
-
-def _outline(arc: Array, line: Array, height_at: Any, length: float) -> Array:
-    """Return the faces of a beam as a polygon: half the height beside its axis."""
-    tangent = np.gradient(line, axis=0)
-    normal = (
-        np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
-    )
-    half = 0.5 * np.array([height_at(min(s / length, 1.0)) for s in arc])[:, None]
-    return np.concatenate([line + half * normal, (line - half * normal)[::-1]])
+    short = {words.partition(" of ")[0]: entry for words, entry in symbols.items()}
+    entries = ([*handles, *short.values()], [*labels, *short])
+    place: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.17),
+        "ncols": 5,
+        "labelspacing": 1.2,
+    }
+    axes.legend(*entries, fontsize="x-small", frameon=False, **place)
 
 
 def _pin(axes: "Axes", at: Array, radius: float | None, name: str) -> None:
@@ -192,19 +179,10 @@ def _arrows(
         if np.hypot(*force) <= 1e-6 * largest:
             continue
         tail = at - ARROW * extent * force / largest
-        arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", (at[0], at[1]), (tail[0], tail[1]), arrowprops=arrow, zorder=6)
-        axes.update_datalim([tail])
+        arrow(axes, tail, at, colour, 1.3)
         if words not in shown:
-            axes.annotate(
-                words,
-                (tail[0], tail[1]),
-                (3, 3),
-                textcoords="offset points",
-                color=colour,
-                fontsize="x-small",
-                zorder=6,
-            )
+            place: dict[str, Any] = {"xytext": (3, 3), "textcoords": "offset points", "zorder": 6}
+            axes.annotate(words, (tail[0], tail[1]), color=colour, fontsize="x-small", **place)
         shown.add(words)
     for colour, words in ((palette.PIN, "contact force on the beam"), (palette.BLACK, "load")):
         if any(own == colour for _, _, own, _ in found):

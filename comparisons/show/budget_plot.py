@@ -28,9 +28,8 @@ def plot_budget(budget: Budget, *paths: Path) -> None:
     for axes in panels[len(budget.total) :]:
         axes.set_axis_off()
     for axes, quantity in zip(panels, budget.total, strict=False):
-        axes.use_sticky_edges = (
-            False  # the limits would lie on the edge of a thin part, and cut the parts beyond it
-        )
+        # the limits would lie on the edge of a thin part, and cut the parts beyond it
+        axes.use_sticky_edges = False
         _stack(axes, budget, quantity)
         kind, _, column = quantity.partition(" ")
         axes.set_title(f"{kind.replace('_', ' ')}\n{column}".strip(), fontsize="medium")
@@ -50,17 +49,8 @@ def _stack(axes: Any, budget: Budget, quantity: str) -> None:
     for (name, values), colour, hatch in zip(budget.parts[quantity].items(), COLOURS, HATCHES, strict=True):
         height = 100.0 * np.nan_to_num(values)
         bottom = np.where(height >= 0.0, above, below)
-        axes.bar(
-            places,
-            height,
-            bottom=bottom,
-            width=0.6,
-            color=colour,
-            label=name,
-            hatch=hatch,
-            edgecolor="0.25",
-            linewidth=0.0,
-        )
+        style = {"color": colour, "hatch": hatch, "edgecolor": "0.25", "linewidth": 0.0, "width": 0.6}
+        axes.bar(places, height, bottom=bottom, label=name, **style)
         above, below = above + np.maximum(height, 0.0), below + np.minimum(height, 0.0)
     total = 100.0 * budget.total[quantity]
     axes.hlines(total, places - 0.4, places + 0.4, colors="black", linewidth=1.8, label="difference")
@@ -72,14 +62,13 @@ def _stack(axes: Any, budget: Budget, quantity: str) -> None:
 
 def write_budget(budget: Budget, path: Path) -> None:
     """Write the budget's numbers and what each part measures."""
+    rests = [float(np.nanmax(np.abs(budget.rest(quantity)))) for quantity in budget.total]
     numbers = {
         "scene": budget.scene,
         "difference": "(q_TSM - q_solid) / q_rod",
         "load_parameters_of_the_runs": STEPS,
         "parts": PARTS,
         "rows": list(budget_rows(budget)),
-        "largest_rest_over_total": max(
-            float(np.nanmax(np.abs(budget.rest(quantity)))) for quantity in budget.total
-        ),
+        "largest_rest_over_total": max(rests),
     }
     write_numbers(path, numbers)

@@ -23,6 +23,10 @@ from comparisons.show.table import HEADER, Row, cells
 
 EXACT = ROD.run_label(Options())
 """Label of the run of the exact rod, to which all others are compared."""
+ERRORS = (
+    f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
+    "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
+)
 
 
 def write_comparison_page(
@@ -34,24 +38,22 @@ def write_comparison_page(
     folder: Path,
     left_out: Mapping[str, str],
 ) -> Path:
-    """Write ``report.html`` to `folder`, with what is in `files` there; return its path.
+    """Write ``report.html`` to `folder` and return its path.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        All runs.
-    budget : Budget or None
-        None if there is none.
-    files : sequence of Path
-        What else the comparison wrote.
-    series : mapping of Path
-        The exported series of VTU files, by the label of the run.
-    left_out : mapping of str
-        Why a run or the budget is left out, as `comparisons.show.findings.findings` takes it.
+    `files` are what else the comparison wrote, `series` the exported series of VTU files by the label of the
+    run, and `left_out` the reasons that `findings` takes.
     """
-    lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
-    sections = [_errors(rows), _motion(scene, rows, series, folder)]
-    states = states_section({row.label: row.response for row in rows})
+    responses = {row.label: row.response for row in rows}
+    vtu = {
+        label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
+        for label, path in series.items()
+    }
+    shown = tracks(responses, EXACT, scene)
+    sections = [
+        Section(title="Errors", html=table(ERRORS, HEADER, map(cells, rows))),
+        motion_section("Shapes and histories", scene, responses, shown, focus=EXACT, vtu=vtu),
+    ]
+    states = states_section(responses)
     if states is not None:
         sections.append(states)
     if budget is not None:
@@ -60,30 +62,8 @@ def write_comparison_page(
         stress = picture(folder / "side-by-side.png", "Beams and solid, von Mises stress.")
         sections.append(Section(title="Stress", html=stress))
     sections += provenance([scene], files, folder)
+    lead = " ".join(findings(scene, rows, EXACT, budget, left_out))
     return write_page(folder, f"{scene.name}: beams, solid and exact answers", lead, sections)
-
-
-def _errors(rows: Sequence[Row]) -> Section:
-    caption = (
-        f"Largest error over all load parameters against the {EXACT}; forces and moments over their largest, positions "
-        "over the length, friction over the contact forces. Newton iterations and wall seconds of the whole path."
-    )
-    return Section(title="Errors", html=table(caption, HEADER, map(cells, rows)))
-
-
-def _motion(scene: Scene, rows: Sequence[Row], series: Mapping[str, Path], folder: Path) -> Section:
-    responses = {row.label: row.response for row in rows}
-    return motion_section(
-        "Shapes and histories",
-        scene,
-        responses,
-        tracks(responses, EXACT, scene),
-        focus=EXACT,
-        vtu={
-            label: f"{path.parent.relative_to(folder).as_posix()}/{path.stem}-{{}}.vtm"
-            for label, path in series.items()
-        },
-    )
 
 
 def _budget(budget: Budget, folder: Path) -> Section:

@@ -5,16 +5,18 @@ The PVD file lists the load parameters.
 """
 
 import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from comparisons.files import alone_in, check_free, interrupts_held, move, own, staging, write_text
+from comparisons.files import OutputError, alone_in, check_free, interrupts_held, move, own, staging
 from comparisons.response import Array, Grid, Response
 from comparisons.scene import ContactSpec, Scene
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.show.symbols import inward
-from comparisons.show.vtu import blocks_text, grid_text, series_text
+from comparisons.show.vtk import read_entries, read_grid, read_units, write_blocks, write_grid, write_list
 
 CONTACTS, SUPPORTS, HINGES = POINTS = ("contact points", "support points", "hinge points")
 """Names of the blocks besides the beams; no beam has a name with a space."""
@@ -43,17 +45,15 @@ def blocks(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
 
     Every point of a beam has the index: 0 where the equilibrium is stable, -1 where it is not known.
     """
-    grid = response.grid(k)
-    found = {beam.name: _part(grid, number) for number, beam in enumerate(scene.beams)}
-    if response.index is not None:
-        for part in found.values():
-            part.point_data["index"] = np.full(len(part.points), int(response.index[k]))
-    return {**found, **nodes(response, scene, k)}
-
-
-def nodes(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
-    """Return the contacts, supports and hinges of a load parameter, as far as the scene has them."""
-    found = {}
+    grid, found = response.grid(k), {}
+    for number, beam in enumerate(scene.beams):
+        own = grid.point_data["beam"] == number
+        place = np.cumsum(own) - 1
+        cells = {kind: place[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
+        data = {name: values[own] for name, values in grid.point_data.items() if name != "beam"}
+        if response.index is not None:
+            data["index"] = np.full(own.sum(), int(response.index[k]))
+        found[beam.name] = Grid(points=grid.points[own], cells=cells, point_data=data)
     if scene.contacts:
         found[CONTACTS] = contact_points(response, scene, k)
     if scene.holding:
@@ -61,18 +61,6 @@ def nodes(response: Response, scene: Scene, k: int) -> dict[str, Grid]:
     if scene.hinges:
         found[HINGES] = hinge_points(response, scene, k)
     return found
-
-
-def _part(grid: Grid, beam: int) -> Grid:
-    """Return the part of a grid that belongs to one beam."""
-    own = grid.point_data["beam"] == beam
-    number = np.cumsum(own) - 1
-    cells = {kind: number[table[own[table[:, 0]]]] for kind, table in grid.cells.items()}
-    return Grid(
-        points=grid.points[own],
-        cells=cells,
-        point_data={name: values[own] for name, values in grid.point_data.items() if name != "beam"},
-    )
 
 
 def contact_points(response: Response, scene: Scene, k: int) -> Grid:
@@ -83,20 +71,10 @@ def contact_points(response: Response, scene: Scene, k: int) -> Grid:
     `slip` and `dissipated` of `FrictionHistory` too, nan at a contact without. A model that states no force vectors has one pair,
     whose force is the one that the supports balance.
     """
-    start = np.array([_undeformed(scene, contact) for contact in scene.contacts]).reshape(-1, 2)
-    deformed = np.array([_deformed(response, scene, contact, k) for contact in scene.contacts]).reshape(-1, 2)
+    rows = [_contact(response, scene, contact, k) for contact in scene.contacts]
+    start, deformed, beside, force = (np.array(column) for column in zip(*rows, strict=True))
     histories = [response.contacts[contact.pair] for contact in scene.contacts]
-    force = np.zeros_like(start)
-    beside = deformed - start
-    for i, (contact, history) in enumerate(zip(scene.contacts, histories, strict=True)):
-        held = sum(support.force[k] for support in response.supports.values())
-        force[i] = -held if history.vector is None else history.vector[k]
-        arc = float(history.arc_position[k])
-        if np.isfinite(arc):
-            beside[i] = _moved(response, scene, contact.beam, k, arc)
     data = {
-        "displacement": deformed - start,
-        "deformed": deformed,
         "beam_displacement": beside,
         "radius": np.array([scene.radius(contact) for contact in scene.contacts]),
         "contact_force": force,
@@ -106,7 +84,27 @@ def contact_points(response: Response, scene: Scene, k: int) -> Grid:
     if any(rubbed):
         for name in ("tangential", "normal", "slip", "dissipated"):
             data[name] = np.array([np.nan if one is None else getattr(one, name)[k] for one in rubbed])
-    return _points(start, data)
+    return _points(start, deformed, data)
+
+
+def _contact(response: Response, scene: Scene, contact: ContactSpec, k: int) -> tuple[Array, ...]:
+    """Return a contact's undeformed and deformed place, the displacement where it touches, and the force."""
+    name, _, end = contact.node.partition(".")
+    if end:
+        start, deformed = np.array(scene.place(contact.node)), _end(response, name, end, k)
+    else:
+        pin = scene.pin(name)
+        start, deformed = np.array(pin.points[0]), np.array(pin.position(float(response.load_parameter[k])))
+    history, moved = response.contacts[contact.pair], deformed - start
+    arc = float(history.arc_position[k])
+    if np.isfinite(arc):
+        stations, line = response.axis_line(contact.beam, k)
+        beam = scene.beam(contact.beam)
+        at = np.array([np.interp(arc, stations, line[:, i]) for i in (0, 1)])
+        moved = at - np.array(beam.place(arc / beam.length))
+    if history.vector is not None:
+        return start, deformed, moved, history.vector[k]
+    return start, deformed, moved, -sum((one.force[k] for one in response.supports.values()), np.zeros(2))
 
 
 def support_points(response: Response, scene: Scene, k: int) -> Grid:
@@ -116,61 +114,38 @@ def support_points(response: Response, scene: Scene, k: int) -> Grid:
     into the beam. What a model does not state is nan.
     """
     start = np.array([scene.place(one.node) for one in scene.holding])
-    displacement = np.array([_end(response, one.beam, one.end, k) for one in scene.holding]) - start
     reactions = [response.supports.get(one.node) for one in scene.all_supports]
     reactions += [response.springs.get(one.node) for one in scene.springs]
-    force = [np.full(2, np.nan) if one is None else one.force[k] for one in reactions]
-    moment = [np.nan if one is None else one.moment[k] for one in reactions]
     kinds = [1] * len(scene.all_supports) + [2] * len(scene.springs)
+    held = [[name in one.held for name in COMPONENTS] for one in scene.holding]
     data = {
-        "displacement": displacement,
-        "deformed": start + displacement,
-        "reaction_force": np.array(force),
-        "reaction_moment": np.array(moment),
-        "held": np.array(
-            [
-                [kind * (name in one.held) for name in COMPONENTS]
-                for kind, one in zip(kinds, scene.holding, strict=True)
-            ]
+        "reaction_force": np.array(
+            [np.full(2, np.nan) if one is None else one.force[k] for one in reactions]
         ),
+        "reaction_moment": np.array([np.nan if one is None else one.moment[k] for one in reactions]),
+        "held": np.array(kinds)[:, None] * np.array(held),
         "inward": np.array([inward(scene, one) for one in scene.holding]),
     }
-    return _points(start, data)
+    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in scene.holding]), data)
 
 
 def hinge_points(response: Response, scene: Scene, k: int) -> Grid:
     """Return the hinges: displacement."""
     start = np.array([scene.place(one.node) for one in scene.hinges])
-    deformed = np.array([_end(response, one.beam, one.end, k) for one in scene.hinges])
-    return _points(start, {"displacement": deformed - start, "deformed": deformed})
+    return _points(start, np.array([_end(response, one.beam, one.end, k) for one in scene.hinges]), {})
 
 
-def _points(points: Array, data: dict[str, Array]) -> Grid:
-    return Grid(points=points, cells={"vertex": np.arange(len(points)).reshape(-1, 1)}, point_data=data)
-
-
-def _undeformed(scene: Scene, contact: ContactSpec) -> tuple[float, float]:
-    return scene.place(contact.node) if "." in contact.node else scene.pin(contact.node).points[0]
-
-
-def _deformed(response: Response, scene: Scene, contact: ContactSpec, k: int) -> Array:
-    name, _, end = contact.node.partition(".")
-    if end:
-        return _end(response, name, end, k)
-    return np.array(scene.pin(name).position(float(response.load_parameter[k])))
+def _points(start: Array, deformed: Array, data: dict[str, Array]) -> Grid:
+    """Return places as a grid of points with their displacement and other fields."""
+    cells = {"vertex": np.arange(len(start)).reshape(-1, 1)}
+    return Grid(
+        points=start, cells=cells, point_data={"displacement": deformed - start, "deformed": deformed, **data}
+    )
 
 
 def _end(response: Response, beam: str, end: str, k: int) -> Array:
     """Return the deformed position of a beam's end."""
     return np.asarray(response.axis_line(beam, k)[1][0 if end == "start" else -1])
-
-
-def _moved(response: Response, scene: Scene, beam: str, k: int, arc: float) -> Array:
-    """Return the displacement of a beam's axis at an arc position."""
-    stations, line = response.axis_line(beam, k)
-    place = np.array([np.interp(arc, stations, line[:, i]) for i in (0, 1)])
-    spec = scene.beam(beam)
-    return np.asarray(place - np.array(spec.place(arc / spec.length)))
 
 
 def check_series(folder: Path, model: str, scene: Scene) -> None:
@@ -211,7 +186,7 @@ def write_series(folder: Path, response: Response, scene: Scene) -> list[Path]:
         check_series(folder, response.model, scene)
         with staging(folder) as aside:
             entries, files = _write_blocks(aside, response, scene)
-            write_text(aside / _list(response.model), series_text(entries))
+            write_list(aside / _list(response.model), entries)
             with interrupts_held():
                 move(aside, folder, [*files, _list(response.model)])
                 # last, so that no list names a file that is gone
@@ -251,11 +226,68 @@ def _write_blocks(
         grids = blocks(response, scene, k)
         files = {name: _file(response.model, k, number) for number, name in enumerate(grids)}
         for name, grid in grids.items():
-            write_text(folder / files[name], grid_text(grid, units))
-        there = {
-            field: unit for field, unit in units.items() if any(field in g.point_data for g in grids.values())
-        }
-        write_text(folder / _set(response.model, k), blocks_text(files, there))
+            write_grid(folder / files[name], grid, units)
+        fields = {field for grid in grids.values() for field in grid.point_data}
+        there = {field: unit for field, unit in units.items() if field in fields}
+        write_blocks(folder / _set(response.model, k), files, there)
         entries.append((float(t), _set(response.model, k)))
         names += [*files.values(), _set(response.model, k)]
     return entries, names
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """The blocks of a model's answer at s load parameters.
+
+    Attributes
+    ----------
+    title : str
+        What it shows.
+    load_parameter : ndarray, shape (s,)
+        Load parameters.
+    blocks : callable
+        The blocks at load parameter k, as `blocks` gives them.
+    units : mapping of str
+        Units of the fields by name.
+    """
+
+    title: str
+    load_parameter: Array
+    blocks: Callable[[int], Mapping[str, Grid]]
+    units: Mapping[str, str]
+
+
+def solved_series(response: Response, scene: Scene, title: str) -> Series:
+    """Return the series of a response."""
+    return Series(
+        title=title,
+        load_parameter=response.load_parameter,
+        blocks=lambda k: blocks(response, scene, k),
+        units=field_units(scene),
+    )
+
+
+def read_series(folder: Path) -> list[Series]:
+    """Return the series of the PVD files in a folder or in the folders in it, as `write_series` writes them.
+
+    Raises
+    ------
+    OutputError
+        One line, if there is none or one cannot be read.
+    """
+    files = sorted(folder.glob("*.pvd")) or sorted(folder.glob("*/*.pvd"), reverse=True)
+    if not files:
+        raise OutputError(
+            f"{folder}: has no PVD file, `crossval solve --vtk` and `crossval compare` write them"
+        )
+    return [_read(path) for path in files]
+
+
+def _read(path: Path) -> Series:
+    entries = read_entries(path, "timestep")
+    return Series(
+        title=path.stem,
+        load_parameter=np.array([float(t) for t, _ in entries]),
+        blocks=lambda k: {name: read_grid(file) for name, file in read_entries(entries[k][1], "name")},
+        units=read_units(entries[0][1]) if entries else {},
+    )

@@ -14,8 +14,6 @@ from comparisons.show.table import Row
 
 BUDGET = "error budget"
 """Key of the error budget among what is left out."""
-SHOWN = ("force", "arc", "moment", "tip")
-"""Quantities of which the largest error is stated."""
 AGREES = 1e-9
 """Error below which two answers agree."""
 LEAST_PART = 0.05
@@ -31,35 +29,15 @@ def findings(
 ) -> list[str]:
     """Return what a comparison found, in sentences.
 
-    The sentences state in this order: what was compared; the largest error of each model, over all runs of a type of elements, with its
-    cause; runs that stopped; what was left out; who states no stability; what the referee certified.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    rows : sequence of Row
-        All runs.
-    reference : str
-        The label of the exact rod.
-    budget : Budget or None
-        What the difference of beams and solid is made of.
-    left_out : mapping of str
-        Reasons by what is left out: the family of a run, or `BUDGET`.
+    The sentences state in this order: what was compared; the largest error of each model against the run
+    labelled `reference`, over all runs of a type of elements, with its cause; runs that stopped; what was
+    left out, by the family of a run or `BUDGET`; who states no stability; what the referee certified.
     """
+    found = [_compared(scene, rows, reference)]
     others = [row for row in rows if row.label != reference]
-    return [
-        _compared(scene, rows, reference),
-        *(
-            sentence
-            for family, own in groupby(others, key=lambda row: row.family)
-            for sentence in _off(family, list(own), scene, budget, reference)
-        ),
-        *_stopped(rows),
-        *_left_out(left_out),
-        *_stability(rows),
-        _certified(rows),
-    ]
+    for family, own in groupby(others, key=lambda row: row.family):
+        found += _off(family, list(own), scene, budget, reference)
+    return [*found, *_stopped(rows), *_left_out(left_out), *_stability(rows), _certified(rows)]
 
 
 def _compared(scene: Scene, rows: Sequence[Row], reference: str) -> str:
@@ -99,33 +77,26 @@ def _stated(rows: Sequence[Row], scene: Scene) -> str:
     words, before = [], ""
     for row in rows:
         error, quantity = _worst(row, scene)
-        words.append(_size(error) + ("" if quantity == before else f" ({quantity})") + _resolved(row))
+        named = "" if quantity == before else f" ({quantity})"
+        many = "" if row.resolution == 1 else "s"
+        resolved = f" with {row.resolution:.0f} element{many}" if isfinite(row.resolution) else ""
+        words.append(f"{_size(error)}{named}{resolved}")
         before = quantity
     return _listed(words)
 
 
 def _worst(row: Row, scene: Scene) -> tuple[float, str]:
     """Return the largest finite error over the path, and its quantity; nan without one."""
-    names = {
-        "force": "contact force" if scene.contacts else "support force",
-        "arc": "arc position",
-        "moment": "support moment",
-        "tip": "tip",
-    }
+    acting = "contact force" if scene.contacts else "support force"
+    names = {"force": acting, "arc": "arc position", "moment": "support moment", "tip": "tip"}
     path = {} if row.errors is None else row.errors["path"]
-    found = [(path[name], names[name]) for name in SHOWN if name in path and isfinite(path[name])]
+    found = [(path[name], words) for name, words in names.items() if isfinite(path.get(name, inf))]
     return max(found, default=(np.nan, ""))
-
-
-def _resolved(row: Row) -> str:
-    if not isfinite(row.resolution):
-        return ""
-    return f" with {row.resolution:.0f} element{'' if row.resolution == 1 else 's'}"
 
 
 def _falling(rows: list[Row], scene: Scene) -> str:
     """Return the measured order of runs with several resolutions."""
-    first, last = (min(rows, key=lambda row: row.resolution), max(rows, key=lambda row: row.resolution))
+    first, last = (choose(rows, key=lambda row: row.resolution) for choose in (min, max))
     coarse, fine = _worst(first, scene)[0], _worst(last, scene)[0]
     if not last.resolution > first.resolution or fine < AGREES or coarse <= fine:
         return ""
@@ -175,13 +146,14 @@ def _left_out(left_out: Mapping[str, str]) -> Iterable[str]:
 
 def _stability(rows: Sequence[Row]) -> Iterable[str]:
     indices = [(row.family, -1 if row.response.index is None else row.response.index) for row in rows]
-    silent = dict.fromkeys(family for family, index in indices if not np.any(np.greater_equal(index, 0)))
+    stated = {family for family, index in indices if np.any(np.greater_equal(index, 0))}
+    unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
+    silent = dict.fromkeys(family for family, _ in indices if family not in stated)
     partial = dict.fromkeys(
         family
         for family, index in indices
-        if family not in silent and np.any(np.less(index, 0)) and not np.any(np.greater(index, 0))
+        if family in stated and np.any(np.less(index, 0)) and not np.any(np.greater(index, 0))
     )
-    unstable = dict.fromkeys(family for family, index in indices if np.any(np.greater(index, 0)))
     if silent:
         yield f"Stability is not stated by {_listed(silent)}."
     if partial:
@@ -191,19 +163,17 @@ def _stability(rows: Sequence[Row]) -> Iterable[str]:
 
 
 def _certified(rows: Sequence[Row]) -> str:
-    certified, rest = [], []
+    rest = []
     for row in rows:
-        certificate = row.response.certificate
-        if certificate is not None and certificate.certified:
-            certified.append(row.label)
-        elif certificate is None:
+        found = row.response.certificate
+        if found is None:
             rest.append(f"{row.label} was not judged")
-        else:
-            refused = certificate.verdict is not Verdict.NOT_JUDGED
-            rest.append(f"{row.label} was {'refused' if refused else 'not judged'} ({certificate.reason})")
+        elif not found.certified:
+            said = "not judged" if found.verdict is Verdict.NOT_JUDGED else "refused"
+            rest.append(f"{row.label} was {said} ({found.reason})")
     if not rest:
         return "The referee certified every answer."
-    return f"The referee certified {len(certified)} of {len(rows)} answers; {'; '.join(rest)}."
+    return f"The referee certified {len(rows) - len(rest)} of {len(rows)} answers; {'; '.join(rest)}."
 
 
 def _size(value: float) -> str:

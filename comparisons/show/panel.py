@@ -1,20 +1,32 @@
-"""What a picture of a stressed body shows: quadrilaterals with a stress, contacts with their forces, supports; and the scale of it."""
+"""A picture of stressed bodies: quadrilaterals with a stress, contacts with forces, supports; its scale.
+
+Beams are ribbons of their height, so that beams and solids are shown on one footing.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid
+from comparisons.response import CONTACT_STATES, OPEN, SLIPS, Array, Grid, Response
+from comparisons.scene import Scene
 from comparisons.scene.conditions import COMPONENTS
-from comparisons.show.export import CONTACTS, HINGES, SUPPORTS
+from comparisons.show.export import CONTACTS, HINGES, POINTS, SUPPORTS, blocks
 from comparisons.show.palette import PIN
 from comparisons.show.symbols import Segments, hinge_symbol, placed, spring_symbol, support_symbol
 
 Body = tuple[Array, NDArray[np.int64], Array]
 """Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of a body."""
+QUARTERS = {
+    "quad9": np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
+    "quad": np.array([[0, 1, 2, 3]]),
+}
+"""The quadrilaterals in the cells of a solid, in VTK's order of points."""
+PARTS, LAYERS = 8, (4, 8)
+"""Quadrilaterals along an element of a beam, and over its height for a stress linear in it or not."""
+THIN = 2e-3
+"""Height of a beam whose section has none, over the size of the picture."""
 ARROW = 0.2
 """Length of the longest arrow over the size of the picture."""
 SYMBOL = 0.03
@@ -31,16 +43,10 @@ class Panel:
     ----------
     title : str
         What it shows.
-    points : ndarray, shape (n, 2)
-        Deformed positions.
-    quads : ndarray of int, shape (m, 4)
-        Points of the quadrilaterals.
-    stress : ndarray, shape (n,)
-        Stress, signed or not.
-    pins : ndarray, shape (p, 2)
-        Positions of pins, and of the ends of beams that touch other beams.
-    radii : ndarray, shape (p,)
-        Radii of the pins, zero for a point.
+    points, quads, stress : ndarray
+        Deformed positions (n, 2), quadrilaterals (m, 4) and stress (n,) of the bodies.
+    pins, radii : ndarray, shape (p, 2) and (p,)
+        Pins, and the ends of beams that touch other beams; their radii, zero for a point.
     forces : ndarray, shape (p, 2)
         What they exert on the beams, drawn as arrows; zero where none are to be drawn.
     states : ndarray of str, shape (p,)
@@ -70,63 +76,150 @@ class Panel:
         return [self.points, self.pins + reach, self.pins - reach, self.supports.reshape(-1, 2)]
 
 
-def joined(title: str, bodies: Sequence[Body], drawn: Sequence[Mapping[str, NDArray[Any]]]) -> Panel:
-    """Return a panel of bodies with their contacts and supports, `drawn`, as `marks` gives them: once, or for every one of several states."""
-    starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
+def mises_panel(response: Response, scene: Scene, ks: Sequence[int], title: str) -> Panel:
+    """Return the von Mises stress at the load parameters numbered `ks`, over each other, without arrows.
+
+    In a beam it is that of the rectangle with its area and second moment: ``sigma^2 = sigma_x^2 + 3 tau^2``
+    with ``sigma_x = N/A - M y/I`` and ``tau = 3/2 V/A (1 - (2 y/h)^2)``. Arrows would hide the bodies.
+    """
+    states = [blocks(response, scene, k) for k in ks]
+    for beam in scene.beams:
+        for data in (state[beam.name].point_data for state in states):
+            if "M" in data:
+                sections = np.array([beam.section(part) for part in data["arc"] / beam.length])
+                area, inertia = sections[:, 0], sections[:, 1]
+                data["height"] = np.sqrt(12.0 * inertia / area)
+                direct, bent = data["N"] / area, data["M"] * data["height"] / (2.0 * inertia)
+                data["axial_stress_right"], data["axial_stress_left"] = direct + bent, direct - bent
+                data["shear_stress"] = 1.5 * data["V"] / area
+    panels = [panel(state, title, stress="von_mises") for state in states]
+    starts = np.cumsum([0, *(len(one.points) for one in panels)]).tolist()
     return Panel(
         title=title,
-        points=np.concatenate([points for points, _, _ in bodies]),
-        quads=np.concatenate([quads + start for (_, quads, _), start in zip(bodies, starts, strict=True)]),
-        stress=np.concatenate([stress for _, _, stress in bodies]),
-        **{name: np.concatenate([one[name] for one in drawn]) for name in drawn[0]},
+        quads=np.concatenate([one.quads + start for one, start in zip(panels, starts, strict=False)]),
+        forces=0.0 * np.concatenate([one.forces for one in panels]),
+        **{
+            name: np.concatenate([getattr(one, name) for one in panels])
+            for name in ("points", "stress", "pins", "radii", "states", "supports")
+        },
     )
 
 
-def marks(blocks: Mapping[str, Grid], size: float, factor: float = 1.0) -> dict[str, NDArray[Any]]:
-    """Return the contacts and the supports among the blocks of `comparisons.show.export`: the fields of `Panel` but the body.
+def panel(
+    grids: Mapping[str, Grid], title: str, factor: float = 1.0, *, stress: str = "axial_stress"
+) -> Panel:
+    """Return the deformed bodies, solids or the ribbons of beams, with contacts, their forces and supports.
 
-    Parameters
-    ----------
-    blocks : mapping of Grid
-        The blocks by name.
-    size : float
-        Size of the undeformed structure [length].
-    factor : float
-        Enlargement of the deformation. A closed contact stays on its beam: it moves as the touched point does.
+    The blocks are those of `comparisons.show.export.blocks`, and the title states the enlargement `factor` of
+    the displacements. A closed contact stays on its beam: it moves as the touched point does. A beam has a
+    von Mises stress where its points have a ``shear_stress``.
     """
+    structure = [grid for name, grid in grids.items() if name not in POINTS]
+    size = float(np.ptp(np.concatenate([grid.points for grid in structure]), axis=0).max())
+    bodies = [
+        _solid(grid, stress, factor) if QUARTERS.keys() & grid.cells.keys() else _ribbon(grid, size, factor)
+        for grid in structure
+    ]
+    starts = np.cumsum([0, *(len(points) for points, _, _ in bodies[:-1])])
     none = np.zeros((0, 2))
-    data = blocks[CONTACTS].point_data if CONTACTS in blocks else {}
+    data = grids[CONTACTS].point_data if CONTACTS in grids else {}
     forces = data.get("contact_force", none)
-    slip = data.get("slip", np.full(len(forces), np.nan))
-    found = {
-        "pins": data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
-        "radii": data.get("radius", np.zeros(0)),
-        "forces": forces,
-        "states": np.array([_state(*one) for one in zip(forces, slip, strict=True)], dtype=str),
-    }
-    segments = [np.zeros((0, 2, 2))]
-    for place, symbols in _symbols(blocks, factor):
-        segments += [placed(symbol, place, SYMBOL * size) for symbol in symbols]
-    return {**found, "supports": np.concatenate(segments)}
+    slips = data.get("slip", np.full(len(forces), np.nan))
+    symbols = [placed(symbol, place, SYMBOL * size) for place, symbol in _symbols(grids, factor)]
+    return Panel(
+        title=title if factor == 1.0 else f"{title}, deformation x {factor:g}",
+        points=np.concatenate([points for points, _, _ in bodies]),
+        quads=np.concatenate([quads + start for (_, quads, _), start in zip(bodies, starts, strict=True)]),
+        stress=np.concatenate([values for _, _, values in bodies]),
+        pins=data.get("deformed", none) + (factor - 1.0) * data.get("beam_displacement", none),
+        radii=data.get("radius", np.zeros(0)),
+        forces=forces,
+        states=np.array([_state(*one) for one in zip(forces, slips, strict=True)], dtype=str),
+        supports=np.concatenate([np.zeros((0, 2, 2)), *symbols]),
+    )
 
 
-def _symbols(blocks: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, list[Segments]]]:
-    """Yield the places of supports, springs and hinges, and their symbols."""
-    for name in (SUPPORTS, HINGES):
-        if name not in blocks:
-            continue
-        data = blocks[name].point_data
-        places = data["deformed"] + (factor - 1.0) * data["displacement"]
-        if name == HINGES:
-            yield from ((place, [hinge_symbol()]) for place in places)
-            continue
-        for held, away, place in zip(data["held"], data["inward"], places, strict=True):
-            names, sprung = (
-                tuple(name for name, one in zip(COMPONENTS, held, strict=True) if one == kind)
-                for kind in (1, 2)
-            )
-            symbols = [support_symbol(names, away)] if names else []
-            yield place, [*symbols, *(spring_symbol(name, away) for name in sprung)]
+def _solid(grid: Grid, stress: str, factor: float) -> Body:
+    """Return a solid's deformed body with one of its stresses."""
+    found = [grid.cells[kind][:, own].reshape(-1, 4) for kind, own in QUARTERS.items() if kind in grid.cells]
+    return _enlarged(grid, factor), np.concatenate(found), grid.point_data[stress]
+
+
+def _enlarged(grid: Grid, factor: float) -> Array:
+    return np.asarray(grid.point_data["deformed"] + (factor - 1.0) * grid.point_data["displacement"])
+
+
+def _ribbon(grid: Grid, size: float, factor: float) -> Body:
+    """Ribbons of a beam's height about the cubics that have the ends and end tangents of the lines; straight lines without rotations."""
+    data, ends = grid.point_data, grid.cells["line"]
+    straight, chord = np.diff(grid.points[ends], axis=1), np.diff(data["deformed"][ends], axis=1)
+    if "rotation" in data:
+        before = _end_angles(np.arctan2(straight[:, 0, 1], straight[:, 0, 0]))
+        undeformed = np.hypot(*straight.T).T[..., None] * _unit(before)
+        tangent = np.hypot(*chord.T).T[..., None] * _unit(before + data["rotation"][ends])
+    else:
+        undeformed, tangent = (np.repeat(vectors, 2, axis=1) for vectors in (straight, chord))
+    tangent = tangent + (factor - 1.0) * (tangent - undeformed)
+    u = np.linspace(0.0, 1.0, PARTS + 1)
+    blends = np.stack([1 - 3 * u**2 + 2 * u**3, 3 * u**2 - 2 * u**3, u - 2 * u**2 + u**3, u**3 - u**2])
+    line = np.einsum("bu,ebx->eux", blends, np.concatenate([_enlarged(grid, factor)[ends], tangent], axis=1))
+    between = np.stack([1 - u, u])
+
+    def along(name: str) -> Array:
+        values = data.get(name, np.zeros(len(grid.points)))[ends]
+        return np.asarray(np.einsum("bu,eb->eu", between, values)[..., None])
+
+    normal = _unit(np.einsum("bu,eb->eu", between, _angles(tangent)) + np.pi / 2.0)
+    half = along("height") / 2.0
+    half[half == 0.0] = THIN / 2.0 * size
+    across = np.linspace(-1.0, 1.0, LAYERS["shear_stress" in data] + 1)
+    points = line[:, :, None] + half[..., None] * across[:, None] * normal[:, :, None]
+    stress = along("axial_stress_right") * (1 - across) / 2 + along("axial_stress_left") * (1 + across) / 2
+    if "shear_stress" in data:
+        stress = np.sqrt(stress**2 + 3.0 * (along("shear_stress") * (1.0 - across**2)) ** 2)
+    number = np.arange(points[..., 0].size).reshape(points.shape[:-1])
+    corners = (number[:, :-1, :-1], number[:, 1:, :-1], number[:, 1:, 1:], number[:, :-1, 1:])
+    return points.reshape(-1, 2), np.stack(corners, axis=-1).reshape(-1, 4), stress.ravel()
+
+
+def _end_angles(chords: Array) -> Array:
+    """Return the angles of an undeformed axis at both ends of every line, shape (e, 2), from those of the lines of an arc."""
+    chords = np.unwrap(chords)
+    between = (chords[1:] + chords[:-1]) / 2.0
+    if not len(between):
+        return np.repeat(chords[:, None], 2, axis=1)
+    first, last = 2.0 * chords[0] - between[0], 2.0 * chords[-1] - between[-1]
+    return np.stack([np.append(first, between), np.append(between, last)], axis=1)
+
+
+def _unit(angles: Array) -> Array:
+    return np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+
+
+def _angles(tangent: Array) -> Array:
+    """Return the angles of the tangents at both ends of every line, the second within half a turn of the first."""
+    first = np.arctan2(tangent[:, 0, 1], tangent[:, 0, 0])
+    cross = tangent[:, 0, 0] * tangent[:, 1, 1] - tangent[:, 0, 1] * tangent[:, 1, 0]
+    turn = np.arctan2(cross, np.einsum("ex,ex->e", tangent[:, 0], tangent[:, 1]))
+    return np.stack([first, first + turn], axis=1)
+
+
+def _symbols(grids: Mapping[str, Grid], factor: float) -> Iterator[tuple[Array, Segments]]:
+    """Yield the symbols of supports, springs and hinges with their places."""
+    for place in _enlarged(grids[HINGES], factor) if HINGES in grids else ():
+        yield place, hinge_symbol()
+    if SUPPORTS not in grids:
+        return
+    data = grids[SUPPORTS].point_data
+    for place, kinds, away in zip(
+        _enlarged(grids[SUPPORTS], factor), data["held"], data["inward"], strict=True
+    ):
+        held = tuple(name for name, kind in zip(COMPONENTS, kinds, strict=True) if kind == 1)
+        if held:
+            yield place, support_symbol(held, away)
+        for name, kind in zip(COMPONENTS, kinds, strict=True):
+            if kind == 2:
+                yield place, spring_symbol(name, away)
 
 
 def _state(force: Array, slip: float) -> str:
@@ -139,20 +232,9 @@ def _state(force: Array, slip: float) -> str:
 class Scale:
     """What pictures of panels share.
 
-    Attributes
-    ----------
-    centre : tuple of float
-        Middle of the view.
-    extent : tuple of float
-        Half the width and half the height of what is shown.
-    stress : tuple of float
-        Lowest and highest stress of the colours.
-    force : float
-        Length of an arrow per force.
-    label : str
-        Label of the stress.
-    arrow : str
-        What the longest arrow is; empty without forces.
+    The view has a centre and an `extent`, half its width and half its height. `stress` are the lowest and the
+    highest stress of the colours, with their label. `force` is the length of an arrow per force, and `arrow`
+    says what the longest one is, nothing without forces.
     """
 
     centre: tuple[float, float]
@@ -165,20 +247,16 @@ class Scale:
     @classmethod
     def of(cls, panels: Sequence[Panel], label: str, unit: str = "") -> "Scale":
         """Return the scale that shows all of `panels`, with forces in `unit`; the colours of a stress with both signs are symmetric."""
-        points = [part for panel in panels for part in panel.outline()]
-        largest = max(float(np.hypot(*panel.forces.T).max(initial=0.0)) for panel in panels)
-        force = ARROW * float(np.ptp(np.concatenate(points), axis=0).max()) / (largest or 1.0)
-        points += [panel.pins - force * panel.forces for panel in panels]
-        low, high = (
-            np.min([part.min(axis=0) for part in points if len(part)], axis=0),
-            np.max([part.max(axis=0) for part in points if len(part)], axis=0),
-        )
-        extent = float(high[0] - low[0]) / 2.0, float(high[1] - low[1]) / 2.0
-        top = max(float(np.abs(panel.stress).max()) for panel in panels)
-        signed = any(float(panel.stress.min()) < 0.0 for panel in panels)
+        points = np.concatenate([part for one in panels for part in one.outline()])
+        largest = max(float(np.hypot(*one.forces.T).max(initial=0.0)) for one in panels)
+        force = ARROW * float(np.ptp(points, axis=0).max()) / (largest or 1.0)
+        points = np.concatenate([points, *(one.pins - force * one.forces for one in panels)])
+        (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        top = max(float(np.abs(one.stress).max()) for one in panels)
+        signed = any(float(one.stress.min()) < 0.0 for one in panels)
         return cls(
-            centre=(float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0),
-            extent=extent,
+            centre=((left + right) / 2.0, (low + high) / 2.0),
+            extent=((right - left) / 2.0, (high - low) / 2.0),
             stress=(-top if signed else 0.0, top),
             force=force if largest else 0.0,
             label=label,

@@ -57,6 +57,19 @@ def save(fig: Any, *paths: Path) -> None:
             fig.savefig(temporary, dpi=max(150.0, PIXELS / fig.get_figwidth()))
 
 
+def arrow(axes: Any, tail: Array, tip: Array, colour: str, width: float = 1.2) -> None:
+    """Draw an arrow above all else; the axes reach to its ends."""
+    style = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", tip, tail, arrowprops=style, zorder=6)
+    axes.update_datalim([tail, tip])
+
+
+def ribbon(line: Array, normal: Array, height: Array) -> Array:
+    """Return the outline (2 n, 2) of a beam by its axis (n, 2), unit normals (n, 2) and heights (n,)."""
+    half = height[:, None] / 2.0 * normal
+    return np.concatenate([line + half, (line - half)[::-1]])
+
+
 def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
     """Return the numbers of the load parameters nearest to those of `SHOWN` on the way to `last`, each once."""
     return sorted({int(np.argmin(np.abs(load_parameter - part * last))) for part in SHOWN})
@@ -65,14 +78,8 @@ def nearest_steps(load_parameter: Array, last: float = 1.0) -> list[int]:
 def plot_shapes(scene: Scene, responses: dict[str, Response], *paths: Path) -> None:
     """Draw the deflected axes of all responses over each other, as Fig. 8 of the paper, and the last tip enlarged.
 
-    Parameters
-    ----------
-    scene : Scene
-        Gives the pins and their paths.
-    responses : dict of Response
-        By label, in the order of drawing; beams are drawn with the nodes of their elements.
-    paths : Path
-        Files, in the formats of their suffixes.
+    The responses are by label, in the order of drawing; beams are drawn with the nodes of their elements. The
+    scene gives the pins and their paths.
     """
     fig = figure(figsize=(WIDTH, 7.4))
     places = fig.subplot_mosaic([["whole", "whole"], ["detail", "legend"]])
@@ -111,24 +118,26 @@ def _draw_shapes(axes: Any, scene: Scene, responses: dict[str, Response]) -> Non
                 )
                 axes.plot(*line.T, label=label, markevery=every, **{"linewidth": 0.8, **style})
                 label = "_"  # noqa: PLW2901 one entry of the legend per response
-    times = sorted(drawn)
     apart = LABELS * max(axes.dataLim.width, axes.dataLim.height)
-    for pin in scene.pins:
-        only = "_" if pin is not scene.pins[0] else ""
-        path = {"color": "0.5", "linewidth": 0.8, "linestyle": ":"}
-        named = next((one for one in scene.pins if one.moving), None)
-        axes.plot(*np.array(pin.points).T, **path, label="path of a pin" if pin is named else "_")
-        places = np.array([pin.position(t) for t in times]).reshape(-1, 2)
-        axes.plot(
-            *places.T, linestyle="none", marker="*", markersize=9, color="0.2", label=f"{only}pin", zorder=5
-        )
-        last = None
-        for t, place in zip(times, places, strict=True):
-            if last is None or np.hypot(*(place - last)) > apart:
-                words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True, "zorder": 6}
-                ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
-                axes.annotate(f"t = {t:.3g}", place, (6, -11), bbox=ground, **words)
-                last = place
+    first = next((one for one in scene.pins if one.moving), None)
+    for number, pin in enumerate(scene.pins):
+        path = "path of a pin" if pin is first else "_"
+        axes.plot(*np.array(pin.points).T, color="0.5", linewidth=0.8, linestyle=":", label=path)
+        places = {t: np.array(pin.position(t)) for t in sorted(drawn)}
+        _draw_places(axes, places, "_pin" if number else "pin", apart)
+
+
+def _draw_places(axes: Any, places: dict[float, Array], label: str, apart: float) -> None:
+    """Mark the places of a pin by load parameter, and name those that lie apart."""
+    mark = {"linestyle": "none", "marker": "*", "markersize": 9, "color": "0.2", "zorder": 5}
+    axes.plot(*np.array(list(places.values())).reshape(-1, 2).T, label=label, **mark)
+    last = None
+    for t, place in places.items():
+        if last is None or np.hypot(*(place - last)) > apart:
+            words = {"textcoords": "offset points", "fontsize": "small", "clip_on": True, "zorder": 6}
+            ground = {"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5}
+            axes.annotate(f"t = {t:.3g}", place, (6, -11), bbox=ground, **words)
+            last = place
 
 
 def _draw_symbols(axes: Any, scene: Scene, responses: dict[str, Response]) -> dict[str, Any]:
@@ -208,8 +217,7 @@ def plot_panels(panels: list[Panel], scale: Scale, path: Path) -> None:
             for pin, radius, force in zip(pins, panel.radii[numbers], panel.forces[numbers], strict=True):
                 if force.any():
                     tip = pin + radius * force / np.hypot(*force)
-                    arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 2}
-                    axes.annotate("", tip, tip - scale.force * force, arrowprops=arrow)
+                    arrow(axes, tip - scale.force * force, tip, colour, 2.0)
         axes.set(aspect="equal", xlim=(x - wide, x + wide), ylim=(y - tall, y + tall))
         axes.set_title(panel.title, fontsize="medium")
         axes.tick_params(labelsize="small")

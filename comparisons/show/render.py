@@ -1,10 +1,11 @@
 """Pictures of stressed bodies side by side, by pyvista in a child process.
 
 VTK ends its process where there is no OpenGL, so it never runs in the caller's: ``python -m comparisons.show.render
-FRAMES.npz FOLDER`` draws every frame to a picture, and without a folder it opens a window.
+FRAMES FOLDER`` draws every frame to a picture, and without a folder it opens a window.
 """
 
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -25,8 +26,8 @@ from comparisons.models.progress import REDRAW, Count, uncounted
 from comparisons.show.panel import COLOURS, Panel, Scale
 from comparisons.show.plot import plot_panels
 
-TIMEOUT = 60.0
-"""Seconds for a picture; each further frame of a film has a second more."""
+TIMEOUT, FRAME = 60.0, 5.0
+"""Seconds for a picture, and for each frame: a machine whose processors are shared takes several of them."""
 ENVIRONMENTS: tuple[dict[str, str], ...] = ({}, {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"})
 """Tried in turn: VTK's own choice, then drawing in memory by libOSMesa alone."""
 INSTEAD = "off-screen rendering is not available here (no OpenGL, or a broken pyvista), matplotlib drew the picture instead"
@@ -40,17 +41,10 @@ LOWEST, AROUND, TALLEST, RIM = 520, 380, 610, 1.12
 """Pixels of a panel's height at least, of title, legend and colours together, and of the tallest drawing; rim beside a wide drawing."""
 TITLE, LABEL, LINE, BELOW_TITLE, BAR = 15, 30, 40, 85, 70
 """Sizes of the title in points of VTK, of other words, of a line and the place of the legend, and of the colours, in pixels."""
-ARRAYS = ("points", "quads", "stress", "pins", "radii", "forces", "states", "supports")
 
 
 def render_panels(panels: list[Panel], stress_label: str, path: Path) -> str | None:
-    """Write the picture of `panels`, rendered off screen if that works here, else by matplotlib.
-
-    Returns
-    -------
-    str or None
-        One sentence if matplotlib had to stand in.
-    """
+    """Write the picture of `panels`; return one sentence if matplotlib had to draw it."""
     with tempfile.TemporaryDirectory() as folder, replacing(path) as temporary:
         pictures, sentence = render_frames([panels], Scale.of(panels, stress_label), Path(folder))
         temporary.write_bytes(pictures[0].read_bytes())
@@ -62,25 +56,22 @@ def render_frames(
 ) -> tuple[list[Path], str | None]:
     """Write ``frame-0000.png`` and so on to `folder`, every one in the same view and scale; `count` receives how many there are.
 
-    Returns
-    -------
-    list of Path
-        The pictures.
-    str or None
-        One sentence if matplotlib had to stand in.
+    Return the pictures, and one sentence if matplotlib had to stand in.
     """
-    data, pictures = folder / "frames.npz", [folder / f"frame-{k:04d}.png" for k in range(len(frames))]
-    _write(data, frames, scale)
-    command, seconds = ["-m", "comparisons.show.render", str(data), str(folder)], TIMEOUT + len(frames)
-    installed = find_spec("pyvista") is not None
+    pictures = [_picture(folder, k) for k in range(len(frames))]
+    seconds = TIMEOUT + FRAME * len(frames)
 
     def drawn() -> None:
         count(sum(picture.is_file() for picture in pictures), len(pictures))
 
-    if installed and any(
-        _run(command, extra, seconds, drawn) and pictures[-1].is_file() for extra in ENVIRONMENTS
-    ):
-        return pictures, None
+    installed = find_spec("pyvista") is not None
+    if installed:
+        command = _command(frames, scale, folder)
+        for extra in ENVIRONMENTS:
+            if _run([*command, str(folder)], extra, seconds, drawn) and pictures[-1].is_file():
+                return pictures, None
+            for picture in pictures:  # of a child that ended among them
+                picture.unlink(missing_ok=True)
     for panels, picture in zip(frames, pictures, strict=True):
         plot_panels(panels, scale, picture)
         drawn()
@@ -90,9 +81,7 @@ def render_frames(
 def show_frames(frames: Sequence[list[Panel]], scale: Scale) -> bool:
     """Open a window with a slider over the frames; whether it could be."""
     with tempfile.TemporaryDirectory() as folder:
-        data = Path(folder) / "frames.npz"
-        _write(data, frames, scale)
-        return _run(["-m", "comparisons.show.render", str(data)], {}, None)
+        return _run(_command(frames, scale, Path(folder)), {}, None)
 
 
 def renders() -> bool:
@@ -101,6 +90,17 @@ def renders() -> bool:
         "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.screenshot(); p.close()"
     )
     return any(_run(["-c", trial], extra, TIMEOUT) for extra in ENVIRONMENTS)
+
+
+def _picture(folder: Path, k: int) -> Path:
+    return folder / f"frame-{k:04d}.png"
+
+
+def _command(frames: Sequence[list[Panel]], scale: Scale, folder: Path) -> list[str]:
+    """Write what the child process draws; return its arguments."""
+    path = folder / "frames"
+    path.write_bytes(pickle.dumps((frames, scale)))
+    return ["-m", "comparisons.show.render", str(path)]
 
 
 def _run(
@@ -129,43 +129,13 @@ def _run(
     return child.returncode == 0
 
 
-def _write(path: Path, frames: Sequence[list[Panel]], scale: Scale) -> None:
-    arrays = {
-        f"{name}-{k}-{i}": getattr(panel, name)
-        for k, panels in enumerate(frames)
-        for i, panel in enumerate(panels)
-        for name in ARRAYS
-    }
-    titles = np.array([[panel.title for panel in panels] for panels in frames])
-    numbers = np.array([*scale.centre, *scale.extent, *scale.stress, scale.force])
-    words = np.array([scale.label, scale.arrow])
-    np.savez(path, allow_pickle=False, titles=titles, words=words, scale=numbers, **arrays)
-
-
-def _read(path: Path) -> tuple[list[list[Panel]], Scale]:
-    with np.load(path, allow_pickle=False) as data:
-        frames = [
-            [
-                Panel(title=str(title), **{name: data[f"{name}-{k}-{i}"] for name in ARRAYS})
-                for i, title in enumerate(titles)
-            ]
-            for k, titles in enumerate(data["titles"])
-        ]
-        x, y, wide, high, least, most, force = data["scale"].tolist()
-        label, arrow = map(str, data["words"])
-    return frames, Scale(
-        centre=(x, y), extent=(wide, high), stress=(least, most), force=force, label=label, arrow=arrow
-    )
-
-
 def _plotter(panels: list[Panel], scale: Scale, *, off_screen: bool) -> Any:
     """Return a plotter with the panels in one view."""
     import pyvista
 
     width, height, pixels = _window(panels, scale)
-    plotter = pyvista.Plotter(
-        off_screen=off_screen, shape=(1, len(panels)), window_size=(width * len(panels), height), border=False
-    )
+    size = (width * len(panels), height)
+    plotter = pyvista.Plotter(off_screen=off_screen, shape=(1, len(panels)), window_size=size, border=False)
     plotter.set_background("white")
     _draw(plotter, panels, scale)
     for i in range(len(panels)):
@@ -185,7 +155,8 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
     import pyvista
 
     width, height, _ = _window(panels, scale)
-    factor = width / PANEL
+    factor, plain = width / PANEL, {"lighting": False, "render": False}
+    plotter.clear()
     for i, panel in enumerate(panels):
         plotter.subplot(0, i)
         faces = np.insert(panel.quads, 0, 4, axis=1)
@@ -193,99 +164,53 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
         body.point_data["stress"] = panel.stress
         # one bar in each panel takes different titles
         bar = {**_bar(factor * LABEL, factor * BAR / height), "title": scale.label + " " * i + "\n"}
-        plotter.add_mesh(
-            body,
-            name="body",
-            clim=scale.stress,
-            cmap=scale.colours,
-            lighting=False,
-            scalar_bar_args=bar,
-            render=False,
-        )
+        plotter.add_mesh(body, clim=scale.stress, cmap=scale.colours, scalar_bar_args=bar, **plain)
         there = panel.pins_by_state()
-        for state, colour in COLOURS.items():
-            for kind in ("pins", "discs"):
-                plotter.remove_actor(f"{kind} {i} {state}", render=False)
-            if state in there:
-                discs = _discs(panel, there[state], scale)
-                if discs is not None:
-                    name = f"discs {i} {state}"
-                    plotter.add_mesh(
-                        discs, name=name, color=colour, opacity=0.35, lighting=False, render=False
-                    )
-                plotter.add_mesh(
-                    _pins(panel, there[state], scale),
-                    name=f"pins {i} {state}",  # a name is removed from all panels
-                    color=colour,
-                    lighting=False,
-                    render=False,
-                )
+        for state, numbers in there.items():
+            discs, marks = _pins(panel, numbers, scale)
+            if len(discs):
+                plotter.add_mesh(_joined(discs), color=COLOURS[state], opacity=0.35, **plain)
+            plotter.add_mesh(_joined(marks), color=COLOURS[state], **plain)
         if len(panel.supports):
-            plotter.add_mesh(
-                _lines(panel, scale),
-                name=f"supports {i}",
-                color="black",
-                line_width=2,
-                lighting=False,
-                render=False,
-            )
-        plotter.add_text(
-            panel.title,
-            name="title",
-            position="upper_edge",
-            color="black",
-            font_size=round(factor * TITLE),
-            render=False,
-        )
+            ends = np.insert(panel.supports.reshape(-1, 2), 2, 0.01 * scale.half, axis=1)
+            lines = pyvista.line_segments_from_points(ends)
+            plotter.add_mesh(lines, color="black", line_width=2, **plain)
+        title = {"position": "upper_edge", "color": "black", "font_size": round(factor * TITLE)}
+        plotter.add_text(panel.title, render=False, **title)
         entries = [[state, COLOURS[state]] for state in there]
         if scale.arrow:
             entries.append([scale.arrow, "black"])
         if entries:
             size = (0.45, factor * LINE / height * len(entries))
-            legend = plotter.add_legend(entries, name="legend", face="circle", bcolor=None, size=size)
+            legend = plotter.add_legend(entries, face="circle", bcolor=None, size=size)
             legend.SetPosition(0.02, 1.0 - factor * BELOW_TITLE / height - size[1])
 
 
-def _discs(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
-    """Return the round ones among some pins, in front of the bodies; None if there are none."""
+def _pins(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> tuple[list[Any], list[Any]]:
+    """Return the discs of round pins, and marks of all with their forces, which end where a pin touches."""
     import pyvista
 
-    discs = pyvista.MultiBlock()
-    for pin, radius in zip(panel.pins[numbers], panel.radii[numbers], strict=True):
-        if radius:
-            centre = (*pin, 0.01 * scale.half)
-            discs.append(pyvista.Disc(center=centre, inner=0.0, outer=radius, c_res=60))
-    return discs.combine().extract_surface(algorithm=None) if len(discs) else None
-
-
-def _pins(panel: Panel, numbers: NDArray[np.int64], scale: Scale) -> Any:
-    """Return the marks of some pins, with their forces as arrows that end where a pin touches."""
-    import pyvista
-
-    height, marks = 0.01 * scale.half, pyvista.MultiBlock()
+    height = 0.01 * scale.half  # in front of the bodies
+    discs, marks = [], []
     for pin, radius, force in zip(
         panel.pins[numbers], panel.radii[numbers], panel.forces[numbers], strict=True
     ):
+        if radius:
+            discs.append(pyvista.Disc(center=(*pin, height), inner=0.0, outer=radius, c_res=60))
         marks.append(pyvista.Sphere(radius=POINT * scale.half, center=(*pin, 4.0 * height)))
         length = float(np.hypot(*force)) * scale.force
         if length > 0.04 * scale.half:
             direction = force / np.hypot(*force)
-            tail = pin + (radius - length) * direction
-            marks.append(
-                pyvista.Arrow(
-                    start=(*tail, 6.0 * height), direction=(*direction, 0.0), scale=length,
-                    tip_length=0.25, tip_radius=0.08, shaft_radius=0.025,
-                )
-            )  # fmt: skip
-    return marks.combine().extract_surface(algorithm=None)
+            tail = (*(pin + (radius - length) * direction), 6.0 * height)
+            thick = {"tip_length": 0.25, "tip_radius": 0.08, "shaft_radius": 0.025}
+            marks.append(pyvista.Arrow(start=tail, direction=(*direction, 0.0), scale=length, **thick))
+    return discs, marks
 
 
-def _lines(panel: Panel, scale: Scale) -> Any:
-    """Return the symbols of the supports as lines in front of the bodies."""
+def _joined(parts: list[Any]) -> Any:
     import pyvista
 
-    ends = np.pad(panel.supports.reshape(-1, 2), ((0, 0), (0, 1)), constant_values=0.01 * scale.half)
-    return pyvista.line_segments_from_points(ends)
+    return pyvista.MultiBlock(parts).combine().extract_surface(algorithm=None)
 
 
 def _window(panels: list[Panel], scale: Scale) -> tuple[int, int, float]:
@@ -300,44 +225,29 @@ def _window(panels: list[Panel], scale: Scale) -> tuple[int, int, float]:
 
 def _bar(letters: float, height: float) -> dict[str, Any]:
     """Return the options of the colours, for letters of that size in pixels and a part of the panel's height."""
-    return {
-        "color": "black",
-        "fmt": "%.4g",
-        "width": 0.7,
-        "height": height,
-        "position_x": 0.15,
-        "position_y": 0.01,
-        "n_labels": 3,
-        "unconstrained_font_size": True,
-        "title_font_size": round(letters),
-        "label_font_size": round(letters),
-    }
+    place = {"position_x": 0.15, "position_y": 0.01, "width": 0.7, "height": height}
+    sizes = dict.fromkeys(("title_font_size", "label_font_size"), round(letters))
+    return {"color": "black", "fmt": "%.4g", "n_labels": 3, "unconstrained_font_size": True, **place, **sizes}
 
 
-def _draw_files(frames: list[list[Panel]], scale: Scale, folder: Path) -> None:
-    plotter = _plotter(frames[0], scale, off_screen=True)
-    for k, panels in enumerate(frames):
-        _draw(plotter, panels, scale)
-        plotter.render()
-        plotter.screenshot(folder / f"frame-{k:04d}.png")
-    plotter.close()
-
-
-def _show(frames: list[list[Panel]], scale: Scale) -> None:
-    plotter = _plotter(frames[-1], scale, off_screen=False)
-
-    def move(value: float) -> None:
-        _draw(plotter, frames[round(value)], scale)
-
+def _main(frames: list[list[Panel]], scale: Scale, folder: Path | None) -> None:
+    """Draw every frame to a picture in the folder; without one, open a window."""
+    plotter = _plotter(frames[-1], scale, off_screen=folder is not None)
+    if folder is not None:
+        for k, panels in enumerate(frames):
+            _draw(plotter, panels, scale)
+            plotter.render()
+            plotter.screenshot(_picture(folder, k))
+        plotter.close()
+        return
+    slider = {"value": len(frames) - 1, "title": "load step", "fmt": "%.0f", "color": "black"}
     plotter.subplot(0, 0)
     plotter.add_slider_widget(
-        move, (0, len(frames) - 1), value=len(frames) - 1, title="load step", fmt="%.0f", color="black"
+        lambda value: _draw(plotter, frames[round(value)], scale), (0, len(frames) - 1), **slider
     )
     plotter.show()
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 2:
-        _draw_files(*_read(Path(sys.argv[1])), Path(sys.argv[2]))
-    else:
-        _show(*_read(Path(sys.argv[1])))
+    given, scale = pickle.loads(Path(sys.argv[1]).read_bytes())  # noqa: S301 our own file, of the caller
+    _main(given, scale, Path(sys.argv[2]) if len(sys.argv) > 2 else None)

@@ -13,21 +13,10 @@ from comparisons.models.options import ModelError
 from comparisons.models.outside.programs import offered
 from comparisons.response import Array
 from comparisons.scene import BeamSpec, ContactSpec, PinSpec, Scene
-from comparisons.scene.conditions import COMPONENTS, LoadSpec, SpringSpec
+from comparisons.scene.conditions import LoadSpec
 from comparisons.show import palette
-from comparisons.show.plot import WIDTH, figure, save
-from comparisons.show.symbols import (
-    arc,
-    chain,
-    held_components,
-    hinge_symbol,
-    inward,
-    legend_symbol,
-    placed,
-    spring_symbol,
-    support_name,
-    support_symbol,
-)
+from comparisons.show.plot import WIDTH, arrow, figure, ribbon, save
+from comparisons.show.symbols import arc, chain, draw_symbols, legend_symbol
 
 BEAM, PIN, SIDE, HELD, LOAD = palette.BLUE, palette.PIN, palette.PURPLE, palette.BLACK, palette.GREEN
 SYMBOL, STROKE, ARROW, TURN = 0.025, 0.012, 0.14, 0.05
@@ -36,8 +25,8 @@ PULL = 0.7
 """Cosine of the angle between a force and its beam above which the force is drawn as one that pulls."""
 ROUNDS = 3
 """Times that the labels are separated and the axes fitted around them, which change each other."""
-STROKES = 40
-"""Strokes along the side of a contact, and pieces of an axis."""
+PARTS: list[float] = np.linspace(0.0, 1.0, 41).tolist()
+"""Fractions of the length at the points of an axis, and at the strokes along the side of a contact."""
 ROW = 11
 """Arrows of a force per length."""
 NAME, WEIGHT = 0.25, 0.65
@@ -48,12 +37,8 @@ UP = np.array([0.0, 1.0])
 def stated(scene: Scene, others: Sequence[str] = ()) -> Iterator[str]:
     """Yield a line on what the scene has, and one for every model: whether it can state the scene, or why not.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    others : sequence of str
-        Adapters and program files that are asked besides the models of this package and of entry points.
+    The `others` are adapters and program files that are asked besides the models of this package and of entry
+    points.
     """
     counts = ((len(scene.beams), "beam"), (len(scene.pins), "pin"), (len(scene.contacts), "contact pair"))
     parts = (f"{count} {what}{'' if count == 1 else 's'}" for count, what in counts)
@@ -75,9 +60,12 @@ def draw(scene: Scene, path: Path) -> None:
     Beams and round pins have their true size. The symbols of supports, loads and contact sides have a size of their own; the value of
     a load stands beside its arrow.
     """
-    low, high = _bounds(scene)
-    size = float((high - low).max())
-    width, height = np.maximum(high - low, 0.2 * size) + 0.2 * size
+    points = np.concatenate([_axis(beam)[0] for beam in scene.beams])
+    for pin in scene.pins:
+        reach = pin.radius or 0.0
+        points = np.concatenate([points, np.array(pin.points) - reach, np.array(pin.points) + reach])
+    size = float(np.ptp(points, axis=0).max())
+    width, height = np.maximum(np.ptp(points, axis=0), 0.2 * size) + 0.2 * size
     fig = figure(figsize=(WIDTH, float(np.clip(0.85 * WIDTH * height / width, 1.6, 6.5)) + 1.4))
     axes = fig.subplots()
     axes.set_aspect("equal", adjustable="datalim")
@@ -94,43 +82,17 @@ def draw(scene: Scene, path: Path) -> None:
     axes.margins(0.08)
     axes.autoscale_view()
     axes.grid(visible=True, linewidth=0.3)
-    entries = sketch.legend
-    fig.legend(
-        entries.values(), entries.keys(), loc="outside lower center", ncols=2, fontsize="small", frameon=False
-    )
+    place = {"loc": "outside lower center", "ncols": 2, "fontsize": "small", "frameon": False}
+    fig.legend(sketch.legend.values(), sketch.legend.keys(), **place)
     for _ in range(ROUNDS):
         fig.draw_without_rendering()
         sketch.separate()
     save(fig, path)
 
 
-def _bounds(scene: Scene) -> tuple[Array, Array]:
-    """Return the lowest and the highest coordinates of beams and pins."""
-    points = [point for beam in scene.beams for point in _axis(beam)[0].tolist()]
-    for pin in scene.pins:
-        reach = pin.radius or 0.0
-        points += [(x + dx, y + dx) for x, y in pin.points for dx in (-reach, reach)]
-    found = np.array(points)
-    return found.min(axis=0), found.max(axis=0)
-
-
 @dataclass(kw_only=True)
 class _Sketch:
-    """A drawing that grows, and its legend.
-
-    Attributes
-    ----------
-    axes : Axes
-        Where it is drawn.
-    scene : Scene
-        What is drawn.
-    size : float
-        Size of the scene [length].
-    legend : dict
-        What is drawn so far, by its words in the legend.
-    labels : list of (Annotation, float)
-        What is written so far, with 1 where it may move up and -1 where it may move down.
-    """
+    """A drawing that grows; a label that moves down in favour of others has -1 beside it."""
 
     axes: Any
     scene: Scene
@@ -147,84 +109,61 @@ class _Sketch:
     def beam(self, beam: BeamSpec) -> None:
         """Draw a beam as its outline, at least a line, with its name and direction."""
         axis, left = _axis(beam)
-        half = _heights(beam)[:, None] / 2 * left
-        outline = np.concatenate([axis - half, (axis + half)[::-1]])
-        (drawn,) = self.axes.fill(*outline.T, facecolor=BEAM, edgecolor=BEAM, alpha=0.35, linewidth=1.5)
+        heights = np.array([beam.height_at(part) for part in PARTS])
+        colours = {"facecolor": BEAM, "edgecolor": BEAM, "alpha": 0.35, "linewidth": 1.5}
+        (drawn,) = self.axes.fill(*ribbon(axis, left, heights).T, **colours)
         (line,) = self.axes.plot(*axis.T, color=BEAM, linewidth=1.0)
         middle, tangent = np.array(beam.place(0.5)), np.array(beam.tangent(0.5))
-        self._arrow(middle, middle + 0.03 * self.size * tangent, BEAM)
+        arrow(self.axes, middle, middle + 0.03 * self.size * tangent, BEAM)
         sides = {contact.side for contact in self.scene.contacts if contact.beam == beam.name}
         taken = {1.0 if side == "left" else -1.0 for side in sides} | set(self._loaded_sides(beam))
         clear = (-1.0 if taken == {1.0} else 1.0) * _across(beam.tangent(NAME))
         self._label(beam.name, beam.place(NAME) + beam.height_at(NAME) / 2 * clear, clear, BEAM)
-        if beam.height is None:
-            self.legend.setdefault("beam: axis, without a height", line)
-        else:
-            self.legend.setdefault("beam, height to scale", drawn)
+        flat = beam.height is None
+        words = "beam: axis, without a height" if flat else "beam, height to scale"
+        self.legend.setdefault(words, line if flat else drawn)
 
     def _loaded_sides(self, beam: BeamSpec) -> Iterator[float]:
         """Yield 1 for a load along a beam whose arrows stand on its left where its name is, and -1 for one on the right."""
-        for history in self.scene.load_histories:
-            load = history.load
+        for load in (history.load for history in self.scene.load_histories):
             if load.beam == beam.name and load.force_per_length is not None:
                 yield -float(np.sign(np.array(load.force_per_length) @ _across(beam.tangent(NAME))))
 
     def side(self, contact: ContactSpec) -> None:
         """Draw the surface that a node touches, with strokes on the side from which the node comes."""
-        beam = self.scene.beam(contact.beam)
-        axis, left = _axis(beam, STROKES)
-        normal = left if contact.side == "left" else -left
-        radius = self.scene.radius(contact)
-        offsets = [
-            self.scene.offset(contact, part) - radius for part in np.linspace(0.0, 1.0, len(axis)).tolist()
-        ]
-        feet = axis + np.array(offsets)[:, None] * normal
+        from matplotlib.collections import LineCollection
+
+        axis, left = _axis(self.scene.beam(contact.beam))
+        normal, radius = left if contact.side == "left" else -left, self.scene.radius(contact)
+        offsets = np.array([self.scene.offset(contact, part) for part in PARTS]) - radius
+        feet = axis + offsets[:, None] * normal
         strokes = np.stack([feet, feet + STROKE * self.size * normal], axis=1)
-        self._segments(np.concatenate([chain(feet), strokes]), SIDE, 0.9)
+        drawn = np.concatenate([chain(feet), strokes])
+        self.axes.add_collection(LineCollection(list(drawn), colors=SIDE, linewidths=0.9, zorder=4))
+        self.axes.update_datalim(drawn.reshape(-1, 2))
         friction = f", friction {contact.friction:g}" if contact.friction else ""
         words = f"side of contact: {contact.surface} of the beam{friction}"
         self.legend.setdefault(words, _line(SIDE, marker="|", markersize=6))
 
     def supports(self) -> None:
         """Draw the supports, their prescribed motions, springs and hinges."""
-        scene = self.scene
-        for support in scene.all_supports:
-            symbol = support_symbol(held_components(support), inward(scene, support))
-            self._segments(placed(symbol, np.array(scene.place(support.node)), SYMBOL * self.size), HELD, 1.1)
-            symbol = support_symbol(held_components(support), UP)
-            self.legend.setdefault(support_name(support), legend_symbol(symbol))
-            at = np.array(scene.place(support.node))
-            changes = scene.prescribed_motions[support.node].increments
+        lines = {beam.name: _axis(beam)[0] for beam in self.scene.beams}
+        self.legend |= draw_symbols(self.axes, self.scene, lines, SYMBOL * self.size)
+        for support in self.scene.all_supports:
+            place = self.scene.place(support.node)
+            at = np.array(place)
+            changes = self.scene.prescribed_motions[support.node].increments
             for stage, (dx, dy, turn) in enumerate(changes, 1):
-                after = _after(stage)
                 if dx or dy:
                     path = np.array([dx, dy])
-                    self._arrow(at, at + path, HELD)
-                    self._label(f"{hypot(dx, dy):.6g} {self.units[1]}{after}", at + path, path, HELD)
+                    arrow(self.axes, at, at + path, HELD)
+                    words = f"{hypot(dx, dy):.6g} {self.units[1]}{_after(stage)}"
+                    self._label(words, at + path, path, HELD)
                     at = at + path
                 if turn:
-                    self._turn(scene.place(support.node), turn, f"{abs(turn):.6g} rad{after}", HELD)
+                    self._turn(place, turn, f"{abs(turn):.6g} rad{_after(stage)}", HELD)
                 if dx or dy or turn:
                     self.legend.setdefault("motion of a support", _line(HELD, marker=">"))
-        for spring in scene.springs:
-            self._spring(spring)
-        for hinge in scene.hinges:
-            symbol = hinge_symbol()
-            self._segments(placed(symbol, np.array(scene.place(hinge.node)), SYMBOL * self.size), HELD, 1.1)
-            force, length = self.units
-            stiff = f" of {hinge.stiffness:.6g} {force} {length}/rad" if hinge.stiffness else ""
-            self.legend.setdefault(f"hinge{' with a spring' if stiff else ''}{stiff}", legend_symbol(symbol))
-
-    def _spring(self, spring: SpringSpec) -> None:
-        force, length = self.units
-        stiffness = dict(zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True))
-        for component in spring.held:
-            symbol = spring_symbol(component, inward(self.scene, spring))
-            at = np.array(self.scene.place(spring.node))
-            self._segments(placed(symbol, at, SYMBOL * self.size), HELD, 1.1)
-            unit = f"{force} {length}/rad" if component == "rotation" else f"{force}/{length}"
-            words = f"spring of {stiffness[component]:.6g} {unit} in {component}"
-            self.legend.setdefault(words, legend_symbol(spring_symbol(component, UP)))
 
     def loads(self) -> None:
         """Draw the loads of every stage with their values, and the weights of the beams."""
@@ -256,7 +195,7 @@ class _Sketch:
         along = force / np.hypot(*force)
         tip = at + ARROW * self.size * along if pulls else at
         tail = tip - ARROW * self.size * along
-        self._arrow(tail, tip, LOAD, 2.0)
+        arrow(self.axes, tail, tip, LOAD, 2.0)
         if beside:
             self._label(words, (tail + tip) / 2, np.array([1.0, 0.0]), LOAD)
         else:
@@ -278,12 +217,11 @@ class _Sketch:
         tips = np.array([beam.place(part) for part in np.linspace(*load.span, ROW).tolist()])
         tails = tips - ARROW / 2 * self.size * along
         for tail, tip in zip(tails, tips, strict=True):
-            self._arrow(tail, tip, LOAD, 0.9)
+            arrow(self.axes, tail, tip, LOAD, 0.9)
         self.axes.plot(*tails.T, color=LOAD, linewidth=0.9)
         self._label(words, tails[ROW // 2], -along, LOAD)
-        self.legend.setdefault(
-            "force per length, arrows not to scale", _line(LOAD, marker=">", linewidth=0.9)
-        )
+        entry = _line(LOAD, marker=">", linewidth=0.9)
+        self.legend.setdefault("force per length, arrows not to scale", entry)
 
     def pin(self, pin: PinSpec) -> None:
         """Draw a pin with its true radius, and its path."""
@@ -295,7 +233,7 @@ class _Sketch:
         for stage in map(np.array, pin.stage_points):
             if len(stage) > 1:
                 last = (stage[-1] - stage[-2]) / np.hypot(*(stage[-1] - stage[-2]))
-                self._arrow(stage[-1] - 0.01 * self.size * last, stage[-1], PIN)
+                arrow(self.axes, stage[-1] - 0.01 * self.size * last, stage[-1], PIN)
         (mark,) = self.axes.plot(*points[0], "*", color=PIN, markersize=9, linestyle="none", zorder=5)
         self._label(pin.name, points[0] + (pin.radius or 0.0) * behind, behind, PIN)
         if pin.radius:
@@ -310,18 +248,6 @@ class _Sketch:
             (path,) = self.axes.plot(*points.T, ":", color=PIN, linewidth=1.5)
             self.legend.setdefault("path of a pin", path)
 
-    def _segments(self, segments: Array, colour: str, width: float) -> None:
-        from matplotlib.collections import LineCollection
-
-        self.axes.add_collection(LineCollection(list(segments), colors=colour, linewidths=width, zorder=4))
-        self.axes.update_datalim(segments.reshape(-1, 2))
-
-    def _arrow(self, tail: Array, tip: Array, colour: str, linewidth: float = 1.2) -> None:
-        """Draw an arrow; the axes reach to its ends."""
-        style = {"arrowstyle": "-|>", "color": colour, "linewidth": linewidth, "shrinkA": 0, "shrinkB": 0}
-        self.axes.annotate("", tip, tail, arrowprops=style)
-        self.axes.update_datalim([tail, tip])
-
     def _turn(self, place: Sequence[float], turn: float, words: str, colour: str) -> None:
         """Draw a moment or a rotation as an arc, with its value on the side without the arrow of a force."""
         at = np.array(place)
@@ -329,7 +255,7 @@ class _Sketch:
         above = any(np.array_equal(at, self.scene.place(load.node)) for load in ends)
         points = at + TURN * self.size * arc(turn)
         self.axes.plot(*points.T, color=colour, linewidth=2.0)
-        self._arrow(points[-2], points[-1], colour, 2.0)
+        arrow(self.axes, points[-2], points[-1], colour, 2.0)
         side = -UP if above else UP
         self._label(words, at + TURN * self.size * side, side, colour)
 
@@ -367,20 +293,10 @@ def _after(stage: int) -> str:
     return f" (stage {stage})" if stage > 1 else ""
 
 
-def _parts(pieces: int) -> list[float]:
-    return [float(part) for part in np.linspace(0.0, 1.0, pieces + 1)]
-
-
-def _axis(beam: BeamSpec, pieces: int = STROKES) -> tuple[Array, Array]:
+def _axis(beam: BeamSpec) -> tuple[Array, Array]:
     """Return points of the undeformed axis, and the unit vectors to its left there."""
-    parts = _parts(pieces)
-    return np.array([beam.place(part) for part in parts]), np.array(
-        [_across(beam.tangent(part)) for part in parts]
-    )
-
-
-def _heights(beam: BeamSpec, pieces: int = STROKES) -> Array:
-    return np.array([beam.height_at(part) for part in _parts(pieces)])
+    left = [_across(beam.tangent(part)) for part in PARTS]
+    return np.array([beam.place(part) for part in PARTS]), np.array(left)
 
 
 def _across(tangent: Sequence[float]) -> Array:

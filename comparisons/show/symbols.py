@@ -34,28 +34,12 @@ NAMES = {
 """Names of supports by the components that they hold."""
 
 
-def support_name(support: SupportSpec) -> str:
-    """Return the name of a support in a legend."""
-    return NAMES[held_components(support)]
-
-
-def held_components(support: SupportSpec) -> tuple[str, ...]:
-    """Return the components that a support holds, in the order of `NAMES`."""
-    return tuple(name for name in COMPONENTS if name in support.held)
-
-
 def support_symbol(held: tuple[str, ...], away: Array) -> Segments:
-    """Return the segments of a support's symbol.
+    """Return the segments of the symbol of a support by what it holds, a key of `NAMES`.
 
-    Parameters
-    ----------
-    held : tuple of str
-        The components held, a key of `NAMES`.
-    away : ndarray, shape (2,)
-        Unit vector from the support into its beam; the ground is on the other side.
+    The unit vector `away` (2,) points from the support into its beam; the ground is on the other side.
     """
-    segments = _SHAPES[len(held), "rotation" in held]()
-    return turned(segments, _up(held, away))
+    return turned(_SHAPES[held], _up(held, away))
 
 
 def _up(held: tuple[str, ...], away: Array) -> Array:
@@ -78,17 +62,7 @@ def placed(segments: Segments, at: Array, size: float) -> Segments:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Symbol:
-    """The symbol of what holds or releases a beam's end.
-
-    Attributes
-    ----------
-    item : SupportSpec, SpringSpec or HingeSpec
-        What it shows.
-    words : str
-        Its name in a legend.
-    segments : ndarray, shape (n, 2, 2)
-        Line segments of unit size about the node.
-    """
+    """The symbol of what is at a beam's end: segments (n, 2, 2) of unit size about the node, and its words."""
 
     item: SupportSpec | SpringSpec | HingeSpec
     words: str
@@ -101,35 +75,31 @@ class Symbol:
 
 def end_symbols(scene: Scene) -> list[Symbol]:
     """Return the symbols of the supports, springs and hinges of a scene."""
-    found = [
-        Symbol(
-            item=one,
-            words=support_name(one),
-            segments=support_symbol(held_components(one), inward(scene, one)),
-        )
-        for one in scene.all_supports
-    ]
-    found += [
-        Symbol(item=one, words="spring", segments=spring_symbol(component, inward(scene, one)))
-        for one in scene.springs
-        for component in one.held
-    ]
-    return found + [Symbol(item=one, words="hinge", segments=hinge_symbol()) for one in scene.hinges]
+    force, length = (unit.strip() for unit in scene.units.split(","))
+    found = []
+    for one in scene.all_supports:
+        held = tuple(name for name in COMPONENTS if name in one.held)
+        segments = support_symbol(held, inward(scene, one))
+        found.append(Symbol(item=one, words=NAMES[held], segments=segments))
+    for spring in scene.springs:
+        stiffness = dict(zip(COMPONENTS, (*spring.stiffness, spring.rotation), strict=True))
+        for name in spring.held:
+            unit = f"{force} {length}/rad" if name == "rotation" else f"{force}/{length}"
+            words = f"spring of {stiffness[name]:.6g} {unit} in {name}"
+            segments = spring_symbol(name, inward(scene, spring))
+            found.append(Symbol(item=spring, words=words, segments=segments))
+    for hinge in scene.hinges:
+        unit = f"{force} {length}/rad"
+        words = f"hinge with a spring of {hinge.stiffness:.6g} {unit}" if hinge.stiffness else "hinge"
+        found.append(Symbol(item=hinge, words=words, segments=hinge_symbol()))
+    return found
 
 
 def draw_symbols(axes: Any, scene: Scene, lines: Mapping[str, Array], size: float) -> dict[str, Any]:
-    """Draw the symbols of supports, springs and hinges where their ends are, and return their entries in a legend.
+    """Draw the symbols of supports, springs and hinges at their ends; return their entries in a legend.
 
-    Parameters
-    ----------
-    axes : Axes
-        Where they are drawn; it reaches around them.
-    scene : Scene
-        Its supports, springs and hinges.
-    lines : mapping of ndarray, shape (m, 2)
-        The deformed axes, by beam.
-    size : float
-        Size of a symbol [length].
+    The `lines` (m, 2) are the deformed axes by beam. The `size` of a symbol is a length. The axes reach
+    around the symbols.
     """
     from matplotlib.collections import LineCollection
 
@@ -148,14 +118,9 @@ def inward(scene: Scene, support: SupportSpec | SpringSpec) -> Array:
 
 
 def spring_symbol(component: str, away: Array) -> Segments:
-    """Return the segments of a spring against x, y or the rotation, with the ground on the side away from the beam.
+    """Return the segments of a spring against one of `COMPONENTS`; the ground is away from the beam.
 
-    Parameters
-    ----------
-    component : str
-        One of `COMPONENTS`.
-    away : ndarray, shape (2,)
-        Unit vector from the spring into its beam.
+    The unit vector `away` (2,) points from the spring into its beam.
     """
     if component == "rotation":
         angle = np.linspace(0.0, 4.0 * np.pi, 41)
@@ -205,41 +170,20 @@ def _lines(*ends: Sequence[float]) -> Segments:
 
 def _ground(y: float, half: float) -> Segments:
     """Return a line with hatches below it."""
-    x = np.linspace(-half, half, HATCHES + 1)[1:]
-    hatches = np.stack([np.stack([x, 0 * x + y], 1), np.stack([x - 0.3, 0 * x + y - 0.35], 1)], 1)
-    return np.concatenate([_lines((-half, y, half, y)), hatches])
+    x = np.linspace(-half, half, HATCHES + 1)[1:].tolist()
+    return _lines((-half, y, half, y), *((at, y, at - 0.3, y - 0.35) for at in x))
 
 
-def _triangle() -> Segments:
-    return _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
-
-
-def _clamp() -> Segments:
-    return _ground(0.0, 1.0)
-
-
-def _hinge() -> Segments:
-    return np.concatenate([_triangle(), _ground(-1.0, 0.9)])
-
-
-def _roller() -> Segments:
-    return np.concatenate([_triangle(), _ground(-1.25, 0.9)])
-
-
-def _guide() -> Segments:
-    return np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
-
-
-def _box() -> Segments:
-    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
-    return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
-
-
-_SHAPES = {
-    (3, True): _clamp,
-    (2, False): _hinge,
-    (1, False): _roller,
-    (2, True): _guide,
-    (1, True): _box,
+_TRIANGLE = _lines((0, 0, -0.6, -1), (-0.6, -1, 0.6, -1), (0.6, -1, 0, 0))
+_ROLLER = np.concatenate([_TRIANGLE, _ground(-1.25, 0.9)])
+_GUIDE = np.concatenate([_lines((-0.9, 0, 0.9, 0), (-0.9, -0.25, 0.9, -0.25)), _ground(-0.25, 0.9)])
+_SHAPES: dict[tuple[str, ...], Segments] = {
+    ("x", "y", "rotation"): _ground(0.0, 1.0),
+    ("x", "y"): np.concatenate([_TRIANGLE, _ground(-1.0, 0.9)]),
+    ("x",): _ROLLER,
+    ("y",): _ROLLER,
+    ("x", "rotation"): _GUIDE,
+    ("y", "rotation"): _GUIDE,
+    ("rotation",): chain(0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])),
 }
-"""Symbols by the number of components held, and whether the rotation is one of them."""
+"""Symbols of supports by the components that they hold."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.errors import Errors
-from comparisons.output import csv_text
+from comparisons.output import aligned, csv_text
 from comparisons.quantities import KEPT, PATH, SCOPES
 from comparisons.response import Response
 
@@ -16,10 +16,8 @@ class Row:
 
     Attributes
     ----------
-    label : str
-        Label of the run.
-    response : Response
-        Its response.
+    label, response : str, Response
+        Label of the run, and its response.
     errors : Errors or None
         Its errors; the reference itself has none.
     family : str
@@ -56,13 +54,7 @@ SHOWN = ("force", "arc", "moment", "tip", "friction")
 
 def table_text(rows: list[Row], reference: str) -> str:
     """Return the table as aligned text; errors are the largest over all load parameters."""
-    lines = [HEADER, *(cells(row) for row in rows)]
-    widths = [max(len(line[column]) for line in lines) for column in range(len(HEADER))]
-    first, *rest = (
-        line[0].ljust(widths[0])
-        + "".join(f"  {text:>{width}}" for text, width in zip(line[1:], widths[1:], strict=True))
-        for line in lines
-    )
+    first, *rest = aligned([HEADER, *map(cells, rows)], [False] + [True] * (len(HEADER) - 1))
     title = (
         f"Largest error over the load parameters reached, against the {reference}; forces and moments relative to their\n"
         "largest, positions to the length, friction to the contact forces; Newton iterations and seconds for the whole path"
@@ -72,16 +64,13 @@ def table_text(rows: list[Row], reference: str) -> str:
 
 def cells(row: Row) -> tuple[str, ...]:
     """Return a run as text under `HEADER`."""
-    shown = ["-" if row.errors is None else _error(row.errors["path"][name]) for name in SHOWN]
+    # a dash where the run or the scene does not have the quantity
+    errors = [np.nan if row.errors is None else row.errors["path"][name] for name in SHOWN]
+    shown = ["-" if np.isnan(value) else f"{value:.1e}" for value in errors]
     response = row.response
     label = row.label if response.completed else f"{row.label} ({response.status})"
     iterations, seconds = str(response.iterations), f"{response.wall_seconds:.3f}"
     return label, str(response.unknowns), *shown, _stable(response), iterations, seconds
-
-
-def _error(value: float) -> str:
-    """Return an error, or a dash where the run or the scene does not have the quantity."""
-    return "-" if np.isnan(value) else f"{value:.1e}"
 
 
 def _stable(response: Response) -> str:

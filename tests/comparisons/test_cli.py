@@ -103,7 +103,7 @@ def test_a_mesh_file_without_its_library_is_refused_in_one_line(scene, monkeypat
     Path("strip.msh").touch()
     Path("my.toml").write_text(KS.replace("height = 0.02", 'height = 0.02\nsolid_mesh_file = "strip.msh"'))
     assert run("solve my.toml --model solid") == 2
-    assert capsys.readouterr().err == "crossval: solid: meshio is needed: install tsm-crossval[io]\n"
+    assert capsys.readouterr().err == "crossval: meshio: cannot be imported, install tsm-crossval again\n"
 
 
 def test_solve_to_an_accuracy(scene, capsys):
@@ -138,7 +138,7 @@ def test_the_version_names_what_is_missing_and_the_extra_that_installs_it(monkey
     assert (found["numpy"], found["scipy"]) == (("ok", version("numpy")), ("MISSING", "missing"))
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    own = [(name, line) for name in ("view", "io", "cluster", "peers") for line in extras[name]]
+    own = [(name, line) for name in ("view", "cluster", "peers") for line in extras[name]]
     stated = {(re.split(r"[>=\[]", line)[0], name) for name, line in own}
     told = {(what, re.match(r"missing, extra (\w+): ", state)) for what, (_, state) in found.items()}
     assert {(what, extra[1]) for what, extra in told if extra} == stated

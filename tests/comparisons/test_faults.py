@@ -242,9 +242,9 @@ from dataclasses import replace
 from comparisons.models import solve
 from comparisons.show.render import render_panels
 from comparisons.scene import load_scene
-from comparisons.show.stress import beam_panel
+from comparisons.show.panel import mises_panel
 scene = replace(load_scene("ks-cantilever"), load_parameters=2)
-print(render_panels([beam_panel(solve(scene, "tsm"), scene, [1], "beams")], "stress", Path("a.png")))
+print(render_panels([mises_panel(solve(scene, "tsm"), scene, [1], "beams")], "stress", Path("a.png")))
 """
 
 

@@ -13,8 +13,8 @@ from comparisons.models.options import ModelError
 from comparisons.models.outside.status import ProgramError, ProgramStatus
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
-from comparisons.response import ContactHistory, Grid, Response, SupportHistory
-from comparisons.response.axis import SampledAxes
+from comparisons.response import ContactHistory, Response, SupportHistory
+from comparisons.response.axis import SampledAxes, axis_grid, no_grid
 from comparisons.response.from_json import KEYS, NotFiniteError, contradictions, once, restated
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
@@ -121,26 +121,7 @@ def silent(
         unknowns=0,
         wall_seconds=0.0,
         axis_line=SampledAxes(arc_length={}, position={}),
-        grid=lambda k: axis_grid(scene, SampledAxes(arc_length={}, position={}), k),
-    )
-
-
-def axis_grid(scene: Scene, axes: SampledAxes, k: int) -> Grid:
-    """Return the axes of all beams as lines, with their displacements."""
-    points, deformed, lines, numbers, count = [], [], [], [], 0
-    for name, arc in axes.arc_length.items():
-        beam = scene.beam(name)
-        numbers.append(np.full(len(arc), scene.beams.index(beam)))
-        points.append(np.array(beam.start) + np.outer(arc, beam.direction))
-        deformed.append(axes.position[name][k])
-        number = count + np.arange(len(arc) - 1)
-        lines.append(np.stack([number, number + 1], axis=1))
-        count += len(arc)
-    there, line = np.concatenate(points), np.concatenate(deformed)
-    return Grid(
-        points=there,
-        cells={"line": np.concatenate(lines)},
-        point_data={"displacement": line - there, "deformed": line, "beam": np.concatenate(numbers)},
+        grid=no_grid,
     )
 
 

@@ -1,16 +1,22 @@
 """Self-contained pages of results: a page is a list of sections, each with its markup and, if it moves, its data."""
 
-from comparisons.show.pages.markup import definitions, file_links, folded, picture, table, text
 from comparisons.show.pages.motion import Track, motion_section, tracks
-from comparisons.show.pages.page import Section, page, write_page
-from comparisons.show.pages.provenance import provenance
+from comparisons.show.pages.page import (
+    Section,
+    definitions,
+    folded,
+    page,
+    picture,
+    provenance,
+    table,
+    write_page,
+)
 from comparisons.show.pages.states import states_section
 
 __all__ = [
     "Section",
     "Track",
     "definitions",
-    "file_links",
     "folded",
     "motion_section",
     "page",
@@ -18,7 +24,6 @@ __all__ = [
     "provenance",
     "states_section",
     "table",
-    "text",
     "tracks",
     "write_page",
 ]

@@ -11,8 +11,7 @@ from comparisons.response import Array, Response
 from comparisons.response.material import frictions, frictions_found
 from comparisons.scene import Scene
 from comparisons.show import palette
-from comparisons.show.pages.markup import scrolling, text
-from comparisons.show.pages.page import Section
+from comparisons.show.pages.page import Section, scrolling, text
 from comparisons.show.symbols import end_symbols
 
 POINTS = 61
@@ -30,18 +29,10 @@ INKS = {palette.BLACK: "var(--ink)", palette.GREY: "var(--grey)"}
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Track:
-    """A quantity over the load parameters.
+    """A quantity over s load parameters: values (s,) by the label of the run, nan where it has none.
 
-    Attributes
-    ----------
-    title, unit : str
-        What it is.
-    values : dict of ndarray, shape (s,)
-        By the label of the run, nan where it has none.
-    errors : dict of ndarray, shape (s,)
-        Distance from the reference, by run; empty without a reference.
-    error_title : str
-        What the errors are.
+    The `errors` (s,) are the distance from the reference, empty without one, and `error_title` says what they
+    are.
     """
 
     title: str
@@ -52,34 +43,26 @@ class Track:
 
 
 def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> list[Track]:
-    """Return forces, arc positions, moments and frictions over the load parameters, with the errors of `comparisons.errors`.
+    """Return forces, arc positions, moments and frictions, with errors against the label `reference`.
 
-    A scene without contact has the forces of its supports. What vanishes in all responses is left out.
-
-    Parameters
-    ----------
-    responses : mapping of Response
-        By label.
-    reference : str
-        The label whose values the errors are against.
-    scene : Scene
-        The scene of the responses.
+    The errors are those of `comparisons.errors`. A scene without contact has the forces of its supports. What
+    vanishes in all responses is left out.
     """
     force, length = _units(scene)
     shown = {label: response for label, response in responses.items() if len(response.load_parameter)}
     rubbed = any(frictions_found(response, scene) for response in shown.values())
-    title = "friction" if any(contact.friction for contact in scene.contacts) else "spurious friction"
-    title = "friction found" if rubbed else title
+    spurious = not any(contact.friction for contact in scene.contacts)
+    friction = "friction found" if rubbed else "spurious friction" if spurious else "friction"
     acting = "contact force" if scene.contacts else "support force"
     quantities: dict[str, tuple[str, str, str, Callable[[Response], Mapping[str, Array]]]] = {
         "force": (acting, force, "the largest force", forces),
         "arc": ("arc position", length, "the length", _arcs),
         "moment": ("support moment", f"{force} {length}", "the largest moment", moments),
         "friction": (
-            title,
+            friction,
             "1",
             "the contact forces",
-            lambda response: frictions_found(response, scene) if rubbed else frictions(response, scene),
+            lambda response: (frictions_found if rubbed else frictions)(response, scene),
         ),
     }
     found = []
@@ -90,21 +73,17 @@ def tracks(responses: Mapping[str, Response], reference: str, scene: Scene) -> l
             for label, response in shown.items()
             if label != reference and reference in shown
         }
-        names = list(dict.fromkeys(name for one in values.values() for name in one))
-        names = [
-            name
-            for name in names
-            if any(np.any(np.nan_to_num(one.get(name, 0.0))) for one in values.values())
-        ]
+        names = dict.fromkeys(name for one in values.values() for name in one)
+        acts = [name for name in names if any(np.nan_to_num(v.get(name, 0.0)).any() for v in values.values())]
         found += [
             Track(
-                title=f"{title} {name}" if len(names) > 1 else title,
+                title=f"{title} {name}" if len(acts) > 1 else title,
                 unit=unit,
                 values={label: _numbers(one.get(name), shown[label]) for label, one in values.items()},
                 errors={label: one[name] for label, one in errors.items() if name in one},
                 error_title=f"error against the {reference}, over {scale}",
             )
-            for name in names
+            for name in acts
         ]
     return found
 
@@ -129,32 +108,23 @@ def motion_section(
     focus: str,
     vtu: Mapping[str, str] | None = None,
 ) -> Section:
-    """Return a section with the deformed axes of all runs under a slider, switches for each run, and histories.
+    """Return a section with the deformed axes under a slider, a switch for each run, and histories.
 
-    Parameters
-    ----------
-    title : str
-        Heading.
-    scene : Scene
-        Gives pins and units.
-    responses : mapping of Response
-        By label, which begins with a model's name.
-    shown : sequence of Track
-        The histories.
-    focus : str
-        The label of the run whose tip is shown enlarged.
-    vtu : mapping of str
-        Path of the VTU files of the load parameters, by label. ``{}`` in it is replaced by the number of the load parameter, from 1.
+    The labels of runs begin with a model's name. The tip of the run `focus` is enlarged. `vtu` has the path
+    of the VTU files by label; ``{}`` in it is replaced by the number of the load parameter, from 1.
     """
-    labels = _ordered([*responses, *(label for track in shown for label in track.values)])
     times = max((one.load_parameter for one in responses.values()), key=len)
     if not len(times):
         return Section(title=title, html="<p>No run reached a load parameter.</p>")
-    first = scene.beams[0]
-    _, length = _units(scene)
+    labels = dict.fromkeys([*responses, *(label for track in shown for label in track.values)])
+    # the wide solid below, the exact answers on top
+    ordered = sorted(labels, key=lambda label: -palette.style(label).width)
+    first, ends = scene.beams[0], np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
+    size = float(np.ptp(ends, axis=0).max())
+    decimals = DIGITS - int(np.floor(np.log10(size)))
     data = {
         "load_parameter": times,
-        "length": {"unit": length, "beam": first.length},
+        "length": {"unit": _units(scene)[1], "beam": first.length},
         "beams": [
             [beam.place(part) for part in np.linspace(0.0, 1.0, ARC if beam.turn else 2)]
             for beam in scene.beams
@@ -168,16 +138,25 @@ def motion_section(
             }
             for pin in scene.pins
         ],
-        "symbols": _symbols(scene, responses[focus], len(times)),
+        "symbols": [
+            {
+                "lines": np.round(SYMBOL * size * one.segments, decimals),
+                "at": np.round(
+                    [one.at(_axis(scene, responses[focus], one.item.beam, k)) for k in range(len(times))],
+                    decimals,
+                ),
+            }
+            for one in end_symbols(scene)
+        ],
         "tip": responses[focus].tips[first.name],
         "focus": focus,
         "runs": [
             {
                 "label": label,
                 **_line_style(label, number),
-                "lines": _lines(scene, responses[label]) if label in responses else [],
+                "lines": _lines(scene, responses.get(label), decimals),
             }
-            for number, label in enumerate(labels)
+            for number, label in enumerate(ordered)
         ],
         "tracks": shown,
         "vtu": vtu or {},
@@ -185,66 +164,32 @@ def motion_section(
     return Section(title=title, html=_markup(data, len(times)), data=data)
 
 
-def _symbols(scene: Scene, response: Response, steps: int) -> list[dict[str, Any]]:
-    """Return the symbols of supports, springs and hinges as lines about their nodes, and the places of the nodes at every load parameter.
-
-    Where the response has stopped, its last places stay.
-    """
-    size, decimals = _size(scene)
-    last = len(response.load_parameter) - 1
-    return [
-        {
-            "lines": np.round(SYMBOL * size * one.segments, decimals),
-            "at": [
-                np.round(one.at(_deformed(scene, response, one.item.beam, min(k, last))), decimals)
-                for k in range(steps)
-            ],
-        }
-        for one in end_symbols(scene)
-    ]
-
-
-def _deformed(scene: Scene, response: Response, beam: str, k: int) -> Array:
-    """Return the axis of a beam at load parameter number k; before the first one, its undeformed ends."""
-    if k >= 0:
-        return response.axis_line(beam, k)[1]
+def _axis(scene: Scene, response: Response, beam: str, k: int) -> Array:
+    """Return the axis of a beam at load parameter number k or the last one reached; its ends before that."""
+    last = min(k, len(response.load_parameter) - 1)
+    if last >= 0:
+        return response.axis_line(beam, last)[1]
     return np.array([scene.beam(beam).start, scene.beam(beam).end])
-
-
-def _size(scene: Scene) -> tuple[float, int]:
-    """Return the size of a scene, and the decimals of coordinates that a screen can show."""
-    ends = np.array([[beam.start, beam.end] for beam in scene.beams]).reshape(-1, 2)
-    size = float(np.ptp(ends, axis=0).max())
-    return size, DIGITS - int(np.floor(np.log10(size)))
-
-
-def _ordered(labels: Sequence[str]) -> list[str]:
-    """Return the labels once, in the order of drawing: the wide solid below, the exact answers on top."""
-    return sorted(dict.fromkeys(labels), key=lambda label: -palette.style(label).width)
 
 
 def _line_style(label: str, number: int) -> dict[str, Any]:
     """Colour, dashes and width. The page replaces black and grey by colours that are light on a dark screen."""
     style = palette.style(label)
-    return {
-        "colour": INKS.get(style.colour, style.colour),
-        "dash": "none" if style.unbroken else DASHES[number % len(DASHES)],
-        "width": style.width,
-    }
+    dash = "none" if style.unbroken else DASHES[number % len(DASHES)]
+    return {"colour": INKS.get(style.colour, style.colour), "dash": dash, "width": style.width}
 
 
-def _lines(scene: Scene, response: Response) -> list[list[Array]]:
+def _lines(scene: Scene, response: Response | None, decimals: int) -> list[list[Array]]:
     """Return the deformed axes (POINTS, 2) of all beams at every load parameter, rounded to what a screen can show."""
-    _, decimals = _size(scene)
-    return [
-        [np.round(_thinned(*response.axis_line(beam.name, k)), decimals) for beam in scene.beams]
-        for k in range(len(response.load_parameter))
-    ]
 
+    def thinned(arc: Array, line: Array) -> Array:
+        at = np.linspace(arc[0], arc[-1], POINTS)
+        return np.asarray(np.round([np.interp(at, arc, line[:, i]) for i in (0, 1)], decimals).T)
 
-def _thinned(arc: Array, line: Array) -> Array:
-    at = np.linspace(arc[0], arc[-1], POINTS)
-    return np.stack([np.interp(at, arc, line[:, i]) for i in (0, 1)], axis=1)
+    if response is None:
+        return []
+    steps = range(len(response.load_parameter))
+    return [[thinned(*response.axis_line(beam.name, k)) for beam in scene.beams] for k in steps]
 
 
 def _units(scene: Scene) -> tuple[str, str]:
@@ -254,13 +199,36 @@ def _units(scene: Scene) -> tuple[str, str]:
 
 def _markup(data: Mapping[str, Any], steps: int) -> str:
     """Return the frame that the script fills: switches, slider, drawings, charts and the table of values."""
+    runs = list(enumerate(data["runs"]))
     switches = "\n".join(
         f'<label class="switch"><input type="checkbox" checked data-switch="{number}">'
-        f'<svg class="swatch" viewBox="0 0 40 10" aria-hidden="true">{_swatch(run)}</svg>{text(run["label"])}</label>'
-        for number, run in enumerate(data["runs"])
+        f'<svg class="swatch" viewBox="0 0 40 10" aria-hidden="true"><line x1="1" y1="5" x2="39" y2="5" '
+        f'style="stroke:{run["colour"]};stroke-width:{run["width"]};stroke-dasharray:{run["dash"]}"/></svg>'
+        f"{text(run['label'])}</label>"
+        for number, run in runs
     )
-    charts = "\n".join(_chart_markup(number, track) for number, track in enumerate(data["tracks"]))
-    bands = "; bands reach from a model to the reference" if any(t.errors for t in data["tracks"]) else ""
+    # every track has a chart and a column of its values, and of its errors where there are some
+    columns = []
+    for number, track in enumerate(data["tracks"]):
+        columns.append((number, "values", f"{track.title} [{track.unit}]", f"{track.title} [{track.unit}]"))
+        if track.errors:
+            columns.append((number, "errors", "error", f"{track.title}, {track.error_title}"))
+    charts = "\n".join(
+        f'<figure><figcaption>{text(title)}</figcaption><svg class="chart" data-track="{number}" '
+        f'data-kind="{kind}" tabindex="0" role="img" aria-label="{text(title)} against the load parameter">'
+        "</svg></figure>"
+        for number, kind, _, title in columns
+    )
+    head = "".join(f'<th scope="col">{text(name)}</th>' for name in ("model", *(one[2] for one in columns)))
+    cells = "".join(f'<td data-track="{one[0]}" data-kind="{one[1]}">-</td>' for one in columns)
+    rows = "\n".join(
+        f'<tr data-run="{number}"><th scope="row">{text(run["label"])}</th>{cells}</tr>'
+        for number, run in runs
+    )
+    values = f'<table class="values">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>'
+    bands = (
+        "; bands reach from a model to the reference" if any(one[1] == "errors" for one in columns) else ""
+    )
     return f"""<noscript><p>The drawings of this section take a script; the files below hold the same numbers.</p></noscript>
 <div class="controls" data-moving>
 <label class="slider">load parameter <input type="range" min="0" max="{steps - 1}" step="1" value="{steps - 1}"></label>
@@ -277,44 +245,9 @@ def _markup(data: Mapping[str, Any], steps: int) -> str:
 <figcaption>The tip, enlarged.</figcaption></figure>
 </div>
 <p class="vtu"></p>
-{_values_table(data["tracks"], data["runs"])}
+<p class="caption now"></p>
+{scrolling("values at the load parameter of the slider", values)}
 <div class="charts">
 {charts}
 </div>
 <p class="hint">Charts: point at them, or move along them with the arrow keys{bands}.</p>"""
-
-
-def _swatch(run: Mapping[str, Any]) -> str:
-    return (
-        f'<line x1="1" y1="5" x2="39" y2="5" style="stroke:{run["colour"]};stroke-width:{run["width"]};'
-        f'stroke-dasharray:{run["dash"]}"/>'
-    )
-
-
-def _chart_markup(number: int, track: Track) -> str:
-    def chart(kind: str, title: str) -> str:
-        label = f"{title} against the load parameter"
-        return (
-            f'<figure><figcaption>{text(title)}</figcaption><svg class="chart" data-track="{number}" data-kind="{kind}" '
-            f'tabindex="0" role="img" aria-label="{text(label)}"></svg></figure>'
-        )
-
-    value = chart("values", f"{track.title} [{track.unit}]")
-    return value + (chart("errors", f"{track.title}, {track.error_title}") if track.errors else "")
-
-
-def _values_table(shown: Sequence[Track], runs: Sequence[Mapping[str, Any]]) -> str:
-    """Return the table whose cells the script fills."""
-    head, cells = '<th scope="col">model</th>', ""
-    for number, track in enumerate(shown):
-        head += f'<th scope="col">{text(track.title)} [{text(track.unit)}]</th>'
-        cells += f'<td data-track="{number}" data-kind="values">-</td>'
-        if track.errors:
-            head += '<th scope="col">error</th>'
-            cells += f'<td data-track="{number}" data-kind="errors">-</td>'
-    rows = "\n".join(
-        f'<tr data-run="{number}"><th scope="row">{text(run["label"])}</th>{cells}</tr>'
-        for number, run in enumerate(runs)
-    )
-    inner = f'<table class="values">\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>'
-    return '<p class="caption now"></p>\n' + scrolling("values at the load parameter of the slider", inner)

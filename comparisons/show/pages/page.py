@@ -1,41 +1,37 @@
-"""The page: style, script, data and sections in one file that loads nothing."""
+"""The page: style, script, data and sections in one file that loads nothing; pieces of HTML."""
 
+import base64
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
 from typing import Any
+from urllib.parse import quote
 
 from comparisons.files import write_text
-from comparisons.output import plain
-from comparisons.show.pages.markup import text
+from comparisons.output import cell, plain
+from comparisons.scene import Scene, to_toml
+from comparisons.version import machine, versions
 
 NAME = "report.html"
+TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """A part of a page.
+    """A part of a page: its heading, which no other section has, and the markup below it.
 
-    Attributes
-    ----------
-    title : str
-        Heading; no two sections of a page have the same.
-    html : str
-        Markup below the heading.
-    data : object
-        What a script shows: JSON's types, arrays or records. A script finds it as ``DATA[ident]``.
-    script : str
-        A script of the section's own, run after the page's; it must not say ``</script``.
+    The `data` are what a script shows, JSON's types, arrays or records; the script finds them as
+    ``DATA[ident]``.
     """
 
     title: str
     html: str
     data: Any = None
-    script: str = ""
 
     @property
     def ident(self) -> str:
@@ -44,19 +40,9 @@ class Section:
 
 
 def page(title: str, lead: str, sections: Sequence[Section]) -> str:
-    """Return sections as one HTML file without external resources.
+    """Return sections as one HTML file without external resources, below a title and a lead in plain text.
 
-    Parameters
-    ----------
-    title, lead : str
-        Heading and the sentence below it, plain text.
-    sections : sequence of Section
-        In their order.
-
-    Raises
-    ------
-    ValueError
-        If two sections have one title.
+    Two sections of one title raise `ValueError`.
     """
     idents = [section.ident for section in sections]
     if len(set(idents)) < len(idents):
@@ -68,9 +54,12 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> str:
         style=_part("style.css"),
         script=_part("script.js"),
         data=json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
-        scripts="\n".join(f"<script>\n{{\n{one.script}\n}}\n</script>" for one in sections if one.script),
         links="\n".join(f'<a href="#{one.ident}">{text(one.title)}</a>' for one in sections),
-        sections="\n".join(_framed(one) for one in sections),
+        sections="\n".join(
+            f'<section id="{one.ident}" aria-labelledby="{one.ident}-heading">\n'
+            f'<h2 id="{one.ident}-heading">{text(one.title)}</h2>\n{one.html}\n</section>'
+            for one in sections
+        ),
     )
 
 
@@ -78,15 +67,71 @@ def _part(name: str) -> str:
     return (resources.files("comparisons.show.pages") / name).read_text(encoding="utf-8")
 
 
-def _framed(section: Section) -> str:
-    heading = f'<h2 id="{section.ident}-heading">{text(section.title)}</h2>'
-    return (
-        f'<section id="{section.ident}" aria-labelledby="{section.ident}-heading">\n'
-        f"{heading}\n{section.html}\n</section>"
-    )
-
-
 def write_page(folder: Path, title: str, lead: str, sections: Sequence[Section]) -> Path:
     """Write the `page` as ``report.html`` to `folder`; return the file."""
     write_text(folder / NAME, page(title, lead, sections))
     return folder / NAME
+
+
+def provenance(scenes: Iterable[Scene], files: Iterable[Path], folder: Path) -> list[Section]:
+    """Return the sections that close every page: input, versions and machine, files.
+
+    Each scene opens on demand as its scene file. The files are linked relative to `folder`, where the page
+    is.
+    """
+    inputs = (
+        folded(f"{scene.name}.toml", f'<pre tabindex="0"><code>{text(to_toml(scene))}</code></pre>')
+        for scene in scenes
+    )
+    names = (path.relative_to(folder).as_posix() for path in files)
+    links = "\n".join(f'<li><a href="{quote(name)}">{text(name)}</a></li>' for name in names)
+    return [
+        Section(title="Input", html="\n".join(inputs)),
+        Section(title="Versions and machine", html=definitions({**versions(), **machine()})),
+        Section(title="Files", html=f"<ul>\n{links}\n</ul>"),
+    ]
+
+
+def text(value: Any) -> str:
+    """Return a value as escaped text: a number in three digits, what is not there as a dash."""
+    return escape(cell(value))
+
+
+def table(caption: str, header: Sequence[str], rows: Iterable[Sequence[Any]], *, prose: bool = False) -> str:
+    """Return a table that scrolls by itself where the screen is narrow; the first column heads its rows.
+
+    Its caption stands above it and names it; the cells of `prose` break their lines.
+    """
+    head = "".join(f'<th scope="col">{text(name)}</th>' for name in header)
+    body = "\n".join(
+        f'<tr><th scope="row">{text(first)}</th>{"".join(f"<td>{text(one)}</td>" for one in rest)}</tr>'
+        for first, *rest in rows
+    )
+    kind = ' class="prose"' if prose else ""
+    inner = f"<table{kind}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>"
+    return f'<p class="caption">{text(caption)}</p>\n{scrolling(caption, inner)}'
+
+
+def scrolling(label: str, inner: str) -> str:
+    """Return markup in a frame that the keyboard can scroll."""
+    return f'<div class="scroll" tabindex="0" role="region" aria-label="{text(label)}">\n{inner}\n</div>'
+
+
+def picture(path: Path, caption: str) -> str:
+    """Return an SVG or PNG file as a figure that is part of the page.
+
+    An SVG is embedded as an image. As a part of the document, its names and styles could clash with other figures.
+    """
+    content = base64.b64encode(path.read_bytes()).decode("ascii")
+    image = f'<img alt="{text(caption)}" src="data:{TYPES[path.suffix]};base64,{content}">'
+    return f"<figure>\n{scrolling(caption, image)}\n<figcaption>{text(caption)}</figcaption>\n</figure>"
+
+
+def definitions(terms: Mapping[str, Any]) -> str:
+    """Return names and what they are as a list."""
+    return "<dl>\n" + "\n".join(f"<dt>{text(a)}</dt><dd>{text(b)}</dd>" for a, b in terms.items()) + "\n</dl>"
+
+
+def folded(summary: str, inner: str) -> str:
+    """Return markup that opens on demand."""
+    return f"<details>\n<summary>{text(summary)}</summary>\n{inner}\n</details>"

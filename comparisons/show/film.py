@@ -9,10 +9,9 @@ import numpy as np
 
 from comparisons.files import OutputError, replacing
 from comparisons.models.progress import Count, uncounted
-from comparisons.show.panel import Panel, Scale
-from comparisons.show.render import render_frames, show_frames
-from comparisons.show.view.bodies import panel
-from comparisons.show.view.series import Series
+from comparisons.show.export import Series
+from comparisons.show.panel import Panel, Scale, panel
+from comparisons.show.render import render_frames
 
 FRAMES = 40
 """Pictures of a film at most."""
@@ -31,36 +30,23 @@ class Film:
 
 
 def film(series: Sequence[Series], factor: float = 1.0) -> Film:
-    """Return the film of the load parameters that all `series` reach, evenly thinned to `FRAMES`, the first and last included.
+    """Return the film of the load parameters that all `series` reach, with a panel for each series.
 
-    Parameters
-    ----------
-    series : sequence of Series
-        One for each panel.
-    factor : float
-        Enlargement of the displacements, which the titles state.
-
-    Raises
-    ------
-    OutputError
-        If they have no load parameter in common.
+    It is evenly thinned to `FRAMES`, with the first and the last. The titles state the enlargement `factor`
+    of the displacements. Without a common load parameter it raises `OutputError`.
     """
     shared = sorted(set.intersection(*({*one.load_parameter.tolist()} for one in series)))
     if not shared:
-        raise OutputError(
-            f"{', '.join(one.title for one in series)}: no load parameter was reached, nothing to draw"
-        )
+        names = ", ".join(one.title for one in series)
+        raise OutputError(f"{names}: no load parameter was reached, nothing to draw")
     kept = np.unique(np.linspace(0, len(shared) - 1, min(FRAMES, len(shared))).round().astype(int))
     frames = [[_panel(one, shared[k], factor) for one in series] for k in kept]
     units = series[0].units
     stress = next(
         (f" [{units[name]}]" for name in ("axial_stress", "axial_stress_left") if name in units), ""
     )
-    scale = Scale.of(
-        [item for panels in frames for item in panels],
-        f"axial stress{stress}",
-        units.get("contact_force", ""),
-    )
+    every = [item for panels in frames for item in panels]
+    scale = Scale.of(every, f"axial stress{stress}", units.get("contact_force", ""))
     return Film(frames=frames, scale=scale)
 
 
@@ -72,31 +58,19 @@ def _panel(series: Series, t: float, factor: float) -> Panel:
 def write(shown: Film, folder: Path, count: Count = uncounted) -> tuple[list[Path], str | None]:
     """Write ``view.png``, the last state, and ``view.gif``, the motion; `count` receives the pictures that are drawn.
 
-    Returns
-    -------
-    list of Path
-        Both files.
-    str or None
-        One sentence if matplotlib had to stand in for pyvista.
+    Return both files, and one sentence if matplotlib had to stand in for pyvista.
     """
     from PIL import Image
 
-    files = [folder / "view.png", folder / "view.gif"]
+    last, motion = files = [folder / "view.png", folder / "view.gif"]
     with tempfile.TemporaryDirectory() as scratch:
         pictures, sentence = render_frames(shown.frames, shown.scale, Path(scratch), count)
         images = [Image.open(picture).convert("RGB") for picture in pictures]
-    with replacing(files[0]) as temporary:
+    with replacing(last) as temporary:
         images[-1].save(temporary)
     wide = WIDTH * len(shown.frames[0])
-    small = [image.resize((wide, image.height * wide // image.width)) for image in images]
-    with replacing(files[1]) as temporary:
-        durations = [PACE] * (len(small) - 1) + [REST]
-        small[0].save(
-            temporary, save_all=True, append_images=small[1:], duration=durations, loop=0, optimize=True
-        )
+    first, *rest = (image.resize((wide, image.height * wide // image.width)) for image in images)
+    pace = [PACE] * len(rest) + [REST]
+    with replacing(motion) as temporary:
+        first.save(temporary, save_all=True, append_images=rest, duration=pace, loop=0, optimize=True)
     return files, sentence
-
-
-def show(shown: Film) -> bool:
-    """Open a window with a slider over the load parameters, until it is closed; whether that could be done."""
-    return show_frames(shown.frames, shown.scale)
