@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from comparisons.scene.records import Scene
+from comparisons.scene.scene import Scene
 
 SPECIAL: Final = {
     "turn": "a natural curvature (turn)",

@@ -18,7 +18,7 @@ from comparisons.cli import main
 from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
 
 # what writes the shipped schema
-from comparisons.scene.json_schema import json_schema_text
+from comparisons.scene.toml import json_schema_text
 from tests.comparisons.scene.test_special_keys import SCHEMA
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
@@ -91,7 +91,7 @@ def test_what_cannot_be_done_is_one_line(arguments, line, capsys, in_a_folder):
 
 
 def test_the_shipped_schema_is_that_of_the_records(capsys):
-    """Written by ``python -m comparisons.scene.json_schema``."""
+    """Written by ``python -m comparisons.scene.toml``."""
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == json.loads(json_schema_text()) == SCHEMA
     Draft202012Validator.check_schema(SCHEMA)
