@@ -1,11 +1,11 @@
 """The record of a beam: its axis, section, material and meshes."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of, key
-from comparisons.scene.rules import LARGEST, RANGE, FieldError, Point
+from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.rules import LARGEST, RANGE, FieldError, Mistakes, Point
 
 Dimension = float | tuple[float, float]
 
@@ -22,70 +22,59 @@ class BeamSpec(Record):
     start: Point = key(rules.point, "The ends of the undeformed axis [length].")
     end: Point = key(rules.point, "The ends of the undeformed axis [length].")
     youngs_modulus: float = key(rules.positive, "Young's modulus [force/length^2].")
-    poissons_ratio: float | None = key(rules.poissons_ratio, "Poisson's ratio.", default=None)
-    shear_modulus: float | None = key(
-        rules.positive, "Shear modulus, instead of `poissons_ratio` [force/length^2].", default=None
+    poissons_ratio: float | None = optional(rules.poissons_ratio, "Poisson's ratio.")
+    shear_modulus: float | None = optional(
+        rules.positive, "Shear modulus, instead of `poissons_ratio` [force/length^2]."
     )
-    turn: float = key(
+    turn: float = optional(
         rules.turn,
         "Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].",
-        default=0.0,
+        0.0,
     )
-    width: Dimension | None = key(
+    width: Dimension | None = optional(
         rules.dimension,
         "Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].",
-        default=None,
     )
-    height: Dimension | None = key(
-        rules.dimension,
-        "Height of the section, in plane; a number or two like `width` [length].",
-        default=None,
+    height: Dimension | None = optional(
+        rules.dimension, "Height of the section, in plane; a number or two like `width` [length]."
     )
-    area: float | None = key(
+    area: float | None = optional(
         rules.positive,
         "Area of the section, with `second_moment` instead of `width` and `height` [length^2].",
-        default=None,
     )
-    second_moment: float | None = key(
-        rules.positive, "Second moment of area, with `area` [length^4].", default=None
-    )
-    shear_area: float | None = key(rules.positive, "Effective shear area [length^2].", default=None)
-    density: float | None = key(
+    second_moment: float | None = optional(rules.positive, "Second moment of area, with `area` [length^4].")
+    shear_area: float | None = optional(rules.positive, "Effective shear area [length^2].")
+    density: float | None = optional(
         rules.positive,
         "Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; "
         "a mass times a `gravity` is a force.",
-        default=None,
     )
-    clamped: tuple[str, ...] = key(
-        rules.ends, "Clamped ends, none by default: the short form of a `SupportSpec`.", default=()
+    clamped: tuple[str, ...] = optional(
+        rules.ends, "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
     )
-    elements: int = key(rules.whole_number, "Number of TSM elements, all of one length.", default=20)
-    nodes: tuple[float, ...] = key(
-        rules.parts,
-        "Positions of the inner TSM nodes as parts of the length, instead of `elements`.",
-        default=(),
+    elements: int = optional(rules.whole_number, "Number of TSM elements, all of one length.", 20)
+    nodes: tuple[float, ...] = optional(
+        rules.parts, "Positions of the inner TSM nodes as parts of the length, instead of `elements`.", ()
     )
-    mesh: tuple[int, int] = key(rules.mesh, "Elements of the solid along and across.", default=(50, 2))
-    solid_clamp: str = key(
+    mesh: tuple[int, int] = optional(rules.mesh, "Elements of the solid along and across.", (50, 2))
+    solid_clamp: str = optional(
         rules.choice("rod", "full"),
         "Clamp of the solid: free to contract, or both displacements of the whole edge held.",
-        default="rod",
+        "rod",
     )
-    solid_mesh_file: str | None = key(
+    solid_mesh_file: str | None = optional(
         rules.text,
         "File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see "
         "`fem_reference.mesh_file.read_mesh`.",
-        default=None,
     )
-    solid_element: str = key(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", default="Q2")
-    material: str = key(
+    solid_element: str = optional(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", "Q2")
+    material: str = optional(
         rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean"),
         "Material law of the solid.",
-        default="st-venant-kirchhoff",
+        "st-venant-kirchhoff",
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state material and section, a length, stiffnesses within floating-point range."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (
             exactly_one_of(self, ("poissons_ratio",), ("shear_modulus",)),
             exactly_one_of(self, ("width", "height"), ("area", "second_moment")),
@@ -94,17 +83,17 @@ class BeamSpec(Record):
             self._has_stiffness(),
         )
 
-    def _has_length(self) -> Iterator[FieldError]:
+    def _has_length(self) -> Mistakes:
         shortest = 1.0 / LARGEST
         if not shortest <= self.length <= LARGEST:
             rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {LARGEST:g}"
             yield FieldError("end", self.end, rule)
 
-    def _shears_as_it_tapers(self) -> Iterator[FieldError]:
+    def _shears_as_it_tapers(self) -> Mistakes:
         if self.tapers and self.shear_area is not None:
             yield FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
 
-    def _has_stiffness(self) -> Iterator[FieldError]:
+    def _has_stiffness(self) -> Mistakes:
         least, most = RANGE
         stiffnesses = zip(("EA", "GA", "EI") * 2, (*self.stiffness(0.0), *self.stiffness(1.0)), strict=True)
         for name, stiffness in stiffnesses:

@@ -4,7 +4,7 @@ A rule is judged where the values that it reads are right; reading a wrong one r
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -14,14 +14,14 @@ from comparisons.scene.contact import ContactSpec
 from comparisons.scene.ends import free_ends
 from comparisons.scene.joints import joint_rules
 from comparisons.scene.record import Record, Unjudged
-from comparisons.scene.rules import MISSING, FieldError, Point, shown
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point, shown
 from comparisons.scene.stages import StageSpec
 
 if TYPE_CHECKING:
     from comparisons.scene.scene import Scene
 
 
-def scene_rules(scene: "Scene") -> Iterable[Iterator[FieldError]]:
+def scene_rules(scene: "Scene") -> Iterable[Mistakes]:
     """Return the rules between the records of `scene`; each yields its mistakes."""
     names = Names(scene)
     placed = {kind: _listed(scene, f"{kind}s") for kind in ("load", "hinge", "spring")}
@@ -105,7 +105,7 @@ def _listed(record: Record, field: str) -> Sequence[Any]:
     return records
 
 
-def _distinct(records: Iterable[Record], place: str, attribute: str, key: str) -> Iterator[FieldError]:
+def _distinct(records: Iterable[Record], place: str, attribute: str, key: str) -> Mistakes:
     """Yield the records with the same `attribute` as an earlier one; `key` is its key unless the record states one."""
     seen: set[str] = set()
     for i, record in enumerate(records):
@@ -118,7 +118,7 @@ def _distinct(records: Iterable[Record], place: str, attribute: str, key: str) -
             seen |= {value} - {None}
 
 
-def _named_beams(records: Iterable[Any], place: str, names: Names) -> Iterator[FieldError]:
+def _named_beams(records: Iterable[Any], place: str, names: Names) -> Mistakes:
     """Yield the records whose beam is none."""
     for i, record in enumerate(records):
         with suppress(Unjudged):
@@ -127,7 +127,7 @@ def _named_beams(records: Iterable[Any], place: str, names: Names) -> Iterator[F
                 yield FieldError(f"{place}[{i}].beam", record.beam, rule)
 
 
-def _idle_pins(scene: "Scene", names: Names) -> Iterator[FieldError]:
+def _idle_pins(scene: "Scene", names: Names) -> Mistakes:
     touching = {contact.node for contact in scene.contacts}
     if any(True for contact in scene.contacts for _ in _touching(contact, names, "")):
         return
@@ -137,14 +137,14 @@ def _idle_pins(scene: "Scene", names: Names) -> Iterator[FieldError]:
                 yield FieldError(f"pin[{i}].name", pin.name, "must be the node of a contact")
 
 
-def _cause(scene: "Scene") -> Iterator[FieldError]:
+def _cause(scene: "Scene") -> Mistakes:
     moving = any(pin.moving for pin in scene.pins) or any(support.moves for support in scene.supports)
     if scene.beams and not (moving or scene.loads or scene.gravity or scene.stages):
         key, value = ("pin[0].displacement", scene.pins[0].displacement) if scene.pins else ("pin", MISSING)
         yield FieldError(key, value, "give a load, or a pin or a support that moves: nothing happens")
 
 
-def _weight(scene: "Scene") -> Iterator[FieldError]:
+def _weight(scene: "Scene") -> Mistakes:
     heavy = [(f"beam[{i}].density", beam.density) for i, beam in enumerate(scene.beams) if beam.density]
     pulled = [(f"stage[{i}].gravity", one.gravity) for i, one in enumerate(scene.stages) if any(one.gravity)]
     if scene.gravity is None:
@@ -156,7 +156,7 @@ def _weight(scene: "Scene") -> Iterator[FieldError]:
         yield FieldError("scene.gravity", scene.gravity, "must not be zero in every stage")
 
 
-def _contacts(scene: "Scene", names: Names) -> Iterator[FieldError]:
+def _contacts(scene: "Scene", names: Names) -> Mistakes:
     yield from _named_beams(scene.contacts, "contact", names)
     for i, contact in enumerate(scene.contacts):
         key = f"contact[{i}]"
@@ -169,7 +169,7 @@ def _contacts(scene: "Scene", names: Names) -> Iterator[FieldError]:
         )
 
 
-def _first(*rules: Iterator[FieldError]) -> Iterator[FieldError]:
+def _first(*rules: Mistakes) -> Mistakes:
     """Yield the mistakes of the first rule that is broken."""
     for rule in rules:
         with suppress(Unjudged):
@@ -179,7 +179,7 @@ def _first(*rules: Iterator[FieldError]) -> Iterator[FieldError]:
                 return
 
 
-def _touching(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+def _touching(contact: ContactSpec, names: Names, key: str) -> Mistakes:
     if not names.is_node(contact.node):
         ends = (f"{beam}.{end}" for beam in names.of("beam") for end in ("start", "end"))
         rule = f"must name a pin or a beam's end: {_list((*names.of('pin'), *ends))}"
@@ -188,19 +188,19 @@ def _touching(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldErr
         yield FieldError(f"{key}.node", contact.node, "must not be an end of the beam itself")
 
 
-def _apart(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+def _apart(contact: ContactSpec, names: Names, key: str) -> Mistakes:
     beam = names.beam(contact.beam)
     if "." in contact.node and _position(contact, names)[1] in (beam.start, beam.end):
         yield FieldError(f"{key}.node", contact.node, f'must not be joined to beam "{beam.name}"')
 
 
-def _has_face(contact: ContactSpec, names: Names, key: str) -> Iterator[FieldError]:
+def _has_face(contact: ContactSpec, names: Names, key: str) -> Mistakes:
     if contact.surface == "face" and names.beam(contact.beam).height is None:
         rule = f'needs the height of beam "{contact.beam}"'
         yield FieldError(f"{key}.surface", contact.surface, rule)
 
 
-def _on_side(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
+def _on_side(contact: ContactSpec, names: Names) -> Mistakes:
     beam = names.beam(contact.beam)
     key, position = _position(contact, names)
     _, fraction = signed_gap(beam, contact.side, 0.0, position)
@@ -210,7 +210,7 @@ def _on_side(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
         yield FieldError(key, position, f"must lie {where} ({contact.surface}), gap {gap:.6g}")
 
 
-def _clear_of_ends(contact: ContactSpec, names: Names) -> Iterator[FieldError]:
+def _clear_of_ends(contact: ContactSpec, names: Names) -> Mistakes:
     key, position = _position(contact, names)
     for end in free_ends(names.scene, contact):
         over = -end.room(position)
@@ -229,7 +229,7 @@ def _position(contact: ContactSpec, names: Names) -> tuple[str, Point]:
     return f"{place}.{'start' if pin.path is None else 'path'}", pin.points[0]
 
 
-def _moved_pins(stage: StageSpec, names: Names, place: str) -> Iterator[FieldError]:
+def _moved_pins(stage: StageSpec, names: Names, place: str) -> Mistakes:
     for j, move in enumerate(stage.pin):
         with suppress(Unjudged):
             if not names.is_beam(move.name, "pin"):
@@ -239,7 +239,7 @@ def _moved_pins(stage: StageSpec, names: Names, place: str) -> Iterator[FieldErr
     yield from _distinct(stage.pin, place, "name", "name")
 
 
-def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Iterator[FieldError]:
+def _moved_supports(scene: "Scene", stage: StageSpec, key: str) -> Mistakes:
     supports = {scene.place(support.node): support for support in scene.all_supports}
     beams = {beam.name for beam in scene.beams}
     seen: set[Point] = set()

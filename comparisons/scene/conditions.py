@@ -1,10 +1,10 @@
 """Supports, loads, hinges and springs of beams."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of, key
-from comparisons.scene.rules import MISSING, FieldError, Point
+from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
@@ -30,41 +30,38 @@ class SupportSpec(AtEnd):
     end: str = key(
         END, "Which end. Beams that share an end are rigidly joined there: one support holds the joint."
     )
-    kind: str | None = key(
+    kind: str | None = optional(
         rules.choice("clamped", "pinned", "roller"),
         "A clamped end has position and rotation held, a pinned end the position, a roller one component of the position.",
-        default=None,
     )
-    free: str | None = key(rules.choice("x", "y"), "The direction in which a roller is free.", default=None)
-    fixed: tuple[str, ...] | None = key(
-        rules.subset(*COMPONENTS), "The components held, instead of `kind`.", default=None
+    free: str | None = optional(rules.choice("x", "y"), "The direction in which a roller is free.")
+    fixed: tuple[str, ...] | None = optional(
+        rules.subset(*COMPONENTS), "The components held, instead of `kind`."
     )
-    displacement: Point | None = key(
+    displacement: Point | None = optional(
         rules.point,
         "Prescribed displacement of the end at load parameter 1 [length]; zero in a free direction.",
-        default=None,
     )
-    rotation: float | None = key(
-        rules.number, "Prescribed rotation at load parameter 1, anticlockwise [rad].", default=None
+    rotation: float | None = optional(
+        rules.number, "Prescribed rotation at load parameter 1, anticlockwise [rad]."
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state what is held, a direction for a roller, motion only where it is held."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return exactly_one_of(self, ("kind",), ("fixed",)), self._direction(), self._moved(), self._turned()
 
-    def _direction(self) -> Iterator[FieldError]:
+    def _direction(self) -> Mistakes:
         if self.kind == "roller" and self.free is None:
             yield FieldError("free", MISSING, 'must be given, a roller is free in "x" or in "y"')
         if self.kind != "roller" and self.free is not None:
             yield FieldError("free", self.free, 'belongs to kind = "roller"')
 
-    def _moved(self) -> Iterator[FieldError]:
+    def _moved(self) -> Mistakes:
         for component, value in zip("xy", self.displacement or (), strict=False):
             if value and component not in self.held:
                 rule = f"must be zero in {component}, which is free"
                 yield FieldError("displacement", self.displacement, rule)
 
-    def _turned(self) -> Iterator[FieldError]:
+    def _turned(self) -> Mistakes:
         if self.rotation is not None and "rotation" not in self.held:
             yield FieldError("rotation", self.rotation, "must not be given, the rotation is free")
 
@@ -92,32 +89,26 @@ class LoadSpec(Record):
     """A dead load scaled by the load parameter: a force and moment on a beam's end or inside the beam, or a force per length."""
 
     beam: str = key(rules.name, "Name of the beam.")
-    end: str | None = key(END, "The end on which `force` and `moment` act.", default=None)
-    at: float | None = key(
+    end: str | None = optional(END, "The end on which `force` and `moment` act.")
+    at: float | None = optional(
         rules.fraction,
         "The fraction of the undeformed length at which `force` and `moment` act inside the beam, instead of `end`.",
-        default=None,
     )
-    force: Point = key(
-        rules.point, "At load parameter 1; it keeps its direction [force].", default=(0.0, 0.0)
-    )
-    moment: float = key(rules.number, "At load parameter 1, anticlockwise [force length].", default=0.0)
-    force_per_length: Point | None = key(
+    force: Point = optional(rules.point, "At load parameter 1; it keeps its direction [force].", (0.0, 0.0))
+    moment: float = optional(rules.number, "At load parameter 1, anticlockwise [force length].", 0.0)
+    force_per_length: Point | None = optional(
         rules.point,
         "Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].",
-        default=None,
     )
-    part: Point | None = key(
+    part: Point | None = optional(
         rules.span,
         "The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.",
-        default=None,
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state where the load acts, what belongs to it, and a load that is not zero."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return exactly_one_of(self, ("end",), ("at",), ("force_per_length",)), self._belongs(), self._acts()
 
-    def _belongs(self) -> Iterator[FieldError]:
+    def _belongs(self) -> Mistakes:
         if self.force_per_length is None and self.part is not None:
             yield FieldError("part", self.part, "belongs to force_per_length")
         for name in ("force", "moment") if self.force_per_length is not None else ():
@@ -125,7 +116,7 @@ class LoadSpec(Record):
                 rule = "must not be given with force_per_length: it belongs to end or at"
                 yield FieldError(name, getattr(self, name), rule)
 
-    def _acts(self) -> Iterator[FieldError]:
+    def _acts(self) -> Mistakes:
         if self.force_per_length is None:
             if not any((*self.force, self.moment)):
                 yield FieldError("force", self.force, "force or moment must not be zero")
@@ -167,10 +158,10 @@ class HingeSpec(AtEnd):
         "Which end. It is joined to another beam, or a support holds its rotation. Supports, springs and loads that name the end act "
         "on the joint, not on the beam behind the hinge.",
     )
-    stiffness: float = key(
+    stiffness: float = optional(
         rules.not_negative,
         "Stiffness of a rotational spring between the joint and the end [force length/rad].",
-        default=0.0,
+        0.0,
     )
 
 
@@ -178,18 +169,15 @@ class SpringSpec(AtEnd):
     """Linear springs between a beam's end and the ground, free of force in the undeformed state."""
 
     end: str = key(END, "Which end; the springs act on the joint of all beams that share it.")
-    stiffness: Point = key(
-        rules.stiffnesses,
-        "Stiffnesses against displacement in x and in y [force/length].",
-        default=(0.0, 0.0),
+    stiffness: Point = optional(
+        rules.stiffnesses, "Stiffnesses against displacement in x and in y [force/length].", (0.0, 0.0)
     )
-    rotation: float = key(rules.not_negative, "Stiffness against rotation [force length/rad].", default=0.0)
+    rotation: float = optional(rules.not_negative, "Stiffness against rotation [force length/rad].", 0.0)
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: some stiffness is not zero."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (self._resists(),)
 
-    def _resists(self) -> Iterator[FieldError]:
+    def _resists(self) -> Mistakes:
         if not self.held:
             yield FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
 

@@ -2,15 +2,15 @@
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import ClassVar
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, Unjudged, exactly_one_of, key
-from comparisons.scene.rules import FieldError, Point
+from comparisons.scene.record import Record, Unjudged, exactly_one_of, key, optional
+from comparisons.scene.rules import Mistakes, Point
 from comparisons.scene.stages import PinMove, stage_of
 
 
@@ -54,29 +54,23 @@ class PinSpec(Record):
     """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter."""
 
     name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
-    start: Point | None = key(
-        rules.point,
-        "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle.",
-        default=None,
+    start: Point | None = optional(
+        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
     )
-    displacement: Point | None = key(
-        rules.point,
-        "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle.",
-        default=None,
+    displacement: Point | None = optional(
+        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
     )
-    path: tuple[Point, ...] | None = key(
-        rules.polyline, "A polyline [length], instead of `start` and `displacement`.", default=None
+    path: tuple[Point, ...] | None = optional(
+        rules.polyline, "A polyline [length], instead of `start` and `displacement`."
     )
-    radius: float | None = key(
+    radius: float | None = optional(
         rules.positive,
         "Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.",
-        default=None,
     )
     moves: ClassVar[tuple[PinMove | None, ...] | None] = ()
     """Motions in the stages after the first one, which the scene states; one is None where the pin rests, all are where one is wrong."""
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: one way to state the path."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (exactly_one_of(self, ("start", "displacement"), ("path",)),)
 
     @cached_property
@@ -134,29 +128,26 @@ class ContactSpec(Record):
         rules.choice("right", "left"),
         "Side of the beam's direction, start to end, from which the node comes.",
     )
-    surface: str = key(
-        rules.choice("axis", "face"), "The beam's axis, or its face at half the height.", default="axis"
+    surface: str = optional(
+        rules.choice("axis", "face"), "The beam's axis, or its face at half the height.", "axis"
     )
-    penalty: float | None = key(
-        rules.positive,
-        "Penalty stiffness of the solid model [force/length]; automatic if not given.",
-        default=None,
+    penalty: float | None = optional(
+        rules.positive, "Penalty stiffness of the solid model [force/length]; automatic if not given."
     )
-    penetration: float | None = key(
+    penetration: float | None = optional(
         rules.positive,
         "Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given, "
         "the penalty alone bounds the penetration.",
-        default=None,
     )
-    keep: bool = key(
+    keep: bool = optional(
         rules.truth,
         "Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.",
-        default=False,
+        False,
     )
-    friction: float = key(
+    friction: float = optional(
         rules.friction,
         "Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.",
-        default=0.0,
+        0.0,
     )
 
     @property

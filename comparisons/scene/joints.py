@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import COMPONENTS
 from comparisons.scene.record import Unjudged
-from comparisons.scene.rules import FieldError, Point
+from comparisons.scene.rules import FieldError, Mistakes, Point
 
 if TYPE_CHECKING:
     from comparisons.scene.scene import Scene
@@ -22,7 +22,7 @@ LEAST = 1e-9
 IsName = Callable[[str], bool]
 
 
-def joint_rules(scene: "Scene", is_beam: IsName, is_node: IsName) -> Iterator[FieldError]:
+def joint_rules(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
@@ -31,7 +31,7 @@ def joint_rules(scene: "Scene", is_beam: IsName, is_node: IsName) -> Iterator[Fi
         yield from _held(scene, is_beam, is_node)
 
 
-def _held(scene: "Scene", is_beam: IsName, is_node: IsName) -> Iterator[FieldError]:
+def _held(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
     named = [beam.name for beam in scene.beams]
     for records in (scene.supports, scene.springs, scene.hinges):
         named += (record.beam for record in records)
@@ -82,7 +82,7 @@ def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
     return meeting
 
 
-def _nearly_meeting(scene: "Scene") -> Iterator[FieldError]:
+def _nearly_meeting(scene: "Scene") -> Mistakes:
     """Yield ends that nearly meet an end of an earlier beam. Along a direction that is no beam's, only neighbours can be near."""
     numbers = {id(beam): i for i, beam in enumerate(scene.beams) if beam.has("name", "start", "end")}
     meeting = _meeting([beam for beam in scene.beams if id(beam) in numbers])
@@ -100,7 +100,7 @@ def _nearly_meeting(scene: "Scene") -> Iterator[FieldError]:
                     yield from _pair(a, b, numbers[id(b)])
 
 
-def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Iterator[FieldError]:
+def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Mistakes:
     """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
     for end in ("start", "end"):
         for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
@@ -110,7 +110,7 @@ def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Iterator[FieldError]:
                 yield FieldError(f"beam[{number}].{end}", near, rule)
 
 
-def _end_to_end(scene: "Scene") -> Iterator[FieldError]:
+def _end_to_end(scene: "Scene") -> Mistakes:
     """Yield beams between the same ends as an earlier one, unless they are different arcs."""
     there: dict[tuple[frozenset[Point], float], int] = {}
     for j, beam in enumerate(scene.beams):
@@ -122,7 +122,7 @@ def _end_to_end(scene: "Scene") -> Iterator[FieldError]:
                 yield FieldError(f"beam[{j}].end", beam.end, rule)
 
 
-def _one_support(scene: "Scene", is_beam: IsName) -> Iterator[FieldError]:
+def _one_support(scene: "Scene", is_beam: IsName) -> Mistakes:
     """Yield supports at a place that an earlier support holds."""
     held: dict[Point, str] = {}
     for key, node in _supported(scene, is_beam):
@@ -145,7 +145,7 @@ def _supported(scene: "Scene", is_beam: IsName) -> Iterator[tuple[str, str]]:
                 yield f"support[{i}].end", support.node
 
 
-def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str) -> Iterator[FieldError]:
+def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str) -> Mistakes:
     """Yield a mistake if a structure that nothing touches can move without strain: all of it, or its beams about hinges."""
     own = [item for item in scene.holding if item.beam in names]
     levels = {scene.place(item.node)[1] for item in own if "x" in item.held}
@@ -160,7 +160,7 @@ def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str)
         yield FieldError(f"hinge[{hinged[0]}].end", scene.hinges[hinged[0]].node, rule)
 
 
-def _useless_hinges(scene: "Scene") -> Iterator[FieldError]:
+def _useless_hinges(scene: "Scene") -> Mistakes:
     """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
     meeting = _meeting(scene.beams)
     turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}

@@ -6,13 +6,13 @@ attributes. Where a value is itself wrong, reading it raises `Unjudged`, and the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 
-from comparisons.scene.rules import MISSING, FieldError, RecordError, RuleError, ValueRule
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, RuleError, ValueRule
 
 R = TypeVar("R", bound="Record")
 UNREADABLE: Any = object()
@@ -23,8 +23,13 @@ class Unjudged(KeyError):  # noqa: N818 - no error of the user: the value is rep
     """A rule reads a value that is itself wrong, or a record that is not there, so it cannot be judged."""
 
 
-def key(rule: ValueRule[Any], meaning: str, *, default: Any = MISSING) -> Any:
-    """Declare a key of a record by its rule, its meaning with the unit, and its default; None, it may be left out."""
+def key(rule: ValueRule[Any], meaning: str) -> Any:
+    """Declare a key that must be given by its rule and its meaning with the unit."""
+    return field(metadata={"rule": rule, "meaning": meaning})
+
+
+def optional(rule: ValueRule[Any], meaning: str, default: Any = None) -> Any:
+    """Declare a key that may be left out by its rule, its meaning with the unit, and its default."""
     return field(default=default, metadata={"rule": rule, "meaning": meaning})
 
 
@@ -66,8 +71,8 @@ class Record:
                     vars(self)[item.name] = rule_of(item)(value)
                 except RuleError as error:
                     mistakes.append(FieldError(item.name, value, str(error)))
-        self.settle()
-        for rule in self.own_rules():
+        self._settle()
+        for rule in self._own_rules():
             with suppress(Unjudged):
                 mistakes.extend(rule)
             for mistake in mistakes:
@@ -75,10 +80,10 @@ class Record:
         if mistakes:
             raise RecordError(mistakes, self)
 
-    def settle(self) -> None:
+    def _settle(self) -> None:
         """Put values that depend on others into their final form."""
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
+    def _own_rules(self) -> Iterable[Mistakes]:
         """Return the rules between the values of the record; each yields its mistakes."""
         return ()
 
@@ -140,7 +145,7 @@ def copied(record: R, **attributes: object) -> R:
     return copy
 
 
-def exactly_one_of(record: Record, *groups: tuple[str, ...]) -> Iterator[FieldError]:
+def exactly_one_of(record: Record, *groups: tuple[str, ...]) -> Mistakes:
     """Yield a mistake unless exactly one of the `groups` of fields is given, with all its fields; None means not given."""
     given = {name for group in groups for name in group if vars(record).get(name, MISSING) is not None}
     wanted = " or ".join(" and ".join(group) for group in groups)

@@ -7,7 +7,7 @@ Schema.
 import dataclasses
 import math
 import operator
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
 
@@ -21,6 +21,8 @@ LARGEST = 1e50
 """Largest magnitude of a number: squares, products and quotients of such numbers stay in floating-point range."""
 RANGE = (1e-100, 1e100)
 """Range of positive quantities: moduli, dimensions of sections, stiffnesses."""
+LIST = {"type": "array", "minItems": 1}
+"""Schema of a list of tables."""
 MISSING: Any = dataclasses.MISSING
 """The value of a key that is not there."""
 
@@ -57,15 +59,7 @@ class FieldError(ValueError):
 
 
 class RecordError(FieldError):
-    """Several mistakes, each in one line; `key`, `value` and `rule` are those of the first.
-
-    Parameters
-    ----------
-    mistakes : collection of FieldError
-        At least one.
-    record : Record, optional
-        What could be read of the record, without its wrong values.
-    """
+    """Several mistakes, each in one line, the first one's key, value and rule; `record` has the values that are right."""
 
     def __init__(self, mistakes: Collection[FieldError], record: Any = None) -> None:
         self._mistakes, self.record = tuple(mistakes), record
@@ -83,6 +77,9 @@ class RecordError(FieldError):
         return RecordError([mistake.within(prefix) for mistake in self._mistakes])
 
 
+Mistakes = Iterator[FieldError]
+
+
 def shown(value: object) -> str:
     """Return `value` as it would stand in a TOML file, in one line of at most 60 characters."""
     try:
@@ -93,19 +90,7 @@ def shown(value: object) -> str:
 
 
 class ValueRule(Generic[T_co]):
-    """A rule as a value.
-
-    Parameters
-    ----------
-    read : callable
-        Returns the stored form of a value, or raises `RuleError`.
-    accepts : str
-        What the rule accepts, in words.
-    schema : mapping
-        The part of the rule that JSON Schema can express.
-    kind : type, optional
-        The record of a list of records.
-    """
+    """A rule as a value: it reads a value, says what it accepts, and has its JSON Schema; of a list of records, their `kind`."""
 
     def __init__(
         self,
@@ -380,4 +365,4 @@ def records(kind: type, at_least: int = 0) -> ValueRule[tuple[Any, ...]]:
             raise RuleError(f"must be {wanted} {kind.__name__}")
         return items
 
-    return ValueRule(read, f"a list of {kind.__name__}", {"type": "array", "minItems": 1}, kind)
+    return ValueRule(read, f"a list of {kind.__name__}", LIST, kind)

@@ -8,8 +8,8 @@ from comparisons.scene import rules
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.record import Record, Unjudged, copied, key
-from comparisons.scene.rules import FieldError, Point
+from comparisons.scene.record import Record, Unjudged, copied, key, optional
+from comparisons.scene.rules import Mistakes, Point
 from comparisons.scene.stages import LoadHistory, PrescribedMotion, StageSpec, amount, load_histories
 
 
@@ -32,30 +32,27 @@ class Scene(Record):
     """
 
     name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
-    units: str = key(rules.units, 'Units of force and length, as ``"N, m"``.', default="N, m")
+    units: str = optional(rules.units, 'Units of force and length, as ``"N, m"``.', "N, m")
     load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
-    gravity: Point | None = key(
+    gravity: Point | None = optional(
         rules.point,
         "Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of "
         "time is free, the product with the density is a force per volume.",
-        default=None,
     )
     beams: tuple[BeamSpec, ...] = key(rules.records(BeamSpec, at_least=1), "The beams.")
-    supports: tuple[SupportSpec, ...] = key(rules.records(SupportSpec), "The supports.", default=())
-    loads: tuple[LoadSpec, ...] = key(rules.records(LoadSpec), "The loads of the first stage.", default=())
-    pins: tuple[PinSpec, ...] = key(rules.records(PinSpec), "The pins.", default=())
-    contacts: tuple[ContactSpec, ...] = key(rules.records(ContactSpec), "The contacts.", default=())
-    hinges: tuple[HingeSpec, ...] = key(rules.records(HingeSpec), "The hinges.", default=())
-    springs: tuple[SpringSpec, ...] = key(rules.records(SpringSpec), "The springs.", default=())
-    stages: tuple[StageSpec, ...] = key(rules.records(StageSpec), "Stages after the first one.", default=())
+    supports: tuple[SupportSpec, ...] = optional(rules.records(SupportSpec), "The supports.", ())
+    loads: tuple[LoadSpec, ...] = optional(rules.records(LoadSpec), "The loads of the first stage.", ())
+    pins: tuple[PinSpec, ...] = optional(rules.records(PinSpec), "The pins.", ())
+    contacts: tuple[ContactSpec, ...] = optional(rules.records(ContactSpec), "The contacts.", ())
+    hinges: tuple[HingeSpec, ...] = optional(rules.records(HingeSpec), "The hinges.", ())
+    springs: tuple[SpringSpec, ...] = optional(rules.records(SpringSpec), "The springs.", ())
+    stages: tuple[StageSpec, ...] = optional(rules.records(StageSpec), "Stages after the first one.", ())
 
-    def settle(self) -> None:
-        """Give the pins their motions in the stages."""
+    def _settle(self) -> None:
         if self.has("pins"):
             vars(self)["pins"] = tuple(map(self._with_moves, self.pins))
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules between the records."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         from comparisons.scene.coherence import scene_rules
 
         return scene_rules(self)

@@ -1,33 +1,29 @@
 """Stages that follow the first one of a scene: what they move on from where the stage before ended."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from comparisons.scene import rules
 from comparisons.scene.conditions import COMPONENTS, AtEnd, LoadSpec, SupportSpec
-from comparisons.scene.record import Record, exactly_one_of, key
-from comparisons.scene.rules import MISSING, FieldError, Point
+from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point
 
 
 class PinMove(Record):
     """A pin's motion during a stage, at constant speed by the load parameter."""
 
     name: str = key(rules.name, "Name of the pin.")
-    displacement: Point | None = key(
-        rules.point, "A straight motion from where the pin is [length].", default=None
-    )
-    path: tuple[Point, ...] | None = key(
+    displacement: Point | None = optional(rules.point, "A straight motion from where the pin is [length].")
+    path: tuple[Point, ...] | None = optional(
         rules.further_points,
         "The points that the pin moves to, one after another, instead of `displacement` [length].",
-        default=None,
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state the motion, and a displacement that is not zero."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return exactly_one_of(self, ("displacement",), ("path",)), self._moves()
 
-    def _moves(self) -> Iterator[FieldError]:
+    def _moves(self) -> Mistakes:
         if self.displacement is not None and not any(self.displacement):
             yield FieldError("displacement", self.displacement, "must not be zero: the pin does not move")
 
@@ -36,18 +32,15 @@ class SupportMove(AtEnd):
     """A support's motion during a stage, in proportion to the load parameter."""
 
     end: str = key(rules.choice("start", "end"), "Which end; it has a support.")
-    displacement: Point = key(
-        rules.point,
-        "Displacement during the stage [length]; zero in a free direction.",
-        default=(0.0, 0.0),
+    displacement: Point = optional(
+        rules.point, "Displacement during the stage [length]; zero in a free direction.", (0.0, 0.0)
     )
-    rotation: float = key(rules.number, "Rotation during the stage, anticlockwise [rad].", default=0.0)
+    rotation: float = optional(rules.number, "Rotation during the stage, anticlockwise [rad].", 0.0)
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: the support moves."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (self._moves(),)
 
-    def _moves(self) -> Iterator[FieldError]:
+    def _moves(self) -> Mistakes:
         if not any(self.motion):
             yield FieldError("displacement", self.displacement, "displacement or rotation must not be zero")
 
@@ -64,32 +57,31 @@ class StageSpec(Record):
     second one at load parameters from 1 to 2.
     """
 
-    name: str | None = key(rules.name, "Letters, digits, ``-`` and ``_``.", default=None)
+    name: str | None = optional(rules.name, "Letters, digits, ``-`` and ``_``.")
     load_parameters: int = key(rules.whole_number, "Number of load parameters of the stage, equally spaced.")
-    pin: tuple[PinMove, ...] = key(
+    pin: tuple[PinMove, ...] = optional(
         rules.records(PinMove),
         'Motions of pins, as ``[{ name = "pin", displacement = [0.0, -0.1] }]``; `path` is possible instead of `displacement`.',
-        default=(),
+        (),
     )
-    support: tuple[SupportMove, ...] = key(
+    support: tuple[SupportMove, ...] = optional(
         rules.records(SupportMove),
         'Motions of supports, as ``[{ beam = "strip", end = "end", displacement = [0.0, 0.1], rotation = 0.0 }]``.',
-        default=(),
+        (),
     )
-    load: tuple[LoadSpec, ...] = key(
+    load: tuple[LoadSpec, ...] = optional(
         rules.records(LoadSpec),
         'Changes of loads, as ``[{ beam = "strip", end = "end", force = [0.0, 1.0] }]``, with the keys of ``[[load]]``.',
-        default=(),
+        (),
     )
-    gravity: Point = key(
-        rules.point, "Change of the acceleration of gravity [length/time^2].", default=(0.0, 0.0)
+    gravity: Point = optional(
+        rules.point, "Change of the acceleration of gravity [length/time^2].", (0.0, 0.0)
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: something changes."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (self._changes(),)
 
-    def _changes(self) -> Iterator[FieldError]:
+    def _changes(self) -> Mistakes:
         if not (self.pin or self.support or self.load or any(self.gravity)):
             rule = "give pin, support, load or gravity: nothing happens in the stage"
             yield FieldError("pin", MISSING, rule)

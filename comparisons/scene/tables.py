@@ -52,13 +52,7 @@ class SceneError(InputError):
 
 
 def read_text(path: str, absent: str, kind: type[InputError]) -> str:
-    """Return the text of the regular file `path`, of 16 MB at most.
-
-    Raises
-    ------
-    InputError
-        An error of the given kind, with the reason `absent` where the file does not exist.
-    """
+    """Return the text of the regular file `path`, of 16 MB at most; an error of `kind` says `absent` where there is none."""
     try:
         return read_regular(path, LARGEST_FILE).decode("utf-8")
     except FileNotFoundError:
@@ -84,27 +78,27 @@ def check_keys(
     table: dict[str, Any], known: Collection[str], required: Iterable[str] = ()
 ) -> Iterator[FieldError]:
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
-    unknown = [key for key in table if key not in known]
-    if unknown:
+    for key in _unknown(table, known):
         from comparisons.scene.words import hint
 
-        for key in unknown[:MOST]:
-            rule = f"unknown key, {hint(key, known)}"
-            yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
-    misnamed = misnamed_keys(table, known)
-    for key in required:
-        if key not in table and key not in misnamed:
-            yield FieldError(key, MISSING, "must be given")
+        rule = f"unknown key, {hint(key, known)}"
+        yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
+    missing = [key for key in required if key not in table]
+    for key in missing and sorted(set(missing) - misnamed_keys(table, known), key=missing.index):
+        yield FieldError(key, MISSING, "must be given")
+
+
+def _unknown(table: dict[str, Any], known: Collection[str]) -> list[str]:
+    return [key for key in table if key not in known][:MOST]
 
 
 def misnamed_keys(table: dict[str, Any], known: Collection[str]) -> set[str]:
     """Return the known keys that are not in `table`, but there by another name or misspelt."""
-    unknown = [key for key in table if key not in known]
-    if not unknown:
-        return set()
-    from comparisons.scene.words import meant
+    found = set()
+    for key in _unknown(table, known):
+        from comparisons.scene.words import meant
 
-    found = {meant(key, known) for key in unknown[:MOST]}
+        found.add(meant(key, known))
     return {key for key in found if key is not None and key not in table}
 
 

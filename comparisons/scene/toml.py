@@ -1,13 +1,13 @@
 """A scene as tables and as TOML text, and the JSON Schema of scene files."""
 
 import json
-from dataclasses import fields
+from dataclasses import Field, fields
 from pathlib import Path
 from typing import Any
 
 from comparisons.scene.read import LISTS
 from comparisons.scene.record import Record, lists_of, rule_of
-from comparisons.scene.rules import MISSING
+from comparisons.scene.rules import LIST, MISSING
 from comparisons.scene.scene import Scene
 from comparisons.scene.values import toml_value
 
@@ -61,36 +61,31 @@ def json_schema() -> Table:
     >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
     0
     """
-    whole = _schema(Scene)
-    head = {item.name: whole["properties"][item.name] for item in HEAD}
-    required = [name for name in whole["required"] if name in head]
-    lists = {kind: {**whole["properties"][f"{kind}s"]} for kind in LISTS}
-    for schema in lists.values():
-        del schema["description"]
+    lists = {kind: {**LIST, "items": _schema(record, fields(record))} for kind, record in LISTS.items()}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Scene of tsm-crossval",
         "type": "object",
-        "properties": {"scene": {**whole, "properties": head, "required": required}, **lists},
+        "properties": {"scene": _schema(Scene, HEAD), **lists},
         "required": ["scene", "beam"],
         "additionalProperties": False,
     }
 
 
-def _schema(kind: type[Record]) -> Table:
+def _schema(kind: type[Record], known: tuple[Field[Any], ...]) -> Table:
     properties = {}
-    for item in fields(kind):
+    for item in known:
         rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
         properties[item.name] = {"description": meaning, **rule.schema}
         if rule.kind is not None:
-            properties[item.name]["items"] = _schema(rule.kind)
+            properties[item.name]["items"] = _schema(rule.kind, fields(rule.kind))
         elif item.default not in (MISSING, None):
             properties[item.name]["default"] = item.default
     return {
         "type": "object",
         "description": (kind.__doc__ or "").partition("\n")[0],
         "properties": properties,
-        "required": [item.name for item in fields(kind) if item.default is MISSING],
+        "required": [item.name for item in known if item.default is MISSING],
         "additionalProperties": False,
     }
 

@@ -28,7 +28,9 @@ NOT_MODELLED: Final = tuple(
     Topic(item["title"], item["answer"], tuple(item["words"].split())) for item in _DATA["not_modelled"]
 )
 """What is not modelled, topic by topic."""
-OTHER_NAMES: Final = {key: tuple(names.split()) for key, names in _DATA["other_names"].items()}
+OTHER_NAMES: Final[dict[str, tuple[str, ...]]] = {
+    key: tuple(names.split()) for key, names in _DATA["other_names"].items()
+}
 """Other names of keys and tables, by key. A name that several have means the first that its table knows."""
 ELSEWHERE: Final = _by_word(_DATA["elsewhere"])
 """Where a known key or another name of it belongs, for tables that do not know it."""
