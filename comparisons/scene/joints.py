@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
 LEAST = 1e-9
-"""Least singular value of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
+"""Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
 IsName = Callable[[str], bool]
 
 
@@ -182,8 +182,6 @@ def _useless_hinges(scene: "Scene") -> Mistakes:
 
 def _moves_about_hinges(scene: "Scene", structure: list[BeamSpec], names: set[str]) -> bool:
     """Whether beams, each rigid, can move: joints move by (ux, uy, turn), and a beam turns by the relative motion of its ends."""
-    import numpy as np
-
     free = {hinge.node for hinge in scene.hinges if not hinge.stiffness}
     size = max(beam.length for beam in structure)
     joints = {place: 3 * k for k, place in enumerate(_meeting(structure))}
@@ -199,7 +197,20 @@ def _moves_about_hinges(scene: "Scene", structure: list[BeamSpec], names: set[st
     for item in (item for item in scene.holding if item.beam in names):
         joint = joints[scene.place(item.node)]
         rows += ({joint + COMPONENTS.index(component): 1.0} for component in item.held)
-    matrix = np.zeros((len(rows), 3 * len(joints) + len(structure)))
-    for row, coefficients in zip(matrix, rows, strict=True):
-        row[list(coefficients)] = list(coefficients.values())
-    return int(np.linalg.matrix_rank(matrix, tol=LEAST)) < matrix.shape[1]
+    return _rank(rows) < 3 * len(joints) + len(structure)
+
+
+def _rank(rows: list[dict[int, float]]) -> int:
+    """Return the rank of a sparse matrix, its values by column, by elimination with the largest value of every row."""
+    pivots: dict[int, dict[int, float]] = {}
+    for row in rows:
+        while known := row.keys() & pivots.keys():
+            column = known.pop()
+            factor = row.pop(column)
+            for other, value in pivots[column].items():
+                row[other] = row.get(other, 0.0) - factor * value
+        size, column = max(((abs(value), column) for column, value in row.items()), default=(0.0, 0))
+        if size > LEAST:
+            scale = row.pop(column)
+            pivots[column] = {other: value / scale for other, value in row.items() if value}
+    return len(pivots)
