@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, dataclass_transform
 from comparisons.scene.rules import MISSING, FieldError, Mistakes, RecordError, RuleError, ValueRule
 
 R = TypeVar("R", bound="Record")
+RAISES = "\nRaises\n------\nFieldError\n    With all mistakes, each in one line: field, value and rule."
 UNREADABLE: Any = object()
 """The value of a key that is stated, and wrong in a way that is reported elsewhere."""
 
@@ -54,7 +55,7 @@ class Record:
         rows = (
             f"{item.name} : {rule_of(item).accepts}\n    {item.metadata['meaning']}" for item in fields(cls)
         )
-        cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows])
+        cls.__doc__ = "\n".join([cleandoc(cls.__doc__ or ""), "\nParameters\n----------", *rows, RAISES])
 
     def __init__(self, **given: Any) -> None:
         if unknown := given.keys() - self._defaults.keys():

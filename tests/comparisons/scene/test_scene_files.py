@@ -20,6 +20,7 @@ from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scen
 # what writes the shipped schema
 from comparisons.scene.toml import json_schema_text
 from tests.comparisons.scene.test_special_keys import SCHEMA
+from tests.fuzz.world import toml_text
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
 THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
@@ -118,13 +119,8 @@ def edits() -> Iterator[dict[str, Any]]:
 
 
 def accepted(tables: dict[str, Any]) -> bool:
-    lines = []
-    for kind, entries in tables.items():
-        for entry in entries if isinstance(entries, list) else [entries]:
-            lines.append(f"[[{kind}]]" if isinstance(entries, list) else f"[{kind}]")
-            lines += [f"{key} = {json.dumps(value)}" for key, value in entry.items()]
     try:
-        read_scene("\n".join(lines), "edited")
+        read_scene(toml_text(tables), "edited")
     except SceneError:
         return False
     return True
