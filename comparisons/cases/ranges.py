@@ -11,7 +11,7 @@ LARGEST_COUNT = 10_000
 RULES: dict[str, Rule] = {
     "from": rules.number,
     "to": rules.number,
-    "count": lambda value: rules.whole_number(value, LARGEST_COUNT),
+    "count": rules.whole(LARGEST_COUNT),
     "spacing": rules.choice("linear", "log"),
 }
 """The keys of a range with the rules of their values."""

@@ -117,7 +117,7 @@ def _places(
     """Return what a run states for the records of one kind: for all of them, or for one by its name."""
     known, named = settings.OWN, set[str]()
     if kind != "scene":
-        known = {item.name for item in fields(LISTS[kind])}  # type: ignore[arg-type]  # every record is a dataclass
+        known = {item.name for item in fields(LISTS[kind])}
         named = set(settings.record_names(kind, map(settings.stated, getattr(scene, f"{kind}s"))))
         if isinstance(given, dict) and not named:
             mistakes.append(FieldError(kind, given, f"the scene has no {kind}"))

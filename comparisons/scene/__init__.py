@@ -5,8 +5,8 @@ from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, Suppor
 from comparisons.scene.contact import ContactSpec, PinSpec
 from comparisons.scene.keys import SPECIAL, unstated
 from comparisons.scene.read import built_in_scenes, load_scene, read_scene
-from comparisons.scene.records import Scene
 from comparisons.scene.rules import FieldError
+from comparisons.scene.scene import Scene
 from comparisons.scene.stages import PinMove, StageSpec, SupportMove
 from comparisons.scene.tables import InputError, SceneError
 from comparisons.scene.toml import to_tables, to_toml

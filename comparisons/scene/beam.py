@@ -1,99 +1,80 @@
 """The record of a beam: its axis, section, material and meshes."""
 
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Iterable
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of
-from comparisons.scene.rules import Count, Dimension, FieldError, Name, Point, Positive, Vector
+from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.rules import LARGEST, RANGE, FieldError, Mistakes, Point
+
+Dimension = float | tuple[float, float]
 
 
-@dataclass(frozen=True, kw_only=True)
 class BeamSpec(Record):
     """A beam, straight and uniform unless it turns or tapers.
 
     The section is a rectangle `width` x `height` (effective shear area 5/6 of the area), or `area` and `second_moment`
     (effective shear area equal to the area); `shear_area` overrides the effective shear area. The material is isotropic:
     Young's modulus and either Poisson's ratio or the shear modulus, ``G = E/(2 (1 + nu))``.
-
-    Parameters
-    ----------
-    name : str
-        Letters, digits, ``-`` and ``_``.
-    start, end : (float, float)
-        The ends of the undeformed axis [length].
-    turn : float
-        Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].
-    youngs_modulus : float
-        Young's modulus [force/length^2].
-    poissons_ratio : float
-        Poisson's ratio.
-    shear_modulus : float
-        Shear modulus, instead of `poissons_ratio` [force/length^2].
-    width : float or (float, float)
-        Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].
-    height : float or (float, float)
-        Height of the section, in plane; a number or two like `width` [length].
-    area : float
-        Area of the section, with `second_moment` instead of `width` and `height` [length^2].
-    second_moment : float
-        Second moment of area, with `area` [length^4].
-    shear_area : float
-        Effective shear area [length^2].
-    density : float
-        Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; a mass times a `gravity` is a force.
-    clamped : tuple of {"start", "end"}
-        Clamped ends, none by default: the short form of a `SupportSpec`.
-    elements : int
-        Number of TSM elements, all of one length.
-    nodes : tuple of float
-        Positions of the inner TSM nodes as parts of the length, instead of `elements`.
-    mesh : (int, int)
-        Elements of the solid along and across.
-    solid_clamp : {"rod", "full"}
-        Clamp of the solid: free to contract, or both displacements of the whole edge held.
-    solid_element : {"Q1", "Q2", "Q2-full"}
-        Elements of the solid.
-    solid_mesh_file : str, optional
-        File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see
-        `fem_reference.mesh_file.read_mesh`.
-    material : {"st-venant-kirchhoff", "biot-linear", "neo-hookean"}
-        Material law of the solid.
-
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
     """
 
-    name: Name
-    start: Vector
-    end: Vector
-    youngs_modulus: Positive
-    poissons_ratio: Annotated[float, rules.poissons_ratio] | None = None
-    shear_modulus: Positive | None = None
-    turn: Annotated[float, rules.turn] = 0.0
-    width: Dimension | None = None
-    height: Dimension | None = None
-    area: Positive | None = None
-    second_moment: Positive | None = None
-    shear_area: Positive | None = None
-    density: Positive | None = None
-    clamped: Annotated[tuple[str, ...], rules.ends] = ()
-    elements: Count = 20
-    nodes: Annotated[tuple[float, ...], rules.parts] = ()
-    mesh: Annotated[tuple[int, int], rules.mesh] = (50, 2)
-    solid_clamp: Annotated[str, rules.choice("rod", "full")] = "rod"
-    solid_mesh_file: Annotated[str, rules.text] | None = None
-    solid_element: Annotated[str, rules.choice("Q1", "Q2", "Q2-full")] = "Q2"
-    material: Annotated[str, rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean")] = (
-        "st-venant-kirchhoff"
+    name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
+    start: Point = key(rules.point, "The ends of the undeformed axis [length].")
+    end: Point = key(rules.point, "The ends of the undeformed axis [length].")
+    youngs_modulus: float = key(rules.positive, "Young's modulus [force/length^2].")
+    poissons_ratio: float | None = optional(rules.poissons_ratio, "Poisson's ratio.")
+    shear_modulus: float | None = optional(
+        rules.positive, "Shear modulus, instead of `poissons_ratio` [force/length^2]."
+    )
+    turn: float = optional(
+        rules.turn,
+        "Natural curvature: the angle by which the undeformed axis turns left from start to end, an arc of a circle [rad].",
+        0.0,
+    )
+    width: Dimension | None = optional(
+        rules.dimension,
+        "Width of the section, out of plane; two numbers state it at the start and at the end, linear between them [length].",
+    )
+    height: Dimension | None = optional(
+        rules.dimension, "Height of the section, in plane; a number or two like `width` [length]."
+    )
+    area: float | None = optional(
+        rules.positive,
+        "Area of the section, with `second_moment` instead of `width` and `height` [length^2].",
+    )
+    second_moment: float | None = optional(rules.positive, "Second moment of area, with `area` [length^4].")
+    shear_area: float | None = optional(rules.positive, "Effective shear area [length^2].")
+    density: float | None = optional(
+        rules.positive,
+        "Mass per undeformed volume, for the weight by the scene's `gravity` [mass/length^3]; "
+        "a mass times a `gravity` is a force.",
+    )
+    clamped: tuple[str, ...] = optional(
+        rules.ends, "Clamped ends, none by default: the short form of a `SupportSpec`.", ()
+    )
+    elements: int = optional(rules.whole_number, "Number of TSM elements, all of one length.", 20)
+    nodes: tuple[float, ...] = optional(
+        rules.parts, "Positions of the inner TSM nodes as parts of the length, instead of `elements`.", ()
+    )
+    mesh: tuple[int, int] = optional(rules.mesh, "Elements of the solid along and across.", (50, 2))
+    solid_clamp: str = optional(
+        rules.choice("rod", "full"),
+        "Clamp of the solid: free to contract, or both displacements of the whole edge held.",
+        "rod",
+    )
+    solid_mesh_file: str | None = optional(
+        rules.text,
+        "File with a mesh of the solid in the beam's frame and with named edges, instead of `mesh`: see "
+        "`fem_reference.mesh_file.read_mesh`.",
+    )
+    solid_element: str = optional(rules.choice("Q1", "Q2", "Q2-full"), "Elements of the solid.", "Q2")
+    material: str = optional(
+        rules.choice("st-venant-kirchhoff", "biot-linear", "neo-hookean"),
+        "Material law of the solid.",
+        "st-venant-kirchhoff",
     )
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state material and section, a length, stiffnesses within floating-point range."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (
             exactly_one_of(self, ("poissons_ratio",), ("shear_modulus",)),
             exactly_one_of(self, ("width", "height"), ("area", "second_moment")),
@@ -102,18 +83,18 @@ class BeamSpec(Record):
             self._has_stiffness(),
         )
 
-    def _has_length(self) -> Iterator[FieldError]:
-        shortest = 1.0 / rules.LARGEST
-        if not shortest <= self.length <= rules.LARGEST:
-            rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {rules.LARGEST:g}"
+    def _has_length(self) -> Mistakes:
+        shortest = 1.0 / LARGEST
+        if not shortest <= self.length <= LARGEST:
+            rule = f"must differ from start, the distance {self.length:g} must lie between {shortest:g} and {LARGEST:g}"
             yield FieldError("end", self.end, rule)
 
-    def _shears_as_it_tapers(self) -> Iterator[FieldError]:
+    def _shears_as_it_tapers(self) -> Mistakes:
         if self.tapers and self.shear_area is not None:
             yield FieldError("shear_area", self.shear_area, "must not be given where the section tapers")
 
-    def _has_stiffness(self) -> Iterator[FieldError]:
-        least, most = rules.RANGE
+    def _has_stiffness(self) -> Mistakes:
+        least, most = RANGE
         stiffnesses = zip(("EA", "GA", "EI") * 2, (*self.stiffness(0.0), *self.stiffness(1.0)), strict=True)
         for name, stiffness in stiffnesses:
             if not least <= stiffness <= most:

@@ -1,31 +1,22 @@
-"""Supports, loads, hinges and springs of beams, as hashable records without arrays that check their values at construction."""
+"""Supports, loads, hinges and springs of beams."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Iterable
 
 from comparisons.scene import rules
-from comparisons.scene.record import Record, exactly_one_of
-from comparisons.scene.rules import MISSING, End, FieldError, Name, NotNegative, Number, Point, Vector
+from comparisons.scene.record import Record, exactly_one_of, key, optional
+from comparisons.scene.rules import MISSING, FieldError, Mistakes, Point
 
 COMPONENTS = ("x", "y", "rotation")
 """Components of an end's motion, in the order of `SupportSpec.motion`."""
+HELD = {"clamped": COMPONENTS, "pinned": ("x", "y")}
+END = rules.choice("start", "end")
 
 
-@dataclass(frozen=True, kw_only=True)
 class AtEnd(Record):
-    """Base of the records of what is at one end of a beam.
+    """What is at one end of a beam."""
 
-    Parameters
-    ----------
-    beam : str
-        Name of the beam.
-    end : {"start", "end"}
-        Which end.
-    """
-
-    beam: Name
-    end: End
+    beam: str = key(rules.name, "Name of the beam.")
+    end: str = key(END, "Which end.")
 
     @property
     def node(self) -> str:
@@ -33,78 +24,60 @@ class AtEnd(Record):
         return f"{self.beam}.{self.end}"
 
 
-@dataclass(frozen=True, kw_only=True)
 class SupportSpec(AtEnd):
-    """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter.
+    """A support of a beam's end. A held component stays at rest, or moves by a prescribed amount times the load parameter."""
 
-    Parameters
-    ----------
-    beam : str
-        Name of the beam.
-    end : {"start", "end"}
-        Which end. Beams that share an end are rigidly joined there: one support holds the joint.
-    kind : {"clamped", "pinned", "roller"}
-        A clamped end has position and rotation held, a pinned end the position, a roller one component of the position.
-    free : {"x", "y"}
-        The direction in which a roller is free.
-    fixed : tuple of {"x", "y", "rotation"}
-        The components held, instead of `kind`.
-    displacement : (float, float)
-        Prescribed displacement of the end at load parameter 1 [length]; zero in a free direction.
-    rotation : float
-        Prescribed rotation at load parameter 1, anticlockwise [rad].
+    end: str = key(
+        END, "Which end. Beams that share an end are rigidly joined there: one support holds the joint."
+    )
+    kind: str | None = optional(
+        rules.choice("clamped", "pinned", "roller"),
+        "A clamped end has position and rotation held, a pinned end the position, a roller one component of the position.",
+    )
+    free: str | None = optional(rules.choice("x", "y"), "The direction in which a roller is free.")
+    fixed: tuple[str, ...] | None = optional(
+        rules.subset(*COMPONENTS), "The components held, instead of `kind`."
+    )
+    displacement: Point | None = optional(
+        rules.point,
+        "Prescribed displacement of the end at load parameter 1 [length]; zero in a free direction.",
+    )
+    rotation: float | None = optional(
+        rules.number, "Prescribed rotation at load parameter 1, anticlockwise [rad]."
+    )
 
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    kind: Annotated[str, rules.choice("clamped", "pinned", "roller")] | None = None
-    free: Annotated[str, rules.choice("x", "y")] | None = None
-    fixed: Annotated[tuple[str, ...], rules.subset(*COMPONENTS)] | None = None
-    displacement: Vector | None = None
-    rotation: Number | None = None
-
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state what is held, a direction for a roller, motion only where it is held."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return exactly_one_of(self, ("kind",), ("fixed",)), self._direction(), self._moved(), self._turned()
 
-    def _direction(self) -> Iterator[FieldError]:
+    def _direction(self) -> Mistakes:
         if self.kind == "roller" and self.free is None:
             yield FieldError("free", MISSING, 'must be given, a roller is free in "x" or in "y"')
         if self.kind != "roller" and self.free is not None:
             yield FieldError("free", self.free, 'belongs to kind = "roller"')
 
-    def _moved(self) -> Iterator[FieldError]:
+    def _moved(self) -> Mistakes:
         for component, value in zip("xy", self.displacement or (), strict=False):
-            if value != 0.0 and component not in self.held:
-                yield FieldError(
-                    "displacement", self.displacement, f"must be zero in {component}, which is free"
-                )
+            if value and component not in self.held:
+                rule = f"must be zero in {component}, which is free"
+                yield FieldError("displacement", self.displacement, rule)
 
-    def _turned(self) -> Iterator[FieldError]:
+    def _turned(self) -> Mistakes:
         if self.rotation is not None and "rotation" not in self.held:
             yield FieldError("rotation", self.rotation, "must not be given, the rotation is free")
 
     @property
     def held(self) -> tuple[str, ...]:
         """The components held."""
-        if self.kind == "clamped":
-            return COMPONENTS
-        if self.kind == "pinned":
-            return ("x", "y")
         if self.kind == "roller":
             return ("y",) if self.free == "x" else ("x",)
-        return self.fixed or ()
+        return HELD[self.kind] if self.kind else self.fixed or ()
 
     @property
     def motion(self) -> tuple[float | None, float | None, float | None]:
         """Displacement x, y and rotation at load parameter 1, None where free."""
-        x, y = self.displacement or (0.0, 0.0)
-        given = dict(zip(COMPONENTS, (x, y, self.rotation or 0.0), strict=True))
-        x_, y_, rotation = (given[name] if name in self.held else None for name in COMPONENTS)
-        return x_, y_, rotation
+        given = zip(COMPONENTS, (*(self.displacement or (0.0, 0.0)), self.rotation or 0.0), strict=True)
+        x, y, rotation = (value if name in self.held else None for name, value in given)
+        return x, y, rotation
 
     @property
     def moves(self) -> bool:
@@ -112,54 +85,38 @@ class SupportSpec(AtEnd):
         return any(self.motion)
 
 
-@dataclass(frozen=True, kw_only=True)
 class LoadSpec(Record):
-    """A dead load scaled by the load parameter: a force and moment on a beam's end or inside the beam, or a force per length.
+    """A dead load scaled by the load parameter: a force and moment on a beam's end or inside the beam, or a force per length."""
 
-    Parameters
-    ----------
-    beam : str
-        Name of the beam.
-    end : {"start", "end"}
-        The end on which `force` and `moment` act.
-    at : float
-        The fraction of the undeformed length at which `force` and `moment` act inside the beam, instead of `end`.
-    force : (float, float)
-        At load parameter 1; it keeps its direction [force].
-    moment : float
-        At load parameter 1, anticlockwise [force length].
-    force_per_length : (float, float)
-        Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].
-    part : (float, float)
-        The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.
+    beam: str = key(rules.name, "Name of the beam.")
+    end: str | None = optional(END, "The end on which `force` and `moment` act.")
+    at: float | None = optional(
+        rules.fraction,
+        "The fraction of the undeformed length at which `force` and `moment` act inside the beam, instead of `end`.",
+    )
+    force: Point = optional(rules.point, "At load parameter 1; it keeps its direction [force].", (0.0, 0.0))
+    moment: float = optional(rules.number, "At load parameter 1, anticlockwise [force length].", 0.0)
+    force_per_length: Point | None = optional(
+        rules.point,
+        "Force per undeformed length at load parameter 1, instead of `end` and `at`; it keeps its direction [force/length].",
+    )
+    part: Point | None = optional(
+        rules.span,
+        "The fractions of the undeformed length between which `force_per_length` acts; the whole beam if not given.",
+    )
 
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    beam: Name
-    end: End | None = None
-    at: Annotated[float, rules.fraction] | None = None
-    force: Vector = (0.0, 0.0)
-    moment: Number = 0.0
-    force_per_length: Vector | None = None
-    part: Annotated[tuple[float, float], rules.span] | None = None
-
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules: one way to state where the load acts, what belongs to it, and a load that is not zero."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return exactly_one_of(self, ("end",), ("at",), ("force_per_length",)), self._belongs(), self._acts()
 
-    def _belongs(self) -> Iterator[FieldError]:
+    def _belongs(self) -> Mistakes:
         if self.force_per_length is None and self.part is not None:
             yield FieldError("part", self.part, "belongs to force_per_length")
-        for key in ("force", "moment") if self.force_per_length is not None else ():
-            if any(self.force) if key == "force" else self.moment:
+        for name in ("force", "moment") if self.force_per_length is not None else ():
+            if any(self.force) if name == "force" else self.moment:
                 rule = "must not be given with force_per_length: it belongs to end or at"
-                yield FieldError(key, getattr(self, key), rule)
+                yield FieldError(name, getattr(self, name), rule)
 
-    def _acts(self) -> Iterator[FieldError]:
+    def _acts(self) -> Mistakes:
         if self.force_per_length is None:
             if not any((*self.force, self.moment)):
                 yield FieldError("force", self.force, "force or moment must not be zero")
@@ -174,7 +131,7 @@ class LoadSpec(Record):
         return (*self.force, self.moment)
 
     @property
-    def span(self) -> tuple[float, float]:
+    def span(self) -> Point:
         """Fractions of the length between which the force per length acts."""
         return self.part or (0.0, 1.0)
 
@@ -193,59 +150,35 @@ class LoadSpec(Record):
         return "{} from {!r} to {!r}".format(self.beam, *self.span)
 
 
-@dataclass(frozen=True, kw_only=True)
 class HingeSpec(AtEnd):
-    """A hinge between a beam's end and its joint: the end turns against the joint without a moment, or against a spring.
+    """A hinge between a beam's end and its joint: the end turns against the joint without a moment, or against a spring."""
 
-    Parameters
-    ----------
-    beam : str
-        Name of the beam.
-    end : {"start", "end"}
-        Which end. It is joined to another beam, or a support holds its rotation. Supports, springs and loads that name the end act
-        on the joint, not on the beam behind the hinge.
-    stiffness : float
-        Stiffness of a rotational spring between the joint and the end [force length/rad].
-
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    stiffness: NotNegative = 0.0
+    end: str = key(
+        END,
+        "Which end. It is joined to another beam, or a support holds its rotation. Supports, springs and loads that name the end act "
+        "on the joint, not on the beam behind the hinge.",
+    )
+    stiffness: float = optional(
+        rules.not_negative,
+        "Stiffness of a rotational spring between the joint and the end [force length/rad].",
+        0.0,
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
 class SpringSpec(AtEnd):
-    """Linear springs between a beam's end and the ground, free of force in the undeformed state.
+    """Linear springs between a beam's end and the ground, free of force in the undeformed state."""
 
-    Parameters
-    ----------
-    beam : str
-        Name of the beam.
-    end : {"start", "end"}
-        Which end; the springs act on the joint of all beams that share it.
-    stiffness : (float, float)
-        Stiffnesses against displacement in x and in y [force/length].
-    rotation : float
-        Stiffness against rotation [force length/rad].
+    end: str = key(END, "Which end; the springs act on the joint of all beams that share it.")
+    stiffness: Point = optional(
+        rules.stiffnesses, "Stiffnesses against displacement in x and in y [force/length].", (0.0, 0.0)
+    )
+    rotation: float = optional(rules.not_negative, "Stiffness against rotation [force length/rad].", 0.0)
 
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    stiffness: Annotated[Point, rules.stiffnesses] = (0.0, 0.0)
-    rotation: NotNegative = 0.0
-
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: some stiffness is not zero."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (self._resists(),)
 
-    def _resists(self) -> Iterator[FieldError]:
-        if not any((*self.stiffness, self.rotation)):
+    def _resists(self) -> Mistakes:
+        if not self.held:
             yield FieldError("stiffness", self.stiffness, "stiffness or rotation must not be zero")
 
     @property

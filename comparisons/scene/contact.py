@@ -1,22 +1,19 @@
-"""Pins and contact pairs, as hashable records without arrays that check their values at construction."""
+"""Pins and contact pairs."""
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 from comparisons.scene import rules
-from comparisons.scene.amounts import stage_of
-from comparisons.scene.record import Record, exactly_one_of
-from comparisons.scene.rules import FieldError, Friction, Name, Point, Positive, Vector
-from comparisons.scene.stages import PinMove
+from comparisons.scene.record import Record, Unjudged, exactly_one_of, key, optional
+from comparisons.scene.rules import Mistakes, Point
+from comparisons.scene.stages import PinMove, stage_of
 
 
-@dataclass(frozen=True, kw_only=True)
 class Path:
     """A polyline from load parameter 0 to 1 at constant speed.
 
@@ -26,7 +23,8 @@ class Path:
         At least two points; all equal where nothing moves [length].
     """
 
-    points: tuple[Point, ...]
+    def __init__(self, points: tuple[Point, ...]) -> None:
+        self.points = points
 
     @cached_property
     def _reached(self) -> tuple[float, ...]:
@@ -52,52 +50,44 @@ class Path:
         return (1.0 - u) * start[0] + u * end[0], (1.0 - u) * start[1] + u * end[1]
 
 
-@dataclass(frozen=True, kw_only=True)
 class PinSpec(Record):
-    """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter.
+    """A point, or a round pin that does not turn, on a prescribed path, traversed at constant speed by the load parameter."""
 
-    Parameters
-    ----------
-    name : str
-        Letters, digits, ``-`` and ``_``.
-    start, displacement : (float, float)
-        A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle.
-    path : tuple of (float, float)
-        A polyline [length], instead of `start` and `displacement`.
-    radius : float, optional
-        Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.
+    name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
+    start: Point | None = optional(
+        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
+    )
+    displacement: Point | None = optional(
+        rules.point, "A straight path [length]; a displacement of zero leaves the pin at rest, an obstacle."
+    )
+    path: tuple[Point, ...] | None = optional(
+        rules.polyline, "A polyline [length], instead of `start` and `displacement`."
+    )
+    radius: float | None = optional(
+        rules.positive,
+        "Radius of a round pin, whose centre is on the path [length]; without a radius the pin is a point.",
+    )
+    moves: ClassVar[tuple[PinMove | None, ...] | None] = ()
+    """Motions in the stages after the first one, which the scene states; one is None where the pin rests, all are where one is wrong."""
 
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
-    """
-
-    name: Name
-    start: Vector | None = None
-    displacement: Vector | None = None
-    path: Annotated[tuple[Point, ...], rules.polyline] | None = None
-    radius: Positive | None = None
-    moves: ClassVar[tuple[PinMove | None, ...]] = ()
-    """Motions in the stages after the first one, which the scene states; None where the pin rests."""
-
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rule: one way to state the path."""
+    def _own_rules(self) -> Iterable[Mistakes]:
         return (exactly_one_of(self, ("start", "displacement"), ("path",)),)
 
     @cached_property
     def _paths(self) -> tuple[Path, ...]:
         """The path of every stage."""
         if self.start is None or self.displacement is None:
-            paths = [Path(points=self.path or ())]
+            paths = [Path(self.path or ())]
         else:
             (x, y), (dx, dy) = self.start, self.displacement
-            paths = [Path(points=((x, y), (x + dx, y + dy)))]
+            paths = [Path(((x, y), (x + dx, y + dy)))]
+        if self.moves is None:
+            raise Unjudged("moves")
         for move in self.moves:
             x, y = paths[-1].points[-1]
             dx, dy = (0.0, 0.0) if move is None else move.displacement or (0.0, 0.0)
             onward = (move and move.path) or ((x + dx, y + dy),)
-            paths.append(Path(points=((x, y), *onward)))
+            paths.append(Path(((x, y), *onward)))
         return tuple(paths)
 
     @cached_property
@@ -129,39 +119,36 @@ class PinSpec(Record):
         return self._paths[stage].position(load_parameter - stage if stage else load_parameter)
 
 
-@dataclass(frozen=True, kw_only=True)
 class ContactSpec(Record):
-    """A contact of a node with a beam.
+    """A contact of a node with a beam."""
 
-    Parameters
-    ----------
-    node : str
-        A pin's name, or a beam's end as ``upper.end``.
-    beam : str
-        The beam touched.
-    side : {"right", "left"}
-        Side of the beam's direction, start to end, from which the node comes.
-    surface : {"axis", "face"}
-        The beam's axis, or its face at half the height.
-    penalty : float
-        Penalty stiffness of the solid model [force/length]; automatic if not given.
-    penetration : float
-        Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given,
-        the penalty alone bounds the penetration.
-    keep : bool
-        Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.
-    friction : float
-        Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.
-    """
-
-    node: Annotated[str, rules.text]
-    beam: Name
-    side: Annotated[str, rules.choice("right", "left")]
-    surface: Annotated[str, rules.choice("axis", "face")] = "axis"
-    penalty: Positive | None = None
-    penetration: Positive | None = None
-    keep: Annotated[bool, rules.truth] = False
-    friction: Friction = 0.0
+    node: str = key(rules.text, "A pin's name, or a beam's end as ``upper.end``.")
+    beam: str = key(rules.name, "The beam touched.")
+    side: str = key(
+        rules.choice("right", "left"),
+        "Side of the beam's direction, start to end, from which the node comes.",
+    )
+    surface: str = optional(
+        rules.choice("axis", "face"), "The beam's axis, or its face at half the height.", "axis"
+    )
+    penalty: float | None = optional(
+        rules.positive, "Penalty stiffness of the solid model [force/length]; automatic if not given."
+    )
+    penetration: float | None = optional(
+        rules.positive,
+        "Largest penetration in the solid model, relative to the beam's length, reached by augmented Lagrangian steps; if not given, "
+        "the penalty alone bounds the penetration.",
+    )
+    keep: bool = optional(
+        rules.truth,
+        "Whether the contact, once closed, must persist: a release or a slip-off then ends the solution.",
+        False,
+    )
+    friction: float = optional(
+        rules.friction,
+        "Coulomb's coefficient of friction, which acts on the beam's `surface`; the contact is frictionless if not given.",
+        0.0,
+    )
 
     @property
     def pair(self) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from comparisons.scene.contact import ContactSpec
-    from comparisons.scene.records import Scene
     from comparisons.scene.rules import Point
+    from comparisons.scene.scene import Scene
 
 
 class BeamEnd(NamedTuple):

@@ -1,68 +1,62 @@
 """Joints of beams. Beams that share an end form one structure. A structure needs supports, with one at most at each joint."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from itertools import combinations, product
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from comparisons.scene.hinges import mechanism, useless_hinges
-from comparisons.scene.record import Unjudged, right
-from comparisons.scene.rules import FieldError, Point
+from comparisons.scene.beam import BeamSpec
+from comparisons.scene.conditions import COMPONENTS
+from comparisons.scene.record import Unjudged
+from comparisons.scene.rules import FieldError, Mistakes, Point
 
 if TYPE_CHECKING:
-    from comparisons.scene.beam import BeamSpec
-    from comparisons.scene.names import Names
-    from comparisons.scene.records import Scene
+    from comparisons.scene.scene import Scene
 
 NEAR = 1e-6
 """Distance of two ends, relative to the beam's length, below which a joint is meant: the ends must then have equal coordinates."""
+LEAST = 1e-9
+"""Least pivot of the equations of rigid motions, in coordinates over the longest beam; a smaller one counts as zero."""
+IsName = Callable[[str], bool]
 
 
-def joint_rules(scene: Scene, names: Names) -> Iterator[FieldError]:
+def joint_rules(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
     """Yield ends that nearly meet and beams end to end; without any, supports at one joint, hinges and structures that are not held."""
     misplaced = [*_nearly_meeting(scene), *_end_to_end(scene)]
     yield from misplaced
     if not misplaced:
-        yield from _one_support(scene, names)
-        yield from _held(scene, names)
+        yield from _one_support(scene, is_beam)
+        yield from _held(scene, is_beam, is_node)
 
 
-def _held(scene: Scene, names: Names) -> Iterator[FieldError]:
+def _held(scene: "Scene", is_beam: IsName, is_node: IsName) -> Mistakes:
     named = [beam.name for beam in scene.beams]
     for records in (scene.supports, scene.springs, scene.hinges):
         named += (record.beam for record in records)
-    if not all(map(names.is_beam, named)):
+    if not all(map(is_beam, named)):
         return
-    useless = list(useless_hinges(scene))
+    useless = list(_useless_hinges(scene))
     yield from useless
-    touched = _touched(scene, names)
+    touched: set[str] | None = None  # where a name in a contact is wrong
+    with suppress(Unjudged):
+        if all(is_beam(contact.beam) and is_node(contact.node) for contact in scene.contacts):
+            touched = {name for one in scene.contacts for name in (one.beam, one.node.partition(".")[0])}
     numbers = {beam.name: i for i, beam in enumerate(scene.beams)}
     for structure in structures(scene):
         with suppress(Unjudged):
-            number = numbers[structure[0].name]
-            free = list(_structure_held(scene, structure, number))
-            yield from free
-            own = {beam.name for beam in structure}
-            if not free and not useless and touched is not None and touched.isdisjoint(own):
-                yield from _structure_stiff(scene, structure, number)
+            names, key = {beam.name for beam in structure}, f"beam[{numbers[structure[0].name]}].clamped"
+            if not any(item.beam in names for item in scene.holding):
+                rule = f'beam "{structure[0].name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
+                yield FieldError(key, structure[0].clamped, rule)
+            elif not useless and touched is not None and touched.isdisjoint(names):
+                yield from _stiff(scene, structure, names, key)
 
 
-def _touched(scene: Scene, names: Names) -> set[str] | None:
-    """Return the names of beams and pins in contacts; None where a name in a contact is wrong."""
-    with suppress(Unjudged):
-        contacts = scene.contacts
-        if all(names.is_beam(contact.beam) and names.is_node(contact.node) for contact in contacts):
-            return {name for contact in contacts for name in (contact.beam, contact.node.partition(".")[0])}
-    return None
-
-
-def structures(scene: Scene) -> list[list[BeamSpec]]:
+def structures(scene: "Scene") -> list[list[BeamSpec]]:
     """Return the beams, grouped by what is joined together."""
-    meeting = _meeting(scene)
+    meeting = _meeting(scene.beams)
     groups: list[list[BeamSpec]] = []
     grouped: set[str] = set()
     for beam in scene.beams:
@@ -79,64 +73,44 @@ def structures(scene: Scene) -> list[list[BeamSpec]]:
     return groups
 
 
-def _meeting(scene: Scene) -> dict[Point, list[BeamSpec]]:
+def _meeting(beams: Sequence[BeamSpec]) -> dict[Point, list[BeamSpec]]:
     """Return the beams at every end."""
     meeting: dict[Point, list[BeamSpec]] = defaultdict(list)
-    for beam in scene.beams:
+    for beam in beams:
         meeting[beam.start].append(beam)
         meeting[beam.end].append(beam)
     return meeting
 
 
-def _nearly_meeting(scene: Scene) -> Iterator[FieldError]:
-    beams = {i: beam for i, beam in enumerate(scene.beams) if right(beam, "name", "start", "end")}
-    meeting: dict[Point, list[int]] = defaultdict(list)
-    for i, beam in beams.items():
-        meeting[beam.start].append(i)
-        meeting[beam.end].append(i)
-    longest = {place: max(beams[i].length for i in own) for place, own in meeting.items()}
-    for place, other in _neighbours(longest):
-        if math.dist(place, other) < NEAR * min(longest[place], longest[other]):
-            for i, j in combinations(sorted({*meeting[place], *meeting[other]}), 2):
-                yield from _pair(beams[i], beams[j], j)
+def _nearly_meeting(scene: "Scene") -> Mistakes:
+    """Yield ends that nearly meet an end of an earlier beam. Along a direction that is no beam's, only neighbours can be near."""
+    numbers = {id(beam): i for i, beam in enumerate(scene.beams) if beam.has("name", "start", "end")}
+    meeting = _meeting([beam for beam in scene.beams if id(beam) in numbers])
+    reach = {place: NEAR * max(beam.length for beam in beams) for place, beams in meeting.items()}
+    along = sorted((math.cos(1.0) * x + math.sin(1.0) * y, (x, y)) for x, y in meeting)
+    for k, (first, place) in enumerate(along):
+        for onward in range(k + 1, len(along)):
+            last, other = along[onward]
+            if last - first > 2.0 * reach[place]:
+                break
+            if math.dist(place, other) < min(reach[place], reach[other]):
+                both = {id(beam): beam for beam in (*meeting[place], *meeting[other])}
+                ordered = sorted(both.values(), key=lambda beam: numbers[id(beam)])
+                for a, b in combinations(ordered, 2):
+                    yield from _pair(a, b, numbers[id(b)])
 
 
-def _neighbours(longest: dict[Point, float]) -> Iterator[tuple[Point, Point]]:
-    """Yield all pairs of ends with a distance of at most `NEAR` times the shorter beam; some pairs may be farther apart.
-
-    The search uses grids of squares, one grid for every power of two among the beam lengths. A grid has the ends of all beams of
-    its length or longer. Each end is compared with the ends in the neighbouring squares of the grid for its beam's length.
-    """
-    levels = {place: math.frexp(length)[1] for place, length in longest.items()}
-    for level in sorted(set(levels.values())):
-        size = NEAR * math.ldexp(1.0, level)
-        squares: dict[tuple[int, int], list[Point]] = defaultdict(list)
-        square = {
-            place: (math.floor(place[0] / size), math.floor(place[1] / size))
-            for place in longest
-            if levels[place] >= level
-        }
-        for place, own in square.items():
-            squares[own].append(place)
-        for place, (column, row) in square.items():
-            if levels[place] == level:
-                for dx, dy in product((-1, 0, 1), repeat=2):
-                    near = squares.get((column + dx, row + dy), ())
-                    yield from ((place, other) for other in near if other != place)
-
-
-def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Iterator[FieldError]:
+def _pair(a: BeamSpec, b: BeamSpec, number: int) -> Mistakes:
     """Yield the ends of `b`, the beam of that number, that nearly meet an end of `a`."""
     for end in ("start", "end"):
         for place, node in ((a.start, f"{a.name}.start"), (a.end, f"{a.name}.end")):
             near = getattr(b, end)
             if near != place and math.dist(near, place) < NEAR * min(a.length, b.length):
-                yield FieldError(
-                    f"beam[{number}].{end}", near, f'must be "{node}" exactly, or stay clear of it'
-                )
+                rule = f'must be "{node}" exactly, or stay clear of it'
+                yield FieldError(f"beam[{number}].{end}", near, rule)
 
 
-def _end_to_end(scene: Scene) -> Iterator[FieldError]:
+def _end_to_end(scene: "Scene") -> Mistakes:
     """Yield beams between the same ends as an earlier one, unless they are different arcs."""
     there: dict[tuple[frozenset[Point], float], int] = {}
     for j, beam in enumerate(scene.beams):
@@ -148,10 +122,10 @@ def _end_to_end(scene: Scene) -> Iterator[FieldError]:
                 yield FieldError(f"beam[{j}].end", beam.end, rule)
 
 
-def _one_support(scene: Scene, names: Names) -> Iterator[FieldError]:
+def _one_support(scene: "Scene", is_beam: IsName) -> Mistakes:
     """Yield supports at a place that an earlier support holds."""
     held: dict[Point, str] = {}
-    for key, node in _supported(scene, names):
+    for key, node in _supported(scene, is_beam):
         with suppress(Unjudged):
             place = scene.place(node)
             if place in held:
@@ -159,41 +133,84 @@ def _one_support(scene: Scene, names: Names) -> Iterator[FieldError]:
             held[place] = node
 
 
-def _supported(scene: Scene, names: Names) -> Iterator[tuple[str, str]]:
+def _supported(scene: "Scene", is_beam: IsName) -> Iterator[tuple[str, str]]:
     """Yield the keys of the supports and the ends that they hold."""
     for i, beam in enumerate(scene.beams):
         with suppress(Unjudged):
-            if names.is_beam(beam.name):
+            if is_beam(beam.name):
                 yield from ((f"beam[{i}].clamped", f"{beam.name}.{end}") for end in beam.clamped)
     for i, support in enumerate(scene.supports):
         with suppress(Unjudged):
-            if names.is_beam(support.beam):
+            if is_beam(support.beam):
                 yield f"support[{i}].end", support.node
 
 
-def _structure_held(scene: Scene, structure: list[BeamSpec], number: int) -> Iterator[FieldError]:
-    """Yield a mistake if nothing holds a structure; `number` is its first beam's."""
-    beam, names = structure[0], {member.name for member in structure}
-    if not any(map(scene.supports_of, names)) and not any(spring.beam in names for spring in scene.springs):
-        rule = f'beam "{beam.name}" is free: clamp it, give it a [[support]] or a [[spring]] or join it to a beam that has one'
-        yield FieldError(f"beam[{number}].clamped", beam.clamped, rule)
-
-
-def _structure_stiff(scene: Scene, structure: list[BeamSpec], number: int) -> Iterator[FieldError]:
-    """Yield a mistake if a structure that nothing touches can move without strain."""
-    beam = structure[0]
-    if not _rigid(scene, structure):
-        rule = f'beam "{beam.name}" can move without strain: its supports must hold x, y and the rotation'
-        yield FieldError(f"beam[{number}].clamped", beam.clamped, rule)
-    else:
-        yield from mechanism(scene, structure)
-
-
-def _rigid(scene: Scene, structure: list[BeamSpec]) -> bool:
-    """Whether the supports and springs leave no rigid motion ``(a - c y, b + c x, c)``."""
-    names = {beam.name for beam in structure}
+def _stiff(scene: "Scene", structure: list[BeamSpec], names: set[str], key: str) -> Mistakes:
+    """Yield a mistake if a structure that nothing touches can move without strain: all of it, or its beams about hinges."""
     own = [item for item in scene.holding if item.beam in names]
-    levels = {scene.place(support.node)[1] for support in own if "x" in support.held}
-    columns = {scene.place(support.node)[0] for support in own if "y" in support.held}
-    turning = any("rotation" in support.held for support in own) or len(levels) > 1 or len(columns) > 1
-    return bool(levels) and bool(columns) and turning
+    levels = {scene.place(item.node)[1] for item in own if "x" in item.held}
+    columns = {scene.place(item.node)[0] for item in own if "y" in item.held}
+    turning = any("rotation" in item.held for item in own) or len(levels) > 1 or len(columns) > 1
+    hinged = [i for i, hinge in enumerate(scene.hinges) if hinge.beam in names and not hinge.stiffness]
+    if not (levels and columns and turning):
+        rule = f'beam "{structure[0].name}" can move without strain: its supports must hold x, y and the rotation'
+        yield FieldError(key, structure[0].clamped, rule)
+    elif hinged and _moves_about_hinges(scene, structure, names):
+        rule = "must not make a mechanism: the beams can move without strain"
+        yield FieldError(f"hinge[{hinged[0]}].end", scene.hinges[hinged[0]].node, rule)
+
+
+def _useless_hinges(scene: "Scene") -> Mistakes:
+    """Yield the hinges at ends that nothing turns, and one hinge of every joint that all its beams leave free to turn."""
+    meeting = _meeting(scene.beams)
+    turned = {scene.place(item.node) for item in scene.holding if "rotation" in item.held}
+    stiff = {scene.place(hinge.node) for hinge in scene.hinges if hinge.stiffness}
+    hinged: dict[Point, set[str]] = defaultdict(set)
+    for hinge in scene.hinges:
+        hinged[scene.place(hinge.node)].add(hinge.node)
+    for i, hinge in enumerate(scene.hinges):
+        place, key = scene.place(hinge.node), f"hinge[{i}].end"
+        if place in turned:
+            continue
+        if len(meeting[place]) == 1:
+            rule = "must be joined to another beam, or its rotation held by a support or a spring"
+            yield FieldError(key, hinge.node, rule)
+        elif len(hinged.pop(place, ())) == len(meeting[place]) and place not in stiff:
+            rule = "must leave one beam of the joint without a hinge: the joint turns freely"
+            yield FieldError(key, hinge.node, rule)
+
+
+def _moves_about_hinges(scene: "Scene", structure: list[BeamSpec], names: set[str]) -> bool:
+    """Whether beams, each rigid, can move: joints move by (ux, uy, turn), and a beam turns by the relative motion of its ends."""
+    free = {hinge.node for hinge in scene.hinges if not hinge.stiffness}
+    size = max(beam.length for beam in structure)
+    joints = {place: 3 * k for k, place in enumerate(_meeting(structure))}
+    rows: list[dict[int, float]] = []
+    for turn, beam in enumerate(structure, 3 * len(joints)):
+        start, end = joints[beam.start], joints[beam.end]
+        dx, dy = ((b - a) / size for a, b in zip(beam.start, beam.end, strict=True))
+        rows += [{end: 1.0, start: -1.0, turn: dy}, {end + 1: 1.0, start + 1: -1.0, turn: -dx}]
+        fixed = (
+            joint for joint, node in ((start, "start"), (end, "end")) if f"{beam.name}.{node}" not in free
+        )
+        rows += ({joint + 2: 1.0, turn: -1.0} for joint in fixed)
+    for item in (item for item in scene.holding if item.beam in names):
+        joint = joints[scene.place(item.node)]
+        rows += ({joint + COMPONENTS.index(component): 1.0} for component in item.held)
+    return _rank(rows) < 3 * len(joints) + len(structure)
+
+
+def _rank(rows: list[dict[int, float]]) -> int:
+    """Return the rank of a sparse matrix, its values by column, by elimination with the largest value of every row."""
+    pivots: dict[int, dict[int, float]] = {}
+    for row in rows:
+        while known := row.keys() & pivots.keys():
+            column = known.pop()
+            factor = row.pop(column)
+            for other, value in pivots[column].items():
+                row[other] = row.get(other, 0.0) - factor * value
+        size, column = max(((abs(value), column) for column, value in row.items()), default=(0.0, 0))
+        if size > LEAST:
+            scale = row.pop(column)
+            pivots[column] = {other: value / scale for other, value in row.items() if value}
+    return len(pivots)

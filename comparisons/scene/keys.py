@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from comparisons.scene.records import Scene
+from comparisons.scene.scene import Scene
 
 SPECIAL: Final = {
     "turn": "a natural curvature (turn)",
@@ -18,17 +18,13 @@ SPECIAL: Final = {
 """The keys and what each states, in the order in which they are refused."""
 
 BEAMS: Final = frozenset(SPECIAL)
-"""Keys that the tangent stiffness method states."""
 STRIPS: Final = frozenset(SPECIAL)
-"""Keys that the solid states."""
 REFEREE: Final[frozenset[str]] = frozenset(SPECIAL)
-"""Keys that the referee judges."""
-RODS: Final[frozenset[str]] = REFEREE & BEAMS
-"""Keys that the exact rods state: the referee solves them along the path that exact elements follow."""
+RODS: Final = REFEREE & BEAMS
+"""Keys that beams, solids, the referee, and the exact rods state, which the referee solves along the path of exact elements."""
 ONE_ROD: Final[frozenset[str]] = frozenset()
-"""Keys that the exact answers by quadrature state, for one beam under a pin."""
 PROGRAMS: Final[frozenset[str]] = frozenset()
-"""Keys that the resolved scene states, which programs of others read."""
+"""Keys that the exact answers by quadrature state, and the resolved scene that programs of others read."""
 MATERIAL: Final = frozenset({"turn"})
 """Keys under which the material force is defined."""
 
@@ -39,12 +35,12 @@ def special_keys(scene: Scene) -> Iterator[str]:
     used = {
         "turn": any(beam.turn for beam in scene.beams),
         "taper": any(beam.tapers for beam in scene.beams),
-        "density": scene.gravity is not None,
-        "force_per_length": any(load.force_per_length is not None for load in loads),
-        "at": any(load.at is not None for load in loads),
-        "hinge": bool(scene.hinges),
-        "spring": bool(scene.springs),
-        "stage": bool(scene.stages),
+        "density": scene.gravity,
+        "force_per_length": any(load.force_per_length for load in loads),
+        "at": any(load.at for load in loads),
+        "hinge": scene.hinges,
+        "spring": scene.springs,
+        "stage": scene.stages,
     }
     yield from (key for key in SPECIAL if used[key])
 

@@ -15,7 +15,7 @@ DEEPEST = 50
 """Largest number of parts of a dotted key; the time to parse a key rises with the square of this number."""
 MOST = 1000
 """Number of mistakes from which the reader of a file looks for no more."""
-_KEY = re.compile(r"([^.\[\]]+)(?:\[(\d+)\])?")
+_TABLE = re.compile(r"([^.\[\]]+)(?:\[(\d+)\])?")
 _HEADER = re.compile(
     r"""\"{3}(?:\\.|[^\\])*?\"{3}|'{3}.*?'{3}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*"""
     r"""|^[ \t]*\[\[?[ \t]*(?P<quote>["']?)(?P<key>[\w-]+)(?P=quote)[ \t]*\]""",
@@ -52,13 +52,7 @@ class SceneError(InputError):
 
 
 def read_text(path: str, absent: str, kind: type[InputError]) -> str:
-    """Return the text of the regular file `path`, of 16 MB at most.
-
-    Raises
-    ------
-    InputError
-        An error of the given kind, with the reason `absent` where the file does not exist.
-    """
+    """Return the text of the regular file `path`, of 16 MB at most; an error of `kind` says `absent` where there is none."""
     try:
         return read_regular(path, LARGEST_FILE).decode("utf-8")
     except FileNotFoundError:
@@ -84,27 +78,27 @@ def check_keys(
     table: dict[str, Any], known: Collection[str], required: Iterable[str] = ()
 ) -> Iterator[FieldError]:
     """Yield the keys of `table` that are not known, and the keys that are required and not there."""
-    unknown = [key for key in table if key not in known]
-    if unknown:
+    for key in _unknown(table, known):
         from comparisons.scene.words import hint
 
-        for key in unknown[:MOST]:
-            rule = f"unknown key, {hint(key, known)}"
-            yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
-    misnamed = misnamed_keys(table, known)
-    for key in required:
-        if key not in table and key not in misnamed:
-            yield FieldError(key, MISSING, "must be given")
+        rule = f"unknown key, {hint(key, known)}"
+        yield FieldError(key if key.isprintable() else repr(key), table[key], rule)
+    missing = [key for key in required if key not in table]
+    for key in missing and sorted(set(missing) - misnamed_keys(table, known), key=missing.index):
+        yield FieldError(key, MISSING, "must be given")
+
+
+def _unknown(table: dict[str, Any], known: Collection[str]) -> list[str]:
+    return [key for key in table if key not in known][:MOST]
 
 
 def misnamed_keys(table: dict[str, Any], known: Collection[str]) -> set[str]:
     """Return the known keys that are not in `table`, but there by another name or misspelt."""
-    unknown = [key for key in table if key not in known]
-    if not unknown:
-        return set()
-    from comparisons.scene.words import meant
+    found = set()
+    for key in _unknown(table, known):
+        from comparisons.scene.words import meant
 
-    found = {meant(key, known) for key in unknown[:MOST]}
+        found.add(meant(key, known))
     return {key for key in found if key is not None and key not in table}
 
 
@@ -152,19 +146,18 @@ def in_order(mistakes: Iterable[FieldError], text: str, tables: dict[str, Any]) 
     A key that is missing stands at the end of its table.
     """
     headers: dict[str, list[int]] = defaultdict(list)
-    for found in _HEADER.finditer(text):
-        headers[found["key"]].append(found.start())
+    for header in _HEADER.finditer(text):
+        headers[header["key"]].append(header.start())
+    ranks = {key: rank for rank, key in enumerate(_keys(tables))}
 
-    top = {name: number - len(tables) for number, name in enumerate(tables)}
-    ranks: dict[int, dict[str, int]] = {}
-
-    def place(mistake: FieldError) -> tuple[int, ...]:
-        path = [(name, int(number or 0)) for name, number in _KEY.findall(mistake.key)]
-        if not path or path[0][0] not in tables:
-            return (len(text),)
-        name, number = path[0]
-        start = headers[name][number] if number < len(headers[name]) else top[name]
-        return start, *_places(path, tables, ranks)
+    def place(mistake: FieldError) -> tuple[int, int]:
+        found = _TABLE.match(mistake.key)
+        table, _, _ = mistake.key.rpartition(".")
+        rank = ranks.get(mistake.key, ranks.get(f"{table}.", len(ranks)))
+        if found is None or found[1] not in tables:
+            return len(text), rank
+        starts, number = headers[found[1]], int(found[2] or 0)
+        return starts[number] if number < len(starts) else list(tables).index(found[1]) - len(tables), rank
 
     first: dict[tuple[str, str], FieldError] = {}
     for mistake in sorted(mistakes, key=place):
@@ -172,17 +165,13 @@ def in_order(mistakes: Iterable[FieldError], text: str, tables: dict[str, Any]) 
     return list(first.values())
 
 
-def _places(
-    path: Iterable[tuple[str, int]], table: object, ranks: dict[int, dict[str, int]]
-) -> Iterator[int]:
-    """Yield the number of every key of a path among the keys of its table, and the number in its list; `ranks` keeps the numbers."""
-    for name, number in path:
-        if not isinstance(table, dict):
-            return
-        if id(table) not in ranks:
-            ranks[id(table)] = {key: rank for rank, key in enumerate(table)}
-        yield ranks[id(table)].get(name, len(table))
-        yield number
-        table = table.get(name)
-        if isinstance(table, list) and number < len(table):
-            table = table[number]
+def _keys(table: dict[str, Any], path: str = "") -> Iterator[str]:
+    """Yield the keys of a table and of the tables in it, as ``beam[0].name``, then the path of the table, at which it ends."""
+    for key, value in table.items():
+        yield f"{path}{key}"
+        if isinstance(value, dict):
+            yield from _keys(value, f"{path}{key}.")
+        for i, item in enumerate(value if isinstance(value, list) else ()):
+            if isinstance(item, dict):
+                yield from _keys(item, f"{path}{key}[{i}].")
+    yield path

@@ -1,41 +1,34 @@
-"""A scene as tables and as TOML text."""
+"""A scene as tables and as TOML text, and the JSON Schema of scene files."""
 
-from dataclasses import fields, is_dataclass
+import json
+from dataclasses import Field, fields
+from pathlib import Path
 from typing import Any
 
-from comparisons.scene.read import LISTS, STAGE_LISTS
-from comparisons.scene.records import Scene
-from comparisons.scene.stages import StageSpec
+from comparisons.scene.read import LISTS
+from comparisons.scene.record import Record, lists_of, rule_of
+from comparisons.scene.rules import LIST, MISSING
+from comparisons.scene.scene import Scene
 from comparisons.scene.values import toml_value
 
 Table = dict[str, Any]
-
-
-def _table(record: Any, leave: tuple[str, ...] = ()) -> Table:
-    given = ((item.name, getattr(record, item.name)) for item in fields(record) if item.name not in leave)
-    return {name: _value(value) for name, value in given if value is not None}
-
-
-def _empty_lists(record: object) -> tuple[str, ...]:
-    """Return the lists of tables in a record that are empty, which a file leaves out."""
-    return tuple(name for name in STAGE_LISTS if isinstance(record, StageSpec) and not getattr(record, name))
-
-
-def _value(value: object) -> object:
-    """Return a value with the records in it as tables."""
-    if isinstance(value, tuple) and any(is_dataclass(item) for item in value):
-        return [_table(item, _empty_lists(item)) for item in value]
-    return value
+HEAD = tuple(item for item in fields(Scene) if item.name not in lists_of(Scene))
+"""The fields of the table ``[scene]``."""
 
 
 def to_tables(scene: Scene) -> dict[str, Table | list[Table]]:
     """Return the tables of a scene file that states `scene`, every key written out: ``scene``, and a list for each kind of record."""
-    lists = {f"{kind}s": kind for kind in LISTS}
-    tables: dict[str, Table | list[Table]] = {"scene": _table(scene, leave=tuple(lists))}
-    for name, kind in lists.items():
-        if records := getattr(scene, name):
-            tables[kind] = [_table(record, _empty_lists(record)) for record in records]
-    return tables
+    tables = _table(scene)
+    lists = {kind: tables[f"{kind}s"] for kind in LISTS if f"{kind}s" in tables}
+    return {"scene": {item.name: tables[item.name] for item in HEAD if item.name in tables}, **lists}
+
+
+def _table(record: Record) -> Table:
+    """Return the values of a record that are given; a file leaves out a list of tables that is empty."""
+    table: Table = {item.name: getattr(record, item.name) for item in fields(record)}
+    for name in lists_of(type(record)):
+        table[name] = list(map(_table, table[name])) or None
+    return {name: value for name, value in table.items() if value is not None}
 
 
 def to_toml(scene: Scene) -> str:
@@ -56,3 +49,51 @@ def to_toml(scene: Scene) -> str:
             for row in rows
         ]
     return "\n\n".join(texts) + "\n"
+
+
+def json_schema() -> Table:
+    """Return the schema of scene files, for editors.
+
+    A file that the schema refuses is refused by the reader too; rules between keys are checked by the reader only.
+
+    Examples
+    --------
+    >>> json_schema()["properties"]["beam"]["items"]["properties"]["youngs_modulus"]["exclusiveMinimum"]
+    0
+    """
+    lists = {kind: {**LIST, "items": _schema(record, fields(record))} for kind, record in LISTS.items()}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Scene of tsm-crossval",
+        "type": "object",
+        "properties": {"scene": _schema(Scene, HEAD), **lists},
+        "required": ["scene", "beam"],
+        "additionalProperties": False,
+    }
+
+
+def _schema(kind: type[Record], known: tuple[Field[Any], ...]) -> Table:
+    properties = {}
+    for item in known:
+        rule, meaning = rule_of(item), item.metadata["meaning"].replace("``", "`")
+        properties[item.name] = {"description": meaning, **rule.schema}
+        if rule.kind is not None:
+            properties[item.name]["items"] = _schema(rule.kind, fields(rule.kind))
+        elif item.default not in (MISSING, None):
+            properties[item.name]["default"] = item.default
+    return {
+        "type": "object",
+        "description": (kind.__doc__ or "").partition("\n")[0],
+        "properties": properties,
+        "required": [item.name for item in known if item.default is MISSING],
+        "additionalProperties": False,
+    }
+
+
+def json_schema_text() -> str:
+    """Return the schema as the text of ``scene.schema.json``, which is shipped."""
+    return json.dumps(json_schema(), indent=1) + "\n"
+
+
+if __name__ == "__main__":
+    Path(__file__).with_name("scene.schema.json").write_text(json_schema_text(), encoding="utf-8")

@@ -1,5 +1,6 @@
 """What a scene can say, with the models that answer it, and what is not modelled."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from comparisons.models import MODELS
@@ -219,5 +220,5 @@ def _answers(scene: Scene) -> list[str]:
     return ["yes" if refusal is None else "no" for refusal in refusals]
 
 
-def _words(words: str) -> str:
-    return ", ".join(f"`{word}`" for word in words.split())
+def _words(words: Iterable[str]) -> str:
+    return ", ".join(f"`{word}`" for word in words)

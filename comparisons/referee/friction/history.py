@@ -21,7 +21,7 @@ from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene
-from comparisons.scene.consistency import signed_gap
+from comparisons.scene.coherence import signed_gap
 
 _ITERATIONS = 60
 """Largest number of steps of a root."""

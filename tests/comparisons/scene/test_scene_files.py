@@ -18,8 +18,9 @@ from comparisons.cli import main
 from comparisons.scene import SceneError, built_in_scenes, load_scene, read_scene, to_toml
 
 # what writes the shipped schema
-from comparisons.scene.json_schema import json_schema_text
+from comparisons.scene.toml import json_schema_text
 from tests.comparisons.scene.test_special_keys import SCHEMA
+from tests.fuzz.world import toml_text
 
 TEMPLATE = resources.files("comparisons.scene").joinpath("template.toml").read_text()
 THERE = TEMPLATE.replace('side = "right"', 'side = "below"')
@@ -91,7 +92,7 @@ def test_what_cannot_be_done_is_one_line(arguments, line, capsys, in_a_folder):
 
 
 def test_the_shipped_schema_is_that_of_the_records(capsys):
-    """Written by ``python -m comparisons.scene.json_schema``."""
+    """Written by ``python -m comparisons.scene.toml``."""
     assert main(["scenes", "--schema"]) == 0
     assert json.loads(capsys.readouterr().out) == json.loads(json_schema_text()) == SCHEMA
     Draft202012Validator.check_schema(SCHEMA)
@@ -118,13 +119,8 @@ def edits() -> Iterator[dict[str, Any]]:
 
 
 def accepted(tables: dict[str, Any]) -> bool:
-    lines = []
-    for kind, entries in tables.items():
-        for entry in entries if isinstance(entries, list) else [entries]:
-            lines.append(f"[[{kind}]]" if isinstance(entries, list) else f"[{kind}]")
-            lines += [f"{key} = {json.dumps(value)}" for key, value in entry.items()]
     try:
-        read_scene("\n".join(lines), "edited")
+        read_scene(toml_text(tables), "edited")
     except SceneError:
         return False
     return True

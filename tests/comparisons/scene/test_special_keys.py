@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterator
 from importlib import resources
@@ -13,7 +14,22 @@ import pytest
 
 from comparisons.models import MODELS, find, solve
 from comparisons.models.options import ModelError
-from comparisons.scene import SPECIAL, BeamSpec, SceneError, built_in_scenes, read_scene, to_toml
+from comparisons.scene import (
+    SPECIAL,
+    BeamSpec,
+    ContactSpec,
+    SceneError,
+    built_in_scenes,
+    read_scene,
+    rules,
+    to_toml,
+)
+
+# where a key is declared, and what follows from it
+from comparisons.scene.read import LISTS
+from comparisons.scene.record import optional
+from comparisons.scene.toml import json_schema
+from docs.extensions.scene_file import page
 
 SCHEMA = json.loads(resources.files("comparisons.scene").joinpath("scene.schema.json").read_text())
 HEAD = '[scene]\nname = "s"\nload_parameters = 4\n'
@@ -88,6 +104,31 @@ def listed(schema: dict[str, Any], path: str = "") -> Iterator[str]:
 def test_every_key_of_the_schema_is_written_and_read_by_a_scene_above():
     texts = [to_toml(read_scene(text, "s")) for text in WRITTEN.values()]
     assert {key for text in texts for key in written(tomllib.loads(text))} == set(listed(SCHEMA))
+
+
+class Worn(ContactSpec):
+    """A contact that wears."""
+
+    wear: float = optional(rules.fraction, "Share of the surface worn off.", 0.25)
+
+
+def test_a_new_key_is_one_declaration(monkeypatch):
+    """Its check, message, default, schema, line of the reference and way back to TOML follow."""
+    monkeypatch.setitem(LISTS, "contact", Worn)
+    text = HEAD + BEAM + PIN
+    assert [contact.wear for contact in read_scene(text, "s").contacts] == [0.25]
+    scene = read_scene(text + "wear = 0.5\n", "s")
+    assert read_scene(to_toml(scene), "copy") == scene
+    assert "\nwear = 0.5" in to_toml(scene)
+    for line, said in {
+        "wear = 2": "contact[0].wear = 2: must lie between 0 and 1",
+        "waer = 0.5": "contact[0].waer = 0.5: unknown key, did you mean wear?",
+    }.items():
+        with pytest.raises(SceneError, match=f"^s: {re.escape(said)}$"):
+            read_scene(f"{text}{line}\n", "s")
+    schema = json_schema()["properties"]["contact"]["items"]["properties"]["wear"]
+    assert (schema["exclusiveMaximum"], schema["default"]) == (1, 0.25)
+    assert "| `wear` | a number between zero and one | `0.25` | Share of the surface worn off. |" in page()
 
 
 def ends(name: str, start: str, end: str, clamped: str = "[]") -> str:

@@ -1,92 +1,79 @@
 """The record of a whole scene, which checks the rules between its records at construction."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Any
 
 from comparisons.scene import rules
-from comparisons.scene.amounts import amount
 from comparisons.scene.beam import BeamSpec
 from comparisons.scene.conditions import HingeSpec, LoadSpec, SpringSpec, SupportSpec
 from comparisons.scene.contact import ContactSpec, PinSpec
-from comparisons.scene.names import by_name
-from comparisons.scene.record import Record, Unjudged, copied
-from comparisons.scene.rules import Count, FieldError, Name, Point, Vector
-from comparisons.scene.stages import LoadHistory, PrescribedMotion, StageSpec, load_histories
+from comparisons.scene.record import Record, Unjudged, copied, key, optional
+from comparisons.scene.rules import Mistakes, Point
+from comparisons.scene.stages import LoadHistory, PrescribedMotion, StageSpec, amount, load_histories
 
 
-@dataclass(frozen=True, kw_only=True)
+class Named(dict[str, Any]):
+    """Records by their names, without those whose name is wrong; a name that none has raises `Unjudged`, a ``KeyError``."""
+
+    def __init__(self, records: Iterable[Any]) -> None:
+        super().__init__((record.name, record) for record in records if record.has("name"))
+
+    def __missing__(self, name: str) -> Any:
+        raise Unjudged(name)
+
+
 class Scene(Record):
     """Beams with supports and loads, pins and contacts, and the load parameters ``t_k = k/n`` that every model hits exactly.
 
     Beams whose ends have the same coordinates are rigidly joined there, unless a hinge is between them. The load parameter goes from
-    0 to 1, and on by 1 in each of `stages`.
-
-    Parameters
-    ----------
-    name : str
-        Letters, digits, ``-`` and ``_``.
-    units : str
-        Units of force and length, as ``"N, m"``.
-    load_parameters : int
-        Number n of load parameters.
-    gravity : (float, float)
-        Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of
-        time is free, the product with the density is a force per volume.
-    beams : tuple of BeamSpec
-        At least one.
-    supports, loads, pins, contacts, hinges, springs : tuple of SupportSpec, LoadSpec, PinSpec, ContactSpec, HingeSpec, SpringSpec
-        Every pin is in a contact. At least one pin, load, weight or moving support is needed, and no beam may be free.
-    stages : tuple of StageSpec
-        Stages after the first one.
-
-    Raises
-    ------
-    FieldError
-        A ``ValueError`` that names field, value and rule.
+    0 to 1, and on by 1 in each of `stages`. Every pin is in a contact. At least one pin, load, weight or moving support is needed, and
+    no beam may be free.
     """
 
-    name: Name
-    units: Annotated[str, rules.units] = "N, m"
-    load_parameters: Count
-    gravity: Vector | None = None
-    beams: Annotated[tuple[BeamSpec, ...], rules.records(BeamSpec, at_least=1)]
-    supports: Annotated[tuple[SupportSpec, ...], rules.records(SupportSpec)] = ()
-    loads: Annotated[tuple[LoadSpec, ...], rules.records(LoadSpec)] = ()
-    pins: Annotated[tuple[PinSpec, ...], rules.records(PinSpec)] = ()
-    contacts: Annotated[tuple[ContactSpec, ...], rules.records(ContactSpec)] = ()
-    hinges: Annotated[tuple[HingeSpec, ...], rules.records(HingeSpec)] = ()
-    springs: Annotated[tuple[SpringSpec, ...], rules.records(SpringSpec)] = ()
-    stages: Annotated[tuple[StageSpec, ...], rules.records(StageSpec)] = ()
+    name: str = key(rules.name, "Letters, digits, ``-`` and ``_``.")
+    units: str = optional(rules.units, 'Units of force and length, as ``"N, m"``.', "N, m")
+    load_parameters: int = key(rules.whole_number, "Number n of load parameters.")
+    gravity: Point | None = optional(
+        rules.point,
+        "Acceleration of gravity at load parameter 1, for beams with a `density`, in the units of the scene [length/time^2]; the unit of "
+        "time is free, the product with the density is a force per volume.",
+    )
+    beams: tuple[BeamSpec, ...] = key(rules.records(BeamSpec, at_least=1), "The beams.")
+    supports: tuple[SupportSpec, ...] = optional(rules.records(SupportSpec), "The supports.", ())
+    loads: tuple[LoadSpec, ...] = optional(rules.records(LoadSpec), "The loads of the first stage.", ())
+    pins: tuple[PinSpec, ...] = optional(rules.records(PinSpec), "The pins.", ())
+    contacts: tuple[ContactSpec, ...] = optional(rules.records(ContactSpec), "The contacts.", ())
+    hinges: tuple[HingeSpec, ...] = optional(rules.records(HingeSpec), "The hinges.", ())
+    springs: tuple[SpringSpec, ...] = optional(rules.records(SpringSpec), "The springs.", ())
+    stages: tuple[StageSpec, ...] = optional(rules.records(StageSpec), "Stages after the first one.", ())
 
-    def settle(self) -> None:
-        """Give the pins their motions in the stages."""
-        object.__setattr__(self, "pins", tuple(map(self._with_moves, self.pins)))
+    def _settle(self) -> None:
+        if self.has("pins"):
+            vars(self)["pins"] = tuple(map(self._with_moves, self.pins))
 
-    def own_rules(self) -> Iterable[Iterator[FieldError]]:
-        """Return the rules between the records."""
-        from comparisons.scene.consistency import scene_rules
+    def _own_rules(self) -> Iterable[Mistakes]:
+        from comparisons.scene.coherence import scene_rules
 
         return scene_rules(self)
 
     def _with_moves(self, pin: PinSpec) -> PinSpec:
         """Return a copy of `pin` that knows its motions in the stages."""
-        if not (self.stages or pin.moves):
-            return pin
         try:
-            moves = ({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
-            return copied(pin, moves=tuple(moves))
+            if not (self.stages or pin.moves):
+                return pin
+            moves = tuple({move.name: move for move in stage.pin}.get(pin.name) for stage in self.stages)
         except Unjudged:
-            return copied(pin, "moves")
+            return copied(pin, moves=None)
+        return copied(pin, moves=moves)
 
     @cached_property
     def _beams(self) -> dict[str, BeamSpec]:
-        return by_name(self.beams)
+        return Named(self.beams)
 
     @cached_property
     def _pins(self) -> dict[str, PinSpec]:
-        return by_name(self.pins)
+        return Named(self.pins)
 
     def beam(self, name: str) -> BeamSpec:
         """Return the beam called `name`."""
@@ -129,7 +116,7 @@ class Scene(Record):
         for support in self.all_supports:
             x, y, rotation = (value or 0.0 for value in support.motion)
             onward = (moved.get(self.place(support.node), (0.0, 0.0, 0.0)) for moved in moves)
-            motions[support.node] = PrescribedMotion(support=support, increments=((x, y, rotation), *onward))
+            motions[support.node] = PrescribedMotion(support, ((x, y, rotation), *onward))
         return motions
 
     @property
