@@ -1,6 +1,7 @@
 """The exact values that the manual states are computed anew by oracles, which share nothing with the models."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +12,13 @@ from comparisons.claims.manual.friction import COEFFICIENTS, KS_PATH
 from comparisons.claims.manual.problems import PROBLEMS
 from comparisons.claims.problems.double_beam import HAND_OVER
 from comparisons.exact import rod_with_friction
+from comparisons.models import solve
 from comparisons.scene import load_scene
+from tests import problems
 from tests.oracles import elastica, frames
 from tests.oracles.coupled import pair_of
 from tests.oracles.friction import elastica_with_friction
+from tests.oracles.shooting import Rod, pinned
 from tests.oracles.tied import rod_with_tied_tip
 
 X, Y, _ = elastica.tip_under_thrust(80.0 / 17.5, 0.08 / 17.5)
@@ -95,3 +99,21 @@ def test_the_pin_is_handed_over_wherever_it_comes_down() -> None:
     for place, depth in HAND_OVER.items():
         found = pair_of(load_scene("double-beam"), place).stage([]).end_depth
         assert found == pytest.approx(depth, rel=1e-10)
+
+
+@pytest.mark.slow_at("ks-face")
+@pytest.mark.parametrize("name", ["ks-cantilever", "ks-face"])
+def test_shooting_has_the_digits_of_the_main_scenes(name: str) -> None:
+    """Force and arc position at all load parameters of the table, in units of EI; it begins near the rod's answer, which says the branch."""
+    scene, table = replace(load_scene(name), load_parameters=20), problems.PROBLEMS[name]
+    (beam,), (pin,), (spec,), near = scene.beams, scene.pins, scene.contacts, solve(scene, "rod")
+    E, G = beam.youngs_modulus / beam.EI, beam.youngs_modulus / 2.6 / beam.EI
+    rod = Rod(height=(beam.height,) * 2, width=(beam.width,) * 2, youngs_modulus=E, shear_modulus=G)
+    clamp, contact = near.supports["cantilever.start"], near.contacts[spec.pair]
+    for t in table.answers:
+        k = round(20 * t) - 1
+        forces = np.array([*-clamp.force[k], -clamp.moment[k], *contact.vector[k]]) / beam.EI
+        guess = np.array([*forces, contact.arc_position[k]]) + 1e-3
+        found = pinned(rod, pin.position(t), (scene.offset(spec),) * 2, guess)
+        expected = [table.at(t)[f"{what} {spec.pair}"] for what in ("force", "arc")]
+        assert [beam.EI * np.hypot(*found.force), found.arc] == pytest.approx(expected, rel=1e-9)
