@@ -73,8 +73,7 @@ values = st.recursive(
     max_leaves=6,
 )
 KEYS = sorted(
-    {key for record in RECORDS for key in record.__annotations__}
-    | {"load_parameters", "pin", "support", "load"}
+    {key for kind in TABLES.values() for key in kind.__annotations__} | {"units", "load_parameters", *TABLES}
 )
 """Keys that are added where they may not stand."""
 

@@ -9,14 +9,7 @@ import pytest
 
 from comparisons.models import solve
 from comparisons.models.options import Options
-from comparisons.scene import (
-    SPECIAL,
-    Scene,
-    load_scene,
-    read_scene,
-    to_tables,
-    to_toml,
-)
+from comparisons.scene import SPECIAL, Scene, load_scene, read_scene, to_tables, to_toml
 from tests.fuzz.broken import TABLES
 from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, Judged, Row, findings, judged, wrong
@@ -67,6 +60,10 @@ MENDED = {
     ("world", 500): "a fall from a beam's start",
     ("world", 530): "a round pin in a beam with F/GA near 3",
     ("world", 2047): "tension near GA EA/(EA - GA)",
+    (
+        "friction",
+        14,
+    ): "round-off of a slip rate, times a stiffness of a million EI/L^3, moves the force where the slip ends",
     ("special", 116): "a stage brings a pin back to the end of a beam, without force",
     ("special", 152): "a stick between two load parameters ends where no equilibrium was found from either",
     (
@@ -95,22 +92,10 @@ ENDED = {
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "seed"), MENDED)
 def test_drawn_scenes_that_once_failed(kind: str, seed: int) -> None:
-    found = judged(DRAW[kind](seed), BEAMS, (1, 12) if kind == "world" else (3,))
+    found = judged(DRAW[kind](seed), BEAMS, (3,) if kind == "special" else (1, 12))
     assert not found.findings, found.report()
     expected = ENDED.get(seed, {"COMPLETED"})
     assert expected is None or {row.ended for row in found.rows} == expected
-
-
-@pytest.mark.slow
-def test_a_slip_of_a_stiff_beam_ends_in_a_stick_with_any_number_of_load_parameters() -> None:
-    """Round-off of the slip rate, times a stiffness of a million EI/L^3, moves the force at the event."""
-    one, many = (
-        solve(replace(DRAW["friction"](14), load_parameters=number), "tsm", Options(element="exact"))
-        for number in (1, 13)
-    )
-    assert one.status == many.status == "COMPLETED"
-    for pair, contact in one.contacts.items():
-        assert many.contacts[pair].force[-1] == pytest.approx(contact.force[-1], rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", DRAW)

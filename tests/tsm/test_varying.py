@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, THIN, beam, hook, leaning
+from tests.tsm.structures import CLAMP, THIN, beam, leaning
 
 
 def heavy_column(weight, element, elements):
@@ -31,15 +31,6 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
         for factor, expected in ((1 - apart, number), (1 + apart, number + 1)):
             column = heavy_column(9 / 4 * zero**2 * factor, element, elements)
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
-
-
-def test_work_of_loads_along_the_beam_is_the_strain_energy():
-    gauss, weight = np.polynomial.legendre.leggauss(16)
-    t = np.append((gauss + 1) / 2, 1.0)
-    result = tsm.solve(hook(), t)
-    (group,) = result.model.groups
-    full = np.array([group.load_work(e.state) / e.state.load_parameter for e in result.equilibria])
-    assert result.strain_energy[-1] == pytest.approx(full[-1] - weight @ full[:-1] / 2, rel=1e-11)
 
 
 def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
