@@ -13,8 +13,8 @@ from tests.fuzz.world_judge import Row, apart, run
 from tests.laws.transform import Readings, readings
 from tests.laws.transform import apart as differ
 
-EXACT = 1e-6
-"""Largest difference of exact elements and the rod, of the largest force."""
+EXACT, LATE = 1e-6, 3e-6
+"""Largest difference of exact elements and the rod, of the largest force, and of the load parameter of an event with friction."""
 
 
 @pytest.mark.slow_at("many")
@@ -72,5 +72,5 @@ def test_answers_are_the_rods(stated: Callable[..., None]) -> None:
             (true, happened), (own, found) = (rubbed(row, scene) for row in (rod, exact))
             assert differ(scene, true, own)[0] <= EXACT, scene.name
             assert [kind for kind, _ in found] == [kind for kind, _ in happened], scene.name
-            assert [t for _, t in found] == pytest.approx([t for _, t in happened], abs=EXACT), scene.name
+            assert [t for _, t in found] == pytest.approx([t for _, t in happened], abs=LATE), scene.name
     assert compared > 60
