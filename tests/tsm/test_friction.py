@@ -1,5 +1,7 @@
 """Contacts with friction against exact answers that share no code with the solver."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -146,6 +148,13 @@ def test_a_pin_that_rests_on_the_beam_and_leaves_opens_the_contact():
     assert result.status is tsm.Status.COMPLETED
     assert [(event.kind, event.load_parameter) for event in result.events] == [(tsm.EventKind.RELEASE, 0.0)]
     assert not result.contacts[PAIR].force.any()
+
+
+def test_a_load_along_a_beam_works_too():
+    load = tsm.LineLoad(beam="b", force=((0.0, -5.0 * KS.EI),))
+    result = solved(replace(rubbed(0.3, (1.0, 0.0), (0.8, 0.1)), line_loads=(load,)), 1)
+    assert result.contacts[PAIR].friction.dissipated[-1] > 0.05 * result.work[-1]
+    assert balance(result) <= 1e-10
 
 
 @pytest.mark.slow

@@ -33,6 +33,15 @@ def test_heavy_column_gains_a_negative_eigenvalue_at_every_critical_weight(eleme
             assert tsm.solve(column, [1.0], tsm.Settings(branch="primary")).index.tolist() == [expected]
 
 
+def test_work_of_loads_along_the_beam_is_the_strain_energy():
+    gauss, weight = np.polynomial.legendre.leggauss(16)
+    t = np.append((gauss + 1) / 2, 1.0)
+    result = tsm.solve(hook(), t)
+    (group,) = result.model.groups
+    full = np.array([group.load_work(e.state) / e.state.load_parameter for e in result.equilibria])
+    assert result.strain_energy[-1] == pytest.approx(full[-1] - weight @ full[:-1] / 2, rel=1e-11)
+
+
 def test_what_a_snap_releases_counts_the_work_of_loads_along_a_beam():
     """A bar pushed down through its support by a free mast: the load on the mast does the same work as one on the bar."""
     section, load, high = tsm.Section(EA=100.0, GA=40.0, EI=30.0), 5.0, 0.4
