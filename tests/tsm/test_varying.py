@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import jn_zeros, jv
 
 import tsm
-from tests.tsm.structures import CLAMP, THIN, beam, leaning
+from tests.tsm.structures import CLAMP, THIN, beam, hook, leaning
 
 
 def heavy_column(weight, element, elements):
