@@ -47,7 +47,6 @@ fuzz: setup
 	$(THREADS) $(BIN)/python -m tests.fuzz files 0 40
 	$(THREADS) $(BIN)/python -m tests.fuzz world 0 5000
 	$(THREADS) $(BIN)/python -m tests.fuzz friction 0 1000
-	$(THREADS) $(BIN)/python -m tests.fuzz cantilevers 0 600
 
 platforms: setup
 	$(BIN)/nox -f tests/platforms/noxfile.py --envdir $(CURDIR)/.nox

@@ -6,12 +6,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import fem_reference as fr
-from comparisons.exact import rod_under_pin
+from comparisons.exact import elastica_under_pin
 from tests.fem_reference.conftest import (
     CLAMP,
-    EA,
     EI,
-    GA,
     PAIR,
     STRIP,
     B,
@@ -20,30 +18,7 @@ from tests.fem_reference.conftest import (
     make_problem,
     rotation,
 )
-
-
-@pytest.mark.parametrize(
-    ("material", "surface", "allowed"),
-    [
-        ("biot-linear", "face", {0.25: 1e-3, 1.0: 1e-3}),
-        ("st-venant-kirchhoff", "axis", {0.1: 1e-3, 0.5: 2.5e-3, 1.0: 6e-3}),
-    ],
-)
-def test_ks_cantilever_agrees_with_the_rod(material, surface, allowed):
-    """The rod is linear in Biot's strain too; St. Venant-Kirchhoff's coupling, not the mesh, makes 0.6 % at the end."""
-    t = loads(20)
-    result = fr.solve(make_problem(contact={"surface": surface}, material=material), t)
-    assert result.newton_iterations.sum() <= 5 * result.substeps
-    offset = H / 2 if surface == "face" else 0.0
-    points = np.stack([1 - np.append(0, t), 2 / np.pi * np.append(0, t) - offset], axis=1)
-    rod, contact = (
-        rod_under_pin(points, EA=EA, GA=GA, EI=EI, length=1.0, offset=offset),
-        result.contacts[PAIR],
-    )
-    np.testing.assert_allclose(contact.arc_position, rod.arc_position[1:], rtol=2e-3)
-    for end, difference in allowed.items():
-        k = int(np.flatnonzero(np.isclose(t, end))[0])
-        assert contact.force[k] == pytest.approx(rod.magnitude[k + 1], rel=difference)
+from tests.oracles.elastica import slip_off_height
 
 
 def test_a_coarse_strip_of_any_length():
@@ -60,20 +35,21 @@ def test_a_coarse_strip_of_any_length():
 
 
 def test_slender_strip_converges_to_the_elastica():
-    """``h/L`` = 1/500: round-off in the residual, and the closed form ``F = 4.66473101966 EI / L^2`` at half way."""
+    """``h/L`` = 1/500: round-off in the residual."""
+    elastica = elastica_under_pin(0.5, 1 / np.pi)
     result = fr.solve(make_problem(height=0.002, mesh=(200, 1)), loads(20)[4:10:5])
     stiffness = result.model.problem.strips[0].bending_stiffness
-    assert result.contacts[PAIR].force[-1] / stiffness == pytest.approx(4.66473101966107, rel=2e-4)
-    assert result.contacts[PAIR].arc_position[-1] == pytest.approx(0.612622877902267, rel=1e-4)
+    assert result.contacts[PAIR].force[-1] / stiffness == pytest.approx(elastica.magnitude, rel=2e-4)
+    assert result.contacts[PAIR].arc_position[-1] == pytest.approx(elastica.arc_position, rel=1e-4)
 
 
 def test_slip_off_the_tip_is_at_the_height_of_the_elastica():
-    """Pin at 0.8, raised: an inextensible elastica of length 1 is left at the height 0.538697375157."""
+    """Pin at 0.8, raised: where an inextensible elastica of length 1 is left."""
     with pytest.raises(fr.SolveError, match="passed the end") as caught:
         fr.solve(make_problem(path=((0.8, 0.0), (0.8, 1.0))), loads(20))
     result = caught.value.result
     assert result.status is fr.Status.LOST_CONTACT
-    assert result.reached == pytest.approx(0.538697375157, rel=2e-4)
+    assert result.reached == pytest.approx(slip_off_height(0.8), rel=2e-4)
     assert result.load_parameter[-1] == pytest.approx(0.5)
     assert len(result.contacts[PAIR].force) == len(result.displacement) == 10
 

@@ -3,9 +3,10 @@
 import sys
 
 from comparisons.scene import to_toml
-from tests.fuzz.command import DRAWN, main
+from tests.fuzz.command import main
+from tests.fuzz.special import DRAW
 
 if len(sys.argv) == 3:
-    print(to_toml(DRAWN[sys.argv[1]](int(sys.argv[2]))), end="")
+    print(to_toml(DRAW[sys.argv[1]](int(sys.argv[2]))), end="")
 else:
     sys.exit(main(sys.argv[1], int(sys.argv[2]), int(sys.argv[3])))

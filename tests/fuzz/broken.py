@@ -8,7 +8,17 @@ from random import Random
 from hypothesis import strategies as st
 from hypothesis.internal.conjecture import providers
 
-from comparisons.scene import to_toml
+from comparisons.scene import (
+    BeamSpec,
+    ContactSpec,
+    HingeSpec,
+    LoadSpec,
+    PinSpec,
+    SpringSpec,
+    StageSpec,
+    SupportSpec,
+    to_toml,
+)
 from tests.fuzz.special import drawn_special
 from tests.fuzz.world import Tables, toml_text
 
@@ -50,6 +60,11 @@ numbers = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),
     one_of(0, -1, 1, 2, 3, 100_001, 2**31, 2**63, 2**64, 10**30, 10**400, -(10**400)),
 )
+TABLES = {
+    "beam": BeamSpec, "support": SupportSpec, "load": LoadSpec, "pin": PinSpec, "contact": ContactSpec, "hinge": HingeSpec,
+    "spring": SpringSpec, "stage": StageSpec,
+}  # fmt: skip
+"""The records of a scene by the names of their tables."""
 WORDS = ["start", "end", "pin", "beam", "a.end", "x", "..", "\U0001d6fc", "\u202e", "%s{}"]
 texts = st.one_of(one_of(*WORDS, "", " ", "N, m", "a\nb", "\0"), st.text(max_size=12))
 values = st.recursive(
@@ -57,48 +72,10 @@ values = st.recursive(
     lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(texts, inner, max_size=3)),
     max_leaves=6,
 )
-NUMERIC = [
-    "start",
-    "end",
-    "path",
-    "displacement",
-    "force",
-    "moment",
-    "rotation",
-    "radius",
-    "youngs_modulus",
-    "shear_modulus",
-    "width",
-    "height",
-    "area",
-    "second_moment",
-    "shear_area",
-    "turn",
-    "density",
-    "gravity",
-    "force_per_length",
-    "stiffness",
-]
-"""Keys of numbers whose size is tried out."""
-KEYS = (
-    *NUMERIC,
-    *[
-        "name",
-        "clamped",
-        "nodes",
-        "mesh",
-        "solid_clamp",
-        "solid_element",
-        "solid_mesh_file",
-        "material",
-        "kind",
-        "free",
-        "fixed",
-        "surface",
-        "penalty",
-    ],
-    *["penetration", "keep", "friction", "units", "at", "part", "load_parameters", "pin", "support", "load"],
+KEYS = sorted(
+    {key for kind in TABLES.values() for key in kind.__annotations__} | {"units", "load_parameters", *TABLES}
 )
+"""Keys that are added where they may not stand."""
 
 
 def _tables(scene: Tables) -> list[Tables]:
@@ -146,12 +123,17 @@ def _mutate(draw: st.DrawFn, table: Tables) -> None:
         table[key] = draw(values)
 
 
+def _numbers(value: object) -> bool:
+    """Whether a value is a point, or a path of points."""
+    return isinstance(value, list) and any(isinstance(item, float) or _numbers(item) for item in value)
+
+
 @st.composite
 def displaced(draw: st.DrawFn) -> str:
     """A valid scene with a coordinate, a modulus or a force moved to where floating-point numbers end."""
     scene = copy.deepcopy(draw(valid_scenes))
     table = draw(st.sampled_from(_tables(scene)))
-    numeric = [key for key in table if key in NUMERIC and isinstance(table[key], list | float | int)]
+    numeric = [key for key, value in table.items() if isinstance(value, float) or _numbers(value)]
     if numeric:
         key = draw(st.sampled_from(numeric))
         size = draw(one_of(-1, 1)) * 10.0 ** draw(st.integers(-323, 308))

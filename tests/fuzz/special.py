@@ -15,6 +15,7 @@ from comparisons.scene import (
     StageSpec,
     SupportMove,
 )
+from tests.fuzz.held import drawn_held
 from tests.fuzz.world import ENDS, Corner, drawn, drawn_with_friction
 
 ATTEMPTS = 40
@@ -162,3 +163,5 @@ def taper(random: Random, scene: Scene) -> Scene:
 CHANGES: tuple[Callable[[Random, Scene], Scene], ...] = (
     hinge, hinge, spring, spring, stage, stage, stage, along, weight, turn, taper,
 )  # fmt: skip
+DRAW = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "held": drawn_held}
+"""The scene of a seed, by kind."""

@@ -9,8 +9,7 @@ from time import process_time
 import pytest
 
 from tests.fuzz import world_judge
-from tests.fuzz.special import drawn_special
-from tests.fuzz.world import drawn, drawn_with_friction
+from tests.fuzz.special import DRAW
 from tests.fuzz.world_judge import BEAMS, judged, wrong
 
 NUMBER = 20
@@ -19,13 +18,12 @@ BUDGET = 50.0
 """Processor seconds for each kind; what is not drawn until then is counted."""
 LIMIT = 10.0
 """Processor seconds for one solution, and for one certificate."""
-KINDS = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special}
 
 
 # the limit of time may ring inside a callback of the garbage collector, where it is ignored with a warning
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["world", "friction", "special"])
 def test_completed_answers_of_the_day_are_right(
     kind: str, record_property: Callable[[str, object], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -37,7 +35,7 @@ def test_completed_answers_of_the_day_are_right(
         if process_time() - began > BUDGET:
             ends["not drawn in time"] += 1
             continue
-        found = judged(KINDS[kind](number), BEAMS)
+        found = judged(DRAW[kind](number), BEAMS)
         ends.update(f"{row.model} {row.ended}" for row in found.rows)
         left = list(wrong(found))
         ends.update(f"listed: {item.kind} of {number}" for item in found.findings if item not in left)

@@ -34,15 +34,6 @@ def quoted(key: str) -> str:
     return key if key.isascii() and key.replace("_", "").isalnum() else toml_value(key)
 
 
-def written(value: Any) -> str:
-    """The value as TOML, inline."""
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{quoted(key)} = {written(item)}" for key, item in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(written(item) for item in value) + "]"
-    return toml_value(value)
-
-
 def toml_text(tables: Tables) -> str:
     """The file of a scene, however broken."""
     lines: list[str] = []
@@ -51,13 +42,13 @@ def toml_text(tables: Tables) -> str:
             for table in value:
                 lines += [
                     f"[[{quoted(key)}]]",
-                    *(f"{quoted(k)} = {written(v)}" for k, v in table.items()),
+                    *(f"{quoted(k)} = {toml_value(v)}" for k, v in table.items()),
                     "",
                 ]
         elif isinstance(value, dict):
-            lines += [f"[{quoted(key)}]", *(f"{quoted(k)} = {written(v)}" for k, v in value.items()), ""]
+            lines += [f"[{quoted(key)}]", *(f"{quoted(k)} = {toml_value(v)}" for k, v in value.items()), ""]
         else:
-            lines.insert(0, f"{quoted(key)} = {written(value)}")
+            lines.insert(0, f"{quoted(key)} = {toml_value(value)}")
     return "\n".join(lines) + "\n"
 
 

@@ -31,14 +31,14 @@ MODELS = {
 SOURCES = {
     "clamped-column": "tests/oracles/elastica.py, the elastica by elliptic integrals",
     "double-beam": "tests/oracles/coupled.py, two rods by quadrature",
-    "heavy-strip": "tests/verification/rod_by_shooting.py, shooting",
+    "heavy-strip": "tests/oracles/shooting.py, shooting",
     "hinged-truss": "tests/comparisons/scene/test_built_in.py, closed form",
     "hysteresis-stages": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
-    "ks-cantilever": "tests/reference/ks_rod.py, collocation",
+    "ks-cantilever": "tests/oracles/shooting.py, shooting",
     "ks-friction": "tests/comparisons/exact/test_friction.py, a rod's path with friction",
     "sleeve": "tests/problems.toml, the referee and exact elements",
     "straightened-arc": "tests/comparisons/scene/test_built_in.py, closed form",
-    "tapered-spring": "tests/verification/rod_by_shooting.py, shooting",
+    "tapered-spring": "tests/oracles/shooting.py, shooting",
     "tip-load": "tests/oracles/elastica.py, the elastica by elliptic integrals",
 }
 """The scenes, each with the program that redoes its digits beside the referee, whose answer stands in its file."""

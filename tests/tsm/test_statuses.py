@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import tsm
-from tests.tsm.friction_scenes import Cantilever
 from tests.tsm.structures import CLAMP, SECTION, TENTHS, cantilever, raised, steps
 
 # no structure reaches these statuses: a part of the solver is replaced by one that fails
@@ -41,11 +40,10 @@ def into_a_round_pin():
     return cantilever(path, section=section, element="exact", side="left", offset=0.3, load=load)
 
 
-JAMMING = Cantilever(
-    section=tsm.Section(EA=3e5, GA=1e5, EI=1.0),
-    friction=1.086,
-    path=((0.681, -0.019), (0.291, 0.559), (0.735, 0.173)),
-)
+JAMMING = cantilever(
+    ((0.681, -0.019), (0.291, 0.559), (0.735, 0.173)),
+    section=tsm.Section(EA=3e5, GA=1e5, EI=1.0), element="exact", friction=1.086,
+)  # fmt: skip
 CASES = {  # structure, settings, how many load parameters are reached, what the message says
     "iteration limit": (cantilever(WAY), {"max_iterations": 1, "smallest_step": 0.9}, 0, ""),
     "cutback floor": (cantilever(WAY), {"max_iterations": 1, "smallest_step": 0.01}, None, "stopped at load parameter"),
@@ -64,7 +62,7 @@ CASES = {  # structure, settings, how many load parameters are reached, what the
     "rest unknown": (cantilever(raised(0.83, 1.0), raised(0.4, 0.35), element="exact", friction=0.3), {}, None, ""),
     # the stick is released at the edge of the cone, where the forces of the slip would push the pin the other way;
     # `comparisons.exact.rod_with_friction` jams at 0.69395389
-    "jammed": (JAMMING.structure(), {}, 6, "stopped at load parameter 0.69395"),
+    "jammed": (JAMMING, {}, 6, "stopped at load parameter 0.69395"),
     # beyond a polar angle of 99.57 degrees no equilibrium of the elastica under a pin is connected with the straight one
     "limit point": (
         cantilever(((1.0, 0.0), (-1.0, 2.0)), section=tsm.Section(EA=1e5, GA=1e5, EI=1.0), length=9.0, elements=45), {}, 6, "",

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import tsm
-from tests.tsm.friction_scenes import ks
-from tests.tsm.structures import as_mixed, cantilever, hook, leaning, pushed
+from tests.tsm.structures import KS, KS_PATH, as_mixed, cantilever, hook, leaning, pushed
 
 # a residual and its tangent at a state that is no equilibrium are nowhere public
 from tsm.model import Model
@@ -30,7 +29,15 @@ SCENES = {
         elements=2,
         offset=0.03,
     ),
-    "rubbed exact": lambda: ks(0.3, face=0.02, radius=0.03).structure("exact", 2),
+    "rubbed exact": lambda: cantilever(
+        ((1.0, -0.05), KS_PATH[1]),
+        section=KS,
+        element="exact",
+        elements=2,
+        offset=0.05,
+        radius=0.03,
+        friction=0.3,
+    ),
     "near a node": lambda: replace(pushed(), beams=(hook().beams[0].divided(0.504133),)),
 }
 

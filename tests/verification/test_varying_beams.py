@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import tsm
+from tests.oracles.shooting import Rod, free, pinned
 from tests.tsm.structures import CLAMP, beam, cantilever, raised
-from tests.verification.rod_by_shooting import Rod, free, pinned
 
 E, G, WIDTH, HEIGHT = 1.2e5, 4.5e4, (0.1, 0.06), (0.1, 0.05)
 """EI is 1 at the clamp; EA is 1200."""

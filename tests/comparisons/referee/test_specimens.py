@@ -29,7 +29,7 @@ from comparisons.scene import (
     load_scene,
 )
 from tests.comparisons.referee.forged import scene_of, seen, stated
-from tests.verification.rod_by_shooting import Rod, free, pinned
+from tests.oracles.shooting import Rod, free, pinned
 
 MATERIAL = {"youngs_modulus": 1e6, "poissons_ratio": 0.3}
 GRAVITY = (2.0, -20.0)

@@ -1,0 +1,28 @@
+"""Newton's method with derivatives by complex steps, which the oracles share."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from comparisons.exact.reissner import COMPLEX_STEP, Array
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def newton(residual: Callable[[Array], Array], z: Array, allowed: float = 1.0) -> tuple[Array, Array] | None:
+    """Return unknowns (n,) from nearby ones, and the matrix of the residual's derivatives there; None far from a root.
+
+    The residual has a column for every column of unknowns (n, c). A correction over the largest unknown, at least 1, must be at most half
+    the one before, and the first at most `allowed`.
+    """
+    for _ in range(14):
+        matrix = residual(z[:, None] + 1j * COMPLEX_STEP * np.eye(len(z))).imag / COMPLEX_STEP
+        if not np.all(np.isfinite(matrix)) or np.linalg.det(matrix) == 0.0:
+            return None
+        change = -np.linalg.solve(matrix, residual(z[:, None] + 0j).real[:, 0])
+        size = float(np.abs(change).max() / max(1.0, np.abs(z).max()))
+        if not size <= allowed:
+            return None
+        z, allowed = z + change, size / 2.0
+        if size < 1e-11:
+            return z, matrix
+    return None
