@@ -70,6 +70,8 @@ def test_answers_are_the_rods(stated: Callable[..., None]) -> None:
             assert apart(scene, rod, exact, at=k) <= EXACT, f"{scene.name} at load parameter {k}"
         if both and scene.contacts[0].friction:
             (true, happened), (own, found) = (rubbed(row, scene) for row in (rod, exact))
+            if not true[f"contact {scene.contacts[0].pair}"][1].any():
+                continue  # the pin is gone before the next load parameter: nothing to certify
             assert differ(scene, true, own)[0] <= EXACT, scene.name
             assert [kind for kind, _ in found] == [kind for kind, _ in happened], scene.name
             assert [t for _, t in found] == pytest.approx([t for _, t in happened], abs=LATE), scene.name
