@@ -3,8 +3,8 @@
 from comparisons.referee.certificate import Certificate, Judgement, Verdict
 from comparisons.referee.certify import certify, default_allowance
 from comparisons.referee.distance import Distance
-from comparisons.referee.equilibrium import SearchStatus
-from comparisons.referee.start import AnswerState, answer_state
+from comparisons.referee.guess import AnswerState, answer_state
+from comparisons.referee.newton import SearchStatus
 from comparisons.referee.state import Contact, Equilibrium, Shape, equilibrium
 
 __all__ = [

@@ -6,7 +6,7 @@ from enum import Enum
 from typing import Any
 
 from comparisons.referee.distance import Distance
-from comparisons.referee.equilibrium import SearchStatus
+from comparisons.referee.newton import SearchStatus
 from comparisons.referee.state import Equilibrium
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from comparisons.referee.guess import SHORTEST, AnswerState
 from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
-from comparisons.referee.start import SHORTEST, AnswerState
 from comparisons.referee.state import Equilibrium
 from comparisons.response.round_off import (
     LAST_PLACES,

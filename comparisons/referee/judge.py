@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from comparisons.referee.certificate import Judgement, Verdict
 from comparisons.referee.distance import Distance, Scales, distance
-from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.grip import UnknownFrictionError
+from comparisons.referee.guess import AnswerState, answer_state, idle_at_an_end, pull_allowed
+from comparisons.referee.newton import SearchStatus, Solution
 from comparisons.referee.path import closed_pairs, reach
 from comparisons.referee.rod import face_slope, touching_distance
-from comparisons.referee.start import AnswerState, answer_state, idle_at_an_end, pull_allowed
 from comparisons.referee.state import Equilibrium, described, equilibrium
 from comparisons.response import ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.distance import gap_off, largest_force
-from comparisons.referee.equilibrium import SearchStatus, solve
+from comparisons.referee.guess import answer_state
+from comparisons.referee.newton import SearchStatus, solve
 from comparisons.referee.path import PASSES, at_rest, changes_of, events_between, on_the_way, reach
 from comparisons.referee.rod import axis_at_rest, face_slope, touching_distance
-from comparisons.referee.start import answer_state
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, ContactHistory, Response
 from comparisons.scene import ContactSpec, Scene

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import DEGREE, mesh_for, mesh_of
-from comparisons.referee.equilibrium import SearchStatus, Solution, correct, newton_step, rotation_at, solve
 from comparisons.referee.grip import Grip
+from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import NONE
+from comparisons.referee.newton import SearchStatus, Solution, correct, newton_step, rotation_at, solve
 from comparisons.referee.numbering import lay_out
 from comparisons.referee.stability import index_of, orientation_of
-from comparisons.referee.start import AnswerState
 from comparisons.referee.state import Equilibrium, described
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import Scene

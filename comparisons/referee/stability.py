@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.referee.equilibrium import DENSE, Solution, entries, scales
 from comparisons.referee.grip import rows
 from comparisons.referee.layout import NONE
+from comparisons.referee.newton import DENSE, Solution, entries, scales
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.elements import GAUSS, VALUES, WEIGHTS, fields, places, rotations, shapes, up_to
-from comparisons.referee.equilibrium import SearchStatus, Solution, solve, tails
+from comparisons.referee.guess import AnswerState
 from comparisons.referee.layout import Touch
+from comparisons.referee.newton import SearchStatus, Solution, solve, tails
 from comparisons.referee.stability import index_of
-from comparisons.referee.start import AnswerState
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]

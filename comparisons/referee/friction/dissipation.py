@@ -7,10 +7,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.friction.history import History
 from comparisons.referee.friction.slip import rates, slip_rate
 from comparisons.referee.grip import Grip, UnknownFrictionError
+from comparisons.referee.newton import SearchStatus, Solution
 from comparisons.referee.path import corners, reach
 from comparisons.referee.state import Equilibrium, touching
 

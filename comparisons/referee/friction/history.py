@@ -10,14 +10,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from comparisons.referee.equilibrium import SearchStatus, Solution, solve
 from comparisons.referee.friction.phases import OPEN, SAME, UNKNOWN, Phase, phases, states
 from comparisons.referee.friction.rolling import roll
 from comparisons.referee.friction.slip import place, rates, slip_rate, speed
 from comparisons.referee.grip import LOOSE, Grip, Hold, UnknownFrictionError
+from comparisons.referee.guess import answer_state
+from comparisons.referee.newton import SearchStatus, Solution, solve
 from comparisons.referee.path import changes_of, closed_pairs, corners, reach
 from comparisons.referee.rod import face_slope, touching_distance
-from comparisons.referee.start import answer_state
 from comparisons.referee.state import touching
 from comparisons.response import ContactEvent, Response
 from comparisons.scene import BeamSpec, ContactSpec, Scene

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from comparisons.referee.equilibrium import SearchStatus, Solution
 from comparisons.referee.friction.slip import place
 from comparisons.referee.grip import Grip, Hold
+from comparisons.referee.newton import SearchStatus, Solution
 from comparisons.referee.path import reach
 from comparisons.scene import Scene
 

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.referee.equations import element_before
-from comparisons.referee.equilibrium import Solution
 from comparisons.referee.grip import Hold, rows
 from comparisons.referee.layout import NONE, Touch
+from comparisons.referee.newton import Solution
 from comparisons.referee.path import corners, tangent
 from comparisons.scene import Scene
 

@@ -1,4 +1,4 @@
-"""The search for the exact equilibrium of a scene's rods near an answer."""
+"""The search for the exact equilibrium of a scene's rods near an answer, by Newton's method on elements that are halved."""
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from comparisons.referee.elements import AMPLITUDE, DEGREE, GAUSS, VALUES, Mesh, mesh_of, rotations, shapes
 from comparisons.referee.equations import System, assemble
+from comparisons.referee.guess import SHORTEST, AnswerState, first_guess
 from comparisons.referee.layout import Layout
 from comparisons.referee.numbering import lay_out
-from comparisons.referee.start import SHORTEST, AnswerState, first_guess
 from comparisons.scene import Scene
 
 Array = NDArray[np.float64]
