@@ -156,7 +156,10 @@ def _draw(plotter: Any, panels: list[Panel], scale: Scale) -> None:
 
     width, height, _ = _window(panels, scale)
     factor, plain = width / PANEL, {"lighting": False, "render": False}
-    plotter.clear()
+    for renderer in plotter.renderers:  # a plotter that clears itself loses its slider, too
+        for actor in list(renderer.actors.values()):
+            renderer.remove_actor(actor, render=False)
+    plotter.scalar_bars.clear()
     for i, panel in enumerate(panels):
         plotter.subplot(0, i)
         faces = np.insert(panel.quads, 0, 4, axis=1)

@@ -26,7 +26,7 @@ def beams(element: str, elements: int) -> Run:
 
 CHOSEN = (
     beams("timoshenko", 10), beams("timoshenko", 20), beams("exact", 1),
-    run_of(SOLID, Options(mesh=(24, 1))), run_of(ELASTICA, Options()), ROD,
+    run_of(SOLID, Options(mesh=(16, 1))), run_of(ELASTICA, Options()), ROD,
 )  # fmt: skip
 
 
