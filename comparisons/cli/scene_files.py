@@ -1,5 +1,6 @@
 """``crossval new``, ``check`` and ``schema``: scene files before anything is solved."""
 
+import json
 import sys
 from importlib import resources
 from pathlib import Path
@@ -51,7 +52,8 @@ def run_new(given: "argparse.Namespace") -> int:
     if path.exists():
         raise OutputError(f"{path.name}: is there already")
     if given.like is None:
-        text = _shipped("template.toml").replace('name = "NAME"', f'name = "{given.name}"')
+        template = resources.files("comparisons.scene").joinpath("template.toml").read_text("utf-8")
+        text = template.replace('name = "NAME"', f'name = "{given.name}"')
     else:
         text = built_in_scenes()[given.like].replace(f'name = "{given.like}"', f'name = "{given.name}"', 1)
     with path.open("x", encoding="utf-8") as file:
@@ -85,9 +87,7 @@ def run_check(given: "argparse.Namespace") -> int:
 
 def run_schema(_: "argparse.Namespace") -> int:
     """Print the schema."""
-    sys.stdout.write(_shipped("scene.schema.json"))
+    from comparisons.scene.toml import json_schema
+
+    sys.stdout.write(json.dumps(json_schema(), indent=1) + "\n")
     return DONE
-
-
-def _shipped(file: str) -> str:
-    return resources.files("comparisons.scene").joinpath(file).read_text(encoding="utf-8")
