@@ -88,7 +88,7 @@ def test_new_check_and_compare_run_from_the_wheel(built, tmp_path):
     assert all(file.startswith(str(home)) for file in where)
     crossval(home, tmp_path, "new strip")
     crossval(home, tmp_path, "check strip.toml")
-    assert '"$schema"' in crossval(home, tmp_path, "schema").stdout
+    assert '"$schema"' in crossval(home, tmp_path, "scenes --schema").stdout
     assert "exact rod" in crossval(home, tmp_path, "compare ks-cantilever --out out").stdout
     assert (tmp_path / "out" / "report.html").stat().st_size < 3e6
 

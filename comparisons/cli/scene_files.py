@@ -1,5 +1,6 @@
 """``crossval scenes``, ``new`` and ``check``: scene files before anything is solved."""
 
+import json
 import sys
 from importlib import resources
 from pathlib import Path
@@ -48,9 +49,12 @@ def add_to(commands: "Commands") -> None:
 
 def run_scenes(given: "argparse.Namespace") -> int:
     """Print the names of the built-in scenes, or the schema."""
-    sys.stdout.write(
-        _shipped("scene.schema.json") if given.schema else "".join(f"{one}\n" for one in built_in_scenes())
-    )
+    if not given.schema:
+        print(*built_in_scenes(), sep="\n")
+        return DONE
+    from comparisons.scene.toml import json_schema
+
+    sys.stdout.write(json.dumps(json_schema(), indent=1) + "\n")
     return DONE
 
 
@@ -64,7 +68,8 @@ def run_new(given: "argparse.Namespace") -> int:
     if path.exists():
         raise OutputError(f"{path.name}: is there already")
     if given.like is None:
-        text = _shipped("template.toml").replace('name = "NAME"', f'name = "{given.name}"')
+        template = resources.files("comparisons.scene").joinpath("template.toml").read_text("utf-8")
+        text = template.replace('name = "NAME"', f'name = "{given.name}"')
     else:
         text = built_in_scenes()[given.like].replace(f'name = "{given.like}"', f'name = "{given.name}"', 1)
     with path.open("x", encoding="utf-8") as file:
@@ -97,7 +102,3 @@ def run_check(given: "argparse.Namespace") -> int:
         draw(scene, picture)
         print(f"drawn: {given.out}", file=sys.stderr if given.json == "-" else sys.stdout)
     return DONE
-
-
-def _shipped(file: str) -> str:
-    return resources.files("comparisons.scene").joinpath(file).read_text(encoding="utf-8")

@@ -1,8 +1,6 @@
 """A scene as tables and as TOML text, and the JSON Schema of scene files."""
 
-import json
 from dataclasses import Field, fields
-from pathlib import Path
 from typing import Any
 
 from comparisons.scene.read import LISTS
@@ -88,12 +86,3 @@ def _schema(kind: type[Record], known: tuple[Field[Any], ...]) -> Table:
         "required": [item.name for item in known if item.default is MISSING],
         "additionalProperties": False,
     }
-
-
-def json_schema_text() -> str:
-    """Return the schema as the text of ``scene.schema.json``, which is shipped."""
-    return json.dumps(json_schema(), indent=1) + "\n"
-
-
-if __name__ == "__main__":
-    Path(__file__).with_name("scene.schema.json").write_text(json_schema_text(), encoding="utf-8")

@@ -1,11 +1,9 @@
 """The keys of a scene: each is written and read, and stated or refused by every model; what supports, joints and arcs make of them."""
 
-import json
 import math
 import re
 import tomllib
 from collections.abc import Iterator
-from importlib import resources
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -31,7 +29,7 @@ from comparisons.scene.record import optional
 from comparisons.scene.toml import json_schema
 from docs.extensions.scene_file import page
 
-SCHEMA = json.loads(resources.files("comparisons.scene").joinpath("scene.schema.json").read_text())
+SCHEMA = json_schema()
 HEAD = '[scene]\nname = "s"\nload_parameters = 4\n'
 BEAM = """[[beam]]
 name = "a"
