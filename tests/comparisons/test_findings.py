@@ -170,18 +170,6 @@ def test_a_thick_beam_rolls_without_slip(name, count):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ROLLS)
-def test_mixed_elements_of_a_thick_beam_roll_alike_with_any_load_parameters(name):
-    found = [
-        certified(solve(scene(name, n), "tsm", Options(elements=20)), scene(name, n)) for n in (5, 20, 50)
-    ]
-    assert all(item.certificate.certified for item in found)
-    times = [t for item in found for t in slips(item)]
-    assert times == pytest.approx([ROLLS[name][0]] * 3, abs=1e-4)
-    assert times == pytest.approx([times[0]] * 3, abs=1e-9)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("element", BEAMS)
 @pytest.mark.parametrize("file", sorted(FOLDER.glob("*.toml")), ids=lambda file: file.stem)
 def test_any_number_of_load_parameters_gives_the_same_answer(file, element):
