@@ -13,9 +13,8 @@ from comparisons.cli import main
 from comparisons.compare import ROD, compare
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import Scene, load_scene, read_scene, to_toml
+from comparisons.scene import Scene, load_scene, to_toml
 from tests.comparisons.show.pages.markup import check_alone
-from tests.comparisons.show.specimen import SPECIMEN
 
 KS = load_scene("ks-cantilever")
 
@@ -44,14 +43,6 @@ def test_a_model_that_cannot_state_the_scene_is_left_out(tmp_path):
         assert any(left_out in line for line in lines)
     assert not (tmp_path / "solid").exists()
     assert (tmp_path / "tsm" / "tsm.pvd").is_file()
-
-
-@pytest.mark.slow
-def test_a_scene_with_every_special_key_is_compared(tmp_path):
-    found = compare(read_scene(SPECIMEN, "specimen"), tmp_path, print)
-    (rods,) = [row for row in found.rows if row.label == "TSM exact, 1 element"]
-    assert rods.errors
-    assert rods.errors["path"]["tip"] < 1e-8
 
 
 @pytest.mark.slow

@@ -10,41 +10,24 @@ import sys
 import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import meshio
 import pytest
 
 # no command writes a file without a solution, and a file that is replaced must be this program's own
 from comparisons.files import WRITTEN, write_text
+from tests.comparisons.processes import COMMAND, begun, ended
 
 HERE = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-COMMAND = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
 SOLVE = ["solve", "ks-cantilever", "--model", "tsm"]
 KIB = 1024
 
 
-def begun(
-    code: str, *arguments: str, cwd: Path | None = None, stdout: int = subprocess.PIPE, **environment: str
-) -> "subprocess.Popen[str]":
-    """Start Python on some code."""
-    return subprocess.Popen(
-        [sys.executable, "-c", code, *arguments],
-        cwd=cwd,
-        stdout=stdout,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**HERE, **environment},
-    )
-
-
-def crossval(
-    *arguments: str, setup: str = "", stdout: int = subprocess.PIPE, **environment: str
-) -> tuple[int, str]:
+def crossval(*arguments: str, setup: str = "", **options: Any) -> tuple[int, str]:
     """Run ``crossval`` after a statement; return its exit status and standard error."""
-    with begun(f"{setup}\n{COMMAND}", *arguments, stdout=stdout, **environment) as child:
-        err = child.communicate(timeout=300)[1]
-    assert "Traceback" not in err
-    return child.returncode, err
+    found = ended(f"{setup}\n{COMMAND}", *arguments, **options)
+    return found.returncode, found.stderr
 
 
 def names(folder: Path) -> set[str]:
@@ -181,7 +164,7 @@ def test_no_room_for_a_file(options, size, file, tmp_path, monkeypatch):
 @pytest.mark.parametrize("arguments", [["scenes"], [*SOLVE, "--json", "-"]])
 def test_no_room_on_standard_output(arguments, unbuffered):
     with Path("/dev/full").open("w") as full:
-        end = crossval(*arguments, stdout=full.fileno(), PYTHONUNBUFFERED=unbuffered)
+        end = crossval(*arguments, stdout=full.fileno(), env={"PYTHONUNBUFFERED": unbuffered})
     assert end == (2, "crossval: output: No space left on device\n")
 
 
@@ -255,9 +238,8 @@ def test_no_opengl(tmp_path):
     hidden.mkdir()
     for library in ("GL.so", "GL.so.1", "EGL.so", "EGL.so.1", "OSMesa.so", "OSMesa.so.6", "OSMesa.so.8"):
         (hidden / f"lib{library}").touch()
-    with begun(PICTURE, cwd=tmp_path, LD_LIBRARY_PATH=str(hidden), DISPLAY="") as child:
-        out, err = child.communicate(timeout=300)
-    assert err == ""
-    assert out.startswith("off-screen rendering is not available here")
-    assert out.count("\n") == 1
+    found = ended(PICTURE, cwd=tmp_path, env={"LD_LIBRARY_PATH": str(hidden), "DISPLAY": ""})
+    assert found.stderr == ""
+    assert found.stdout.startswith("off-screen rendering is not available here")
+    assert found.stdout.count("\n") == 1
     assert names(tmp_path) == {"lib", "a.png"}

@@ -110,6 +110,8 @@ def test_a_registered_model_keeps_the_contract(model):
         assert given <= {*found.options, "load_steps"}
         assert any(found.run_label(options).startswith(words) for words in found.styles())
         assert any(found.family(KS, options).startswith(words) for words in found.styles())
+    families = [found.family(KS, options) for options in found.resolutions(quick=False)]
+    assert all(families.count(name) in (1, *range(3, 20)) for name in families)
     assert len({found.run_label(options) for options in found.compared()}) == len(found.compared())
     assert all(style.colour.startswith("#") for style in found.styles().values())
     assert found.colour == next(iter(found.styles().values())).colour

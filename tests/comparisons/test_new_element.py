@@ -1,4 +1,4 @@
-"""An element that is registered is right wherever elements are asked for: accuracy, extremes, figures, comparisons of cost."""
+"""An element that is registered is right wherever elements are asked for: accuracy, figures, comparisons of cost."""
 
 from dataclasses import replace
 
@@ -7,13 +7,7 @@ import pytest
 
 import tsm
 from comparisons.accuracy import solve_to
-from comparisons.cases import Case, measure
-
-# the maps of extremes have no command that takes one element alone
-from comparisons.claims.extremes.axes import matrix
-from comparisons.claims.extremes.cell import Cell, judged
-from comparisons.claims.extremes.rows import against_rod, beam_case
-from comparisons.claims.extremes.scenes import cantilever, half_circle
+from comparisons.cases import Case
 from comparisons.models import TSM, solve
 from comparisons.models.options import Options
 from comparisons.scene import load_scene
@@ -36,18 +30,6 @@ def test_accuracy_grades_its_mesh_by_its_order_and_keeps_the_promise():
     force = answer.response.contacts["pin->cantilever"].force
     assert answer.reached
     assert np.abs(force - exact).max() <= 1e-5 * exact.max()
-
-
-def test_extremes_have_it_with_the_allowance_of_its_order():
-    cells = matrix(quick=True)
-    own, mixed = ({cell.axis for cell in cells if cell.row == kind.name} for kind in (KIND, MIXED))
-    assert own == mixed
-    case = beam_case(half_circle(cantilever()), KIND, 10)
-    cell = Cell(axis="", row=KIND.name, column="", case=case, checks=(against_rod(case),))
-    judgement = judged(cell, {one: measure(one, repeats=0) for one in cell.cases})
-    assert judgement.verdict.name == "RIGHT", judgement.sentence
-    assert judgement.decisive is not None
-    assert judgement.decisive.allowed < 1e-3
 
 
 def test_figures_and_labels_have_it():

@@ -1,15 +1,14 @@
 """A new model is one file and one name in the registry, or an entry point of another package: every command then has it."""
 
 import json
-import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 import comparisons
+from tests.comparisons.processes import COMMAND, ended
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "model.md"
 CHAIN = PAGE.read_text(encoding="utf-8").partition("```python\n")[2].partition("```")[0]
@@ -89,21 +88,8 @@ def offered(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def python(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, *arguments],
-        cwd=place,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(place), *sys.path])},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=300,
-    )
-
-
-def crossval(place: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    code = "import sys; from comparisons.cli import main; sys.exit(main(sys.argv[1:]))"
-    return python(place, "-c", code, *arguments)
+def crossval(place: Path, *arguments: str, code: str = COMMAND) -> subprocess.CompletedProcess[str]:
+    return ended(code, *arguments, cwd=place, first=place)
 
 
 @pytest.mark.slow
@@ -123,7 +109,7 @@ def test_commands_have_it(way, request):
 
 
 def test_comparison_cost_extremes_and_pictures_have_it(registered):
-    found = python(registered, "-c", ASKED)
+    found = crossval(registered, code=ASKED)
     assert found.stdout.split() == ["1", "1", "True", "#AA3377"], found.stderr
 
 

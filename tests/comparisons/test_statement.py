@@ -16,7 +16,7 @@ from comparisons.errors import difference, errors
 from comparisons.models import solve
 from comparisons.models.options import Options
 from comparisons.response import Response
-from comparisons.scene import PinSpec, Scene, load_scene, to_toml
+from comparisons.scene import Scene, load_scene, to_toml
 from comparisons.show.pages import tracks
 
 SCENE = replace(load_scene("ks-cantilever"), load_parameters=5)
@@ -48,25 +48,6 @@ def test_json_has_every_digit_and_an_older_file_is_refused(tmp_path, capsys):
     assert "supports.cantilever" in (said := capsys.readouterr().err)
     assert "as cantilever.start; " in said
     assert said.endswith("solve again\n")
-
-
-def test_events_are_listed_where_the_model_locates_them_and_an_open_contact_has_no_place(tmp_path):
-    pin = PinSpec(name="pin", start=(0.85, -0.06), displacement=(0.0, 0.6))
-    scene = replace(SCENE, pins=(pin,))
-    data = stated(tmp_path, scene, "--elements", "10", "--certify", "none")
-    touch, *passes, slip = data["events"]
-    assert (touch["kind"], touch["pair"], touch["element"]) == ("touch", PAIR, 8)
-    assert touch["load_parameter"] == pytest.approx(0.1, abs=1e-9)
-    assert touch["arc_position"] == pytest.approx(0.85, abs=1e-9)
-    assert [event["kind"] for event in passes] == ["pass-through"]
-    assert (slip["kind"], slip["element"], slip["arc_position"]) == ("slip-off", 9, pytest.approx(1.0))
-    assert slip["released"] > 0.0
-    assert data["contacts"][PAIR]["slip_off"] == slip["load_parameter"]
-    pin = PinSpec(name="pin", start=(0.5, -0.1), displacement=(0.0, 0.2))
-    data = stated(tmp_path, replace(SCENE, pins=(pin,)), "--model", "rod")
-    assert data["events"] is None
-    assert data["contacts"][PAIR]["arc_position"][0] is None
-    assert data["contacts"][PAIR]["gap"][0] == pytest.approx(0.06)
 
 
 def with_contact(rod: Response, **changes: Any) -> Response:

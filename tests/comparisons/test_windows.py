@@ -2,15 +2,13 @@
 
 import csv
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from comparisons.scene import built_in_scenes
+from tests.comparisons.processes import COMMAND, ended
 
 BLOCK = """
 import os, signal, sys
@@ -19,7 +17,6 @@ sys.modules.update(dict.fromkeys(["fcntl", "grp", "pwd", "resource", "termios"])
 del os.fork, os.getuid, os.killpg, os.O_NONBLOCK, signal.pthread_sigmask, signal.SIGKILL
 """
 """Run by every Python of the tests as it starts."""
-START = "import sys; assert sys.modules['fcntl'] is None; from comparisons.cli import main; sys.exit(main())"
 STUDY = '[study]\nname = "s"\nscene = "ks-cantilever"\nrepeats = 1\n[[run]]\nmodel = "tsm"\nelements = [4, 5]\nscene.load_parameters = 2\n'
 
 
@@ -28,13 +25,10 @@ def crossval(folder: Path, *arguments: str) -> str:
     start = folder / "start"
     start.mkdir(exist_ok=True)
     (start / "sitecustomize.py").write_text(BLOCK)
-    path = os.pathsep.join([str(start), *sys.path])
-    found = subprocess.run(
-        [sys.executable, "-c", START, *arguments],
-        cwd=folder, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=False, timeout=300,
-    )  # fmt: skip
+    found = ended(
+        f"import sys; assert sys.modules['fcntl'] is None; {COMMAND}", *arguments, first=start, cwd=folder
+    )
     assert found.returncode == 0, found.stderr
-    assert "Traceback" not in found.stderr
     return found.stdout
 
 

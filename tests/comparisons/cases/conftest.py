@@ -2,16 +2,14 @@
 
 import csv
 import json
-import os
-import subprocess
-import sys
+from functools import partial
 from time import monotonic, sleep
 
 import pytest
 
 from comparisons.cli import main
+from tests.comparisons.processes import COMMAND, begun
 
-COMMAND = "import sys; from comparisons.cli import main; sys.exit(main())"
 CASES = 30
 """Of the tiny study, about 10 ms each."""
 TINY = f"""
@@ -136,16 +134,4 @@ def many(tmp_path_factory):
 @pytest.fixture
 def start():
     """Start the command as the leader of its own group of processes."""
-
-    def begin(*arguments, **options):
-        return subprocess.Popen(
-            [sys.executable, "-c", COMMAND, *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-            **options,
-        )
-
-    return begin
+    return partial(begun, COMMAND, start_new_session=True)

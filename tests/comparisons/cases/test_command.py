@@ -113,6 +113,7 @@ def test_out_of_room(whole, tiny, tmp_path, start):
     check_finished(tiny, tmp_path, whole)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
 def test_a_folder_that_is_only_read(many, tmp_path, capfd):
     """The study was run before, so that every module is loaded and nobody needs to read one."""

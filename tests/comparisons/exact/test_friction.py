@@ -61,14 +61,6 @@ def test_elastica_on_the_ks_path(friction, stick, slip, F, s, moment):
     assert H / normal == pytest.approx([-friction, friction], abs=1e-10)
 
 
-@pytest.mark.slow_at("surface1")
-@pytest.mark.parametrize("surface", [Surface(radius=0.01), Surface(offset=0.01, radius=0.1)])
-def test_rod_on_the_ks_path(surface):
-    """A stick that rolls on a round pin loses no work either."""
-    pins = ks_pins([0.0, 0.5, 1.0], surface.offset + surface.radius)
-    assert states(checked(rod_with_friction(pins, friction=0.3, **KS, surface=surface), 0.3)) == KS_STATES
-
-
 @pytest.mark.slow_at("-1-surface0", "-1-surface2", "1-surface0", "1-surface1", "1-surface2")
 @pytest.mark.parametrize("surface", [Surface(), Surface(offset=0.06), Surface(offset=0.06, radius=0.1)])
 @pytest.mark.parametrize("side", [1, -1])

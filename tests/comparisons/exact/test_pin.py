@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 
 from comparisons.exact import Outcome, Surface, elastica_under_pin, rod_under_pin, rod_with_friction
-
-# the polar angle of the pin, whose turning point ends the branch of the elastica
-from comparisons.exact.elastica import _polar_angle, fold_angle
 from tests.oracles.elastica import slip_off_height
 from tests.oracles.shooting import KS as SECTION
 from tests.oracles.shooting import RIGID, ks_pins, shot
@@ -59,14 +56,19 @@ def test_the_clamp_moment_of_the_elastica_at_the_end_of_the_ks_path_is_pi():
     assert elastica_under_pin(*KS_END).clamp_moment == pytest.approx(-np.pi, rel=1e-14)
 
 
-def test_a_direction_of_the_pin_has_one_solution_below_the_fold_and_one_beyond():
-    """The polar angle of the pin grows up to the fold, at 2.983418, and falls beyond: the smaller root is the straight beam's branch."""
-    assert fold_angle() == pytest.approx(2.983418, abs=5e-7)
-    below, beyond = np.linspace(1e-3, fold_angle(), 400), np.linspace(fold_angle(), np.pi, 100)
-    assert np.all(np.diff([_polar_angle(angle) for angle in below]) > 0.0)
-    assert np.all(np.diff([_polar_angle(angle) for angle in beyond]) < 0.0)
-    direction = _polar_angle(3.1)
-    assert elastica_under_pin(np.cos(direction) / 2.0, np.sin(direction) / 2.0).tangent_angle < fold_angle()
+def test_the_branch_of_the_straight_beam_ends_at_the_fold():
+    """The tangent's angle grows with the direction of the pin up to 2.983418; beyond that direction the pin is lost."""
+
+    def at(direction):
+        return elastica_under_pin(np.cos(direction) / 5.0, np.sin(direction) / 5.0)
+
+    found, lost = 1.5, 2.5
+    while lost - found > 1e-13:
+        middle = (found + lost) / 2.0
+        found, lost = (found, middle) if at(middle).outcome is LOST else (middle, lost)
+    angles = [at(direction).tangent_angle for direction in np.linspace(0.1, found, 50)]
+    assert np.all(np.diff(angles) > 0.0)
+    assert angles[-1] == pytest.approx(2.983418, abs=2e-6)
 
 
 def test_outcomes_of_the_elastica():

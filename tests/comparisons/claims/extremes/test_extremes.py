@@ -8,6 +8,7 @@ from collections import Counter
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from comparisons.claims.claim import Allowance, Verdict
 from comparisons.claims.extremes import run as runner
 from comparisons.claims.extremes.axes import AXES, matrix
 from comparisons.claims.extremes.cell import Cell, judged
-from comparisons.claims.extremes.checks import LARGEST, Against, allowance
+from comparisons.claims.extremes.checks import LARGEST, Against, Check, allowance
 from comparisons.claims.extremes.rows import against_rod, beam_case, exact_rod, kinds
 from comparisons.claims.extremes.scenes import cantilever, half_circle, sheared
 from comparisons.cli import main
@@ -88,6 +89,23 @@ def test_a_verdict_and_whether_a_check_refused_needlessly(case):
     if case == "as it is":
         assert 1e-6 < found.decisive.error < found.decisive.allowed < 1e-3
         assert found.reached == 1.0
+
+
+@pytest.mark.parametrize("kind", get_args(Check))
+def test_every_check_holds_a_true_answer_and_finds_a_spoiled_one(kind):
+    """Forces and tips a thousandth too large, in the first cell that has the check."""
+    cell, check = next(
+        (cell, check) for cell in matrix(quick=True) for check in cell.checks if type(check) is kind
+    )
+    true, needed = measured(cell.case).response, {case: measured(case) for case in check.needs}
+    spoiled = replace(
+        off(measured(cell.case), 1e-3).response,
+        supports={node: replace(one, force=1.001 * one.force) for node, one in true.supports.items()},
+        tips={beam: 1.001 * place for beam, place in true.tips.items()},
+    )
+    for response, held in ((true, True), (spoiled, False)):
+        found = check.finding(cell.case, response, needed)
+        assert (found.error <= found.allowed) == held, (cell.row, cell.column, found)
 
 
 def test_round_off_is_allowed_where_a_stiffness_multiplies_it():
