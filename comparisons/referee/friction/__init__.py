@@ -5,3 +5,7 @@ from comparisons.referee.friction.history import History
 from comparisons.referee.friction.rubbing import rubs_wrongly, rubs_wrongly_on_the_way, unlawful, wanders
 
 __all__ = ["History", "dissipated", "rubs_wrongly", "rubs_wrongly_on_the_way", "unlawful", "wanders"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
