@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from comparisons.models.options import Options
-from comparisons.models.translate.to_solid import rectangle
+from comparisons.models.solid import rectangle
 from comparisons.response import Response
 from comparisons.scene import BeamSpec, Scene
 

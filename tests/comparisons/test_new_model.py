@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -69,9 +70,9 @@ def registered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     package = shutil.copytree(Path(comparisons.__file__).parent, folder / "comparisons")
     (package / "models" / "chain.py").write_text(CHAIN)
     registry = package / "models" / "registry.py"
-    listed = 'FILES = ("tsm", "solid", "rod")'
-    assert listed in registry.read_text()
-    registry.write_text(registry.read_text().replace(listed, 'FILES = ("tsm", "solid", "rod", "chain")'))
+    listed, count = re.subn(r"^(FILES = .*)\)$", r'\1, "chain")', registry.read_text(), flags=re.MULTILINE)
+    assert count == 1
+    registry.write_text(listed)
     (folder / "study.toml").write_text(STUDY)
     return folder
 

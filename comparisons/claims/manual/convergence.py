@@ -20,7 +20,7 @@ from comparisons.claims.manual.models import (
 )
 from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import PAIR, half_way, ks
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.response import Array
 from comparisons.scene import Scene
 

@@ -28,7 +28,7 @@ from comparisons.claims.problems.frames import (
     TOGGLE_LIMITS,
     under_load,
 )
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.response import Response
 from comparisons.scene import Scene, load_scene
 

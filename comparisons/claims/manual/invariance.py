@@ -18,7 +18,8 @@ from comparisons.claims.manual.models import (
 from comparisons.claims.manual.record import Curve, Measured, Picture, Problem, Trial
 from comparisons.claims.manual.scenes import ks, mirrored, moved, reversed_
 from comparisons.models import SOLID
-from comparisons.models.translate import to_solid, to_structure
+from comparisons.models.solid import to_solid
+from comparisons.models.tsm import to_structure
 from comparisons.response import Array
 from comparisons.scene import Scene
 

@@ -11,8 +11,8 @@ from comparisons.claims.paper.critical_area import SCENE, STARTS
 from comparisons.claims.paper.formulations import FORMULATIONS, Formulation
 from comparisons.exact.rod import rod_under_pin
 from comparisons.models import ROD, TSM, solve
+from comparisons.models.cantilever import to_rod
 from comparisons.models.options import Options
-from comparisons.models.translate import to_rod
 from comparisons.response import Array, Response
 from comparisons.scene import Scene, load_scene
 from comparisons.show import palette

@@ -14,7 +14,7 @@ from comparisons.claims.paper import turned_frame
 from comparisons.claims.paper.approach import approaches
 from comparisons.claims.paper.force_floor import force_floor
 from comparisons.claims.paper.formulations import FORMULATIONS
-from comparisons.models.translate import to_structure
+from comparisons.models.tsm import to_structure
 from comparisons.response import Array
 from comparisons.scene import load_scene
 from tsm.elements import EULER_BERNOULLI_CANTILEVER, EULER_BERNOULLI_SIMPLE, TIMOSHENKO

@@ -14,7 +14,7 @@ from comparisons.claims.solid.peers import contact_forces, dead_load, peers, pre
 from comparisons.cli import main
 from comparisons.models.outside.calculix import tip_load
 from comparisons.models.outside.ccx import CalculixError, parse, run
-from comparisons.models.translate import to_solid
+from comparisons.models.solid import to_solid
 from comparisons.scene import load_scene
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
