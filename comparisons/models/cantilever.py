@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +115,7 @@ def to_rod(scene: Scene) -> RodScene:
     left = np.array([-along[1], along[0]])
     mirrored = contact.side == ("left" if clamp.end == "start" else "right")
     origin, axes = np.array(scene.place(clamp.node)), np.stack([along, -left if mirrored else left], axis=1)
-    stations = np.union1d(np.array([0.0, *scene.times]), np.array(pin.corners))
+    stations = np.union1d([0.0, *scene.times], pin.corners)
     return RodScene(
         beam=beam,
         clamp=clamp.end,
@@ -163,21 +164,23 @@ class LocalStates:
     slip_off: float
 
 
+def _states(path: Any, hits: NDArray[np.int64], **more: Any) -> LocalStates:
+    """Return the states at the load parameters of a path, with what else is stated of them."""
+    at = {name: getattr(path, name)[hits] for name in ("force", "arc_position", "clamp_moment", "tip")}
+    return LocalStates(hits=hits, **at, **more)
+
+
 def solve_rod(scene: Scene, local: RodScene) -> Response:
     """Solve `scene` as a Reissner rod; `local` is the scene in the rod's frame."""
     beam, hits = local.beam, local.hits
+    stiffness = {"EA": beam.EA, "GA": beam.GA, "EI": beam.EI}
     began = perf_counter()
-    path = rod_under_pin(
-        local.path, offset=local.offset, EA=beam.EA, GA=beam.GA, EI=beam.EI, length=beam.length
-    )
+    path = rod_under_pin(local.path, offset=local.offset, length=beam.length, **stiffness)
     seconds = perf_counter() - began
-    states = LocalStates(
+    states = _states(
+        path,
+        hits,
         visited=path.outcome,
-        hits=hits,
-        force=path.force[hits],
-        arc_position=path.arc_position[hits],
-        clamp_moment=path.clamp_moment[hits],
-        tip=path.tip[hits],
         iterations=np.diff(np.cumsum(path.iterations)[hits], prepend=0),
         shape=lambda k: path.shape(int(hits[k]), POINTS)[:, :2],
         slip_off=path.slip_off,
@@ -201,13 +204,10 @@ def solve_rod_with_friction(scene: Scene, local: RodScene) -> Response:
     )
     seconds = perf_counter() - began
     outcomes = {FrictionState.OPEN: Outcome.OPEN, FrictionState.SLIPPED: Outcome.SLIPPED}
-    states = LocalStates(
+    states = _states(
+        path,
+        hits,
         visited=[Outcome.CONTACT if one.touches else outcomes.get(one, Outcome.LOST) for one in path.state],
-        hits=hits,
-        force=path.force[hits],
-        arc_position=path.arc_position[hits],
-        clamp_moment=path.clamp_moment[hits],
-        tip=path.tip[hits],
         iterations=np.zeros(len(hits), dtype=np.int64),
         shape=lambda k: _friction_shape(path, local, int(hits[k])),
         slip_off=next(

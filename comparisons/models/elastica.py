@@ -59,13 +59,11 @@ class Elastica(Model):
             path.append(path[-1] if left else state)
         seconds = perf_counter() - began
         slipped = (t for t, one in zip(scene.times, path, strict=True) if one.outcome is Outcome.SLIPPED)
+        names = ("force", "arc_position", "clamp_moment", "tip")
         states = LocalStates(
             visited=tuple(state.outcome for state in path),
             hits=np.arange(len(path)),
-            force=np.array([state.force for state in path]),
-            arc_position=np.array([state.arc_position for state in path]),
-            clamp_moment=np.array([state.clamp_moment for state in path]),
-            tip=np.array([state.tip for state in path]),
+            **{name: np.array([getattr(state, name) for state in path]) for name in names},
             iterations=np.zeros(len(path), dtype=np.int64),
             shape=lambda k: path[k].shape(POINTS),
             slip_off=next(slipped, np.nan),

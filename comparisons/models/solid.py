@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, nan
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from comparisons.models.base import Model, Style
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from comparisons.models.theory import Bending
-    from comparisons.response import Array, ContactEvent, Response, Sections
+    from comparisons.response import Array, ContactEvent, Response
     from comparisons.scene import BeamSpec, Scene, SupportSpec
     from fem_reference import EndLoad, Joint, LineLoad, PointLoad, SolidProblem, Spring, Strip, Support
 
@@ -24,6 +24,8 @@ REFINED = ((25, 1), (50, 2), (100, 4), (200, 8))
 COARSE = ((8, 1), (12, 1), (16, 1), (25, 2))
 LEAST_RATIO = -0.999
 """Least Poisson's ratio. There the shear modulus is 500 times Young's modulus; a solid that is stiffer in shear locks."""
+CONTACT = ("node", "side", "surface", "penalty", "penetration", "keep", "friction")
+"""What the solid takes of a contact as it is."""
 SLENDER = 0.125
 """Largest height over length of the rectangle that replaces a section given by area and second moment."""
 
@@ -75,10 +77,6 @@ class Solid(Model):
         del options
         return f"{self.label} {_order(scene)}"
 
-    def resolution(self, options: Options) -> float:
-        """Return the number of elements along a beam; nan where the scene gives the number."""
-        return nan if options.mesh is None else float(options.mesh[0])
-
     def resolutions(self, *, quick: bool) -> Iterator[Options]:
         """Yield meshes, coarse to fine."""
         yield from (Options(mesh=mesh) for mesh in (*COARSE, *REFINED[: 2 if quick else 3]))
@@ -99,7 +97,7 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
     import numpy as np
 
     import fem_reference
-    from comparisons.models.j_integral import j_integrals
+    from comparisons.models.sections import j_integrals, section_forces
     from comparisons.models.shared import history, of_result
     from comparisons.response import Deformation, FrictionHistory, Grid
     from comparisons.response.deferred import Deferred
@@ -164,32 +162,8 @@ def _solved(scene: Scene, options: Options, watch: Watch) -> Response:
         deformation=Deformation(
             load_parameter=result.load_parameter, turn=turn, strain=np.zeros_like(turn), bearable=1.0
         ),
-        sections=lambda beam, k: _sections(scene, result, beam, k),
+        sections=lambda beam, k: section_forces(scene, result, beam, k),
     )
-
-
-def _sections(scene: Scene, result: Any, beam: str, k: int) -> Sections:
-    """Return the section forces; a clamped end that nothing else is joined to or acts on has its reaction as section force."""
-    import numpy as np
-
-    import fem_reference
-    from comparisons.response import Sections
-
-    found = fem_reference.section_forces(result, beam, k)
-    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
-    table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
-    for support in scene.supports_of(beam):
-        motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
-        place, turn, first = scene.place(support.node), motion[2], support.end == "start"
-        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
-        if turn is None or joined or support.node in taken:
-            continue
-        held, (tx, ty) = result.supports[support.node], own.tangent(0.0 if first else 1.0)
-        c, s = tx * np.cos(turn) - ty * np.sin(turn), ty * np.cos(turn) + tx * np.sin(turn)
-        x, y, moment = (1 - 2 * first) * np.array([*held.force[k], held.moment[k]])
-        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
-        table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
-    return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
 
 
 def _events(result: Any) -> tuple[ContactEvent, ...]:
@@ -198,14 +172,11 @@ def _events(result: Any) -> tuple[ContactEvent, ...]:
 
     found = [
         ContactEvent(
-            kind=event.kind,
-            load_parameter=event.load_parameter,
             pair=pair,
             element=-1,
-            arc_position=event.arc_position,
-            force=event.force,
             released=0.0,
             stage=max(1, ceil(event.load_parameter)),
+            **{name: getattr(event, name) for name in ("kind", "load_parameter", "arc_position", "force")},
         )
         for pair, contact in result.contacts.items()
         for event in contact.events
@@ -250,17 +221,8 @@ def to_solid(scene: Scene, *, mesh: tuple[int, int] | None = None) -> SolidProbl
             for path, *onward in [pin.stage_points]
         ),
         contacts=tuple(
-            fem.Contact(
-                node=contact.node,
-                strip=contact.beam,
-                side=contact.side,
-                surface=contact.surface,
-                penalty=contact.penalty,
-                penetration=contact.penetration,
-                keep=contact.keep,
-                friction=contact.friction,
-            )
-            for contact in scene.contacts
+            fem.Contact(strip=item.beam, **{name: getattr(item, name) for name in CONTACT})
+            for item in scene.contacts
         ),
     )
 

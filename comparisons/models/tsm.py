@@ -8,7 +8,7 @@ from itertools import accumulate
 from math import hypot, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
-from comparisons.models.base import Model, Style
+from comparisons.models.base import Model, Style, counted
 from comparisons.models.options import ModelError, Options
 from comparisons.models.progress import Reached, Watch
 from comparisons.scene.keys import BEAMS, unstated
@@ -87,9 +87,7 @@ class Tsm(Model):
 
     def run_label(self, options: Options) -> str:
         """Return the label of one run, as ``TSM mixed, 20 elements``."""
-        count = options.elements
-        words = "" if count is None else f", {count} element{'s' if count > 1 else ''}"
-        return f"{self.label} {self.element(options).name}{words}"
+        return f"{self.label} {self.element(options).name}{counted(options.elements)}"
 
     def setting(self, scene: Scene, options: Options) -> str:
         """Return element type, numbers of elements and tolerance, as ``mixed 20``."""
@@ -104,10 +102,6 @@ class Tsm(Model):
         """Return the type of the elements, as ``TSM mixed``."""
         del scene
         return f"{self.label} {self.element(options).name}"
-
-    def resolution(self, options: Options) -> float:
-        """Return the number of elements of a beam; nan where the scene gives the number."""
-        return nan if options.elements is None else float(options.elements)
 
     def compared(self) -> tuple[Options, ...]:
         """Return the paper's element, the recommended one, and the exact one."""
@@ -273,14 +267,9 @@ def to_structure(scene: Scene, *, elements: int | None = None, element: str | No
             tsm.Hinge(beam=item.beam, end=_end(item.end), stiffness=item.stiffness) for item in scene.hinges
         ),
         springs=tuple(
-            tsm.Spring(
-                beam=item.beam,
-                end=_end(item.end),
-                x=item.stiffness[0],
-                y=item.stiffness[1],
-                rotation=item.rotation,
-            )
+            tsm.Spring(beam=item.beam, end=_end(item.end), x=x, y=y, rotation=item.rotation)
             for item in scene.springs
+            for x, y in [item.stiffness]
         ),
         pins=tuple(
             tsm.Pin(name=pin.name, path=path, onward=tuple(points[1:] for points in onward))

@@ -5,7 +5,7 @@ from enum import Enum
 import fem_reference
 import tsm
 from comparisons.models.cantilever import STOPS
-from comparisons.models.outside.status import ProgramStatus
+from comparisons.models.outside.child import ProgramStatus
 from comparisons.referee import Verdict
 from docs.extensions.markdown import table, text
 

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from comparisons.files import one_line
 from comparisons.models.options import ModelError
-from comparisons.models.outside.status import ProgramError, ProgramStatus
+from comparisons.models.outside.child import ProgramError, ProgramStatus
+from comparisons.models.shared import line_grid
 from comparisons.models.verify import CHECK_FAILED
 from comparisons.referee.certificate import Verdict
-from comparisons.response import ContactHistory, Grid, Response, SupportHistory
+from comparisons.response import ContactHistory, Response, SupportHistory
 from comparisons.response.axis import SampledAxes
 from comparisons.response.from_json import KEYS, NotFiniteError, contradictions, once, restated
+from comparisons.response.record import unanswered
 from comparisons.scene import Scene
 from comparisons.scene.rules import FieldError
 from comparisons.scene.tables import check_keys
@@ -93,7 +95,7 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
         outside=True,
         load_parameter=np.array(scene.times[: len(response.load_parameter)]),
         contacts={pair: penetrating(item) for pair, item in response.contacts.items()},
-        grid=lambda k: axis_grid(scene, axes, k),
+        grid=lambda k: line_grid(scene, {name: axes(name, k) for name in axes.arc_length}),
     )
 
 
@@ -102,45 +104,19 @@ def silent(
 ) -> Response:
     """Return a response without any load parameter, which states why there is none."""
     none, pairs = np.empty(0), np.empty((0, 2))
-    return Response(
+    return replace(
+        unanswered(status, one_line(message)),
         model=model,
         scene=scene.name,
-        status=status,
-        message=one_line(message),
-        completed=False,
         outside=True,
         reported_success=reported_success,
-        load_parameter=none,
         contacts={
             spec.pair: ContactHistory(force=none, arc_position=none, gap=none) for spec in scene.contacts
         },
         supports={spec.node: SupportHistory(force=pairs, moment=none) for spec in scene.all_supports},
         tips={beam.name: pairs for beam in scene.beams},
-        newton_iterations=np.empty(0, dtype=np.int64),
-        cutbacks=0,
-        unknowns=0,
         wall_seconds=0.0,
         axis_line=SampledAxes(arc_length={}, position={}),
-        grid=lambda k: axis_grid(scene, SampledAxes(arc_length={}, position={}), k),
-    )
-
-
-def axis_grid(scene: Scene, axes: SampledAxes, k: int) -> Grid:
-    """Return the axes of all beams as lines, with their displacements."""
-    points, deformed, lines, numbers, count = [], [], [], [], 0
-    for name, arc in axes.arc_length.items():
-        beam = scene.beam(name)
-        numbers.append(np.full(len(arc), scene.beams.index(beam)))
-        points.append(np.array(beam.start) + np.outer(arc, beam.direction))
-        deformed.append(axes.position[name][k])
-        number = count + np.arange(len(arc) - 1)
-        lines.append(np.stack([number, number + 1], axis=1))
-        count += len(arc)
-    there, line = np.concatenate(points), np.concatenate(deformed)
-    return Grid(
-        points=there,
-        cells={"line": np.concatenate(lines)},
-        point_data={"displacement": line - there, "deformed": line, "beam": np.concatenate(numbers)},
     )
 
 

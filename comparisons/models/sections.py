@@ -1,11 +1,11 @@
-"""Material forces of the solid: the J-integral, averaged over the sections between clamp and contact."""
+"""The sections of the solid: section forces, and material forces by the J-integral between clamp and contact."""
 
 from math import nan
 from typing import Any
 
 import numpy as np
 
-from comparisons.response import Array
+from comparisons.response import Array, Sections
 from comparisons.response.material import clamped
 from comparisons.scene import BeamSpec, Scene
 
@@ -13,6 +13,27 @@ MARGIN = 1.5
 """Distance from clamp and contact, over the height, within which stresses are local; sections there are left out."""
 SHARE = 0.25
 """Largest part of the distance between clamp and contact that is left out at either end."""
+
+
+def section_forces(scene: Scene, result: Any, beam: str, k: int) -> Sections:
+    """Return the section forces; a clamped end that nothing else is joined to or acts on has its reaction as section force."""
+    import fem_reference
+
+    found = fem_reference.section_forces(result, beam, k)
+    taken = [load.load.node for load in scene.load_histories] + [spring.node for spring in scene.springs]
+    table, own = np.stack([found.stations, found.N, found.V, found.M]), scene.beam(beam)
+    for support in scene.supports_of(beam):
+        motion = scene.prescribed_motions[support.node].at(float(result.load_parameter[k]))
+        place, turn, first = scene.place(support.node), motion[2], support.end == "start"
+        joined = sum(place in (other.start, other.end) for other in scene.beams) > 1
+        if turn is None or joined or support.node in taken:
+            continue
+        held, (tx, ty) = result.supports[support.node], own.tangent(0.0 if first else 1.0)
+        c, s = tx * np.cos(turn) - ty * np.sin(turn), ty * np.cos(turn) + tx * np.sin(turn)
+        x, y, moment = (1 - 2 * first) * np.array([*held.force[k], held.moment[k]])
+        column = [0.0 if first else own.length, c * x + s * y, c * y - s * x, moment]
+        table = np.insert(table, 0 if first else table.shape[1], column, axis=1)
+    return Sections(arc=table[0], N=table[1], V=table[2], M=table[3])
 
 
 def j_integrals(scene: Scene, result: Any) -> dict[str, Array]:
