@@ -39,8 +39,10 @@ def refusal(output: bytes) -> str | None:
         data = _parsed(output)
     except ProgramError:
         return None
-    if data.get("status") != REFUSED:
-        return None
+    return _reason(data) if data.get("status") == REFUSED else None
+
+
+def _reason(data: dict[str, Any]) -> str:
     return one_line(data.get("message") or "no reason given")
 
 
@@ -68,11 +70,10 @@ def answer(output: bytes, scene: Scene, model: str, seconds: float) -> Response:
     ProgramError
         If the output is no response to the scene.
     """
-    reason = refusal(output)
-    if reason is not None:
-        raise ModelError(reason)
     data = _parsed(output)
     status = data.get("status")
+    if status == REFUSED:
+        raise ModelError(_reason(data))
     reported = status == COMPLETED
     try:
         for mistake in check_keys(data, KEYS, required=("status",)):
@@ -143,19 +144,14 @@ def _check_status(status: object) -> None:
 
 def _defaults(data: dict[str, Any], scene: Scene, seconds: float) -> dict[str, Any]:
     """Return the tables of the program with the items that follow from them or from the scene."""
-    more: dict[str, Any] = {
-        "scene": scene.name,
-        "message": "as the program reports",
-        "contacts": {},
-        "wall_seconds": seconds,
-    }
+    more: dict[str, Any] = {"scene": scene.name, "message": "as the program reports", "contacts": {}}
     axes = data.get("axes")
     if isinstance(axes, dict) and "tips" not in data:
         more["tips"] = {
             beam.name: _ends(axes.get(beam.name), -1 if scene.tip(beam.name) == "end" else 0)
             for beam in scene.beams
         }
-    return {**more, **data}
+    return {**more, "wall_seconds": seconds, **data}
 
 
 def _ends(axis: Any, end: int) -> Any:

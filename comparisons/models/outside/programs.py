@@ -83,14 +83,10 @@ def outside(name: str, taken: Container[str] = ()) -> Model | None:
     ModelError
         If an entry point yields no model.
     """
-    if name.endswith(SUFFIX):
-        model: Model | None = read_program(Path(name))
-    else:
-        model = (
-            ADAPTERS.get(name) or _USED.get(name) or (_loaded(offered()[name]) if name in offered() else None)
-        )
-    if model is None:
+    if not known(name):
         return None
+    model = read_program(Path(name)) if name.endswith(SUFFIX) else ADAPTERS.get(name) or _USED.get(name)
+    model = model or _loaded(offered()[name])
     if model.name in taken:
         raise ProgramFileError(name, f'program.name = "{model.name}": must not be the name of a model')
     _USED[model.name] = model
